@@ -1,0 +1,14 @@
+# Options of our own targets; nothing here reaches a project that links isoweave.
+add_library(isoweave_options INTERFACE)
+
+# The result is defined bit for bit: no contraction into FMA, no reassociation (docs/determinism.md).
+target_compile_options(isoweave_options INTERFACE -ffp-contract=off)
+
+target_compile_options(isoweave_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  $<$<BOOL:${ISOWEAVE_WERROR}>:-Werror>)
+
+if(ISOWEAVE_SANITIZE)
+  add_compile_options(-fsanitize=${ISOWEAVE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${ISOWEAVE_SANITIZE})
+endif()

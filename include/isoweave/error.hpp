@@ -1,0 +1,46 @@
+// Errors that the library throws. It never prints, exits or aborts.
+//
+// Every what() is one line that names the file or option, what was expected and what was found.
+// Bad arguments from the calling program (a NaN spacing, an empty span) are std::invalid_argument.
+#pragma once
+
+#include <stdexcept>
+
+namespace isoweave {
+
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A volume or mesh that cannot be found, opened, understood or read to its end.
+class BadInput : public Error {
+ public:
+  using Error::Error;
+};
+
+// An output that cannot be created, written, completed or represented in its format.
+class CannotWrite : public Error {
+ public:
+  using Error::Error;
+};
+
+// The run would need more memory than it was given.
+class OverMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+// No usable device, or the device failed.
+class DeviceError : public Error {
+ public:
+  using Error::Error;
+};
+
+// The caller asked the run to stop; nothing is left behind.
+class Interrupted : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace isoweave

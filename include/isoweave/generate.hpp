@@ -1,0 +1,47 @@
+// Volumes made from formulas, of any size, computed slice by slice when they are read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+// Kinds and the surface they hold at their suggested iso-value:
+//   sphere   distance to the centre, one sphere of radius 0.4 of the smallest side
+//   torus    one torus around the slowest axis
+//   gyroid   sin x cos y + sin y cos z + sin z cos x, period 32 samples: many tunnels, the same texture everywhere
+//   box      an axis-aligned box, shifted off the lattice: large flats, sharp edges
+//   shells   thin concentric spheres, two samples apart
+//   smooth   value noise on a coarse lattice: blobs without flats
+//   noise    smooth noise plus a weaker white noise: what CT looks like
+//   white    independent samples: the hardest topology there is
+//   specks   isolated single inside samples
+struct GenerateOptions {
+  std::string kind = "sphere";
+  std::array<std::int64_t, 3> dims{64, 64, 64};
+  SampleType type = SampleType::kFloat32;  // integer types hold the formula mapped to 0...255
+  std::array<double, 3> spacing{1, 1, 1};
+  std::uint64_t seed = 1;
+};
+
+// All kinds, in the order above.
+std::vector<std::string> generator_kinds();
+
+// The iso-value at which a kind shows the surface described above, in the units of the samples of `type`.
+double suggested_iso(std::string_view kind, SampleType type);
+
+// A source of the volume. Every sample is a pure function of (kind, dims, seed, i, j, k).
+// Throws std::invalid_argument for an unknown kind, dims < 1 or spacing that is not positive.
+std::unique_ptr<SliceSource> generate_volume(const GenerateOptions& options);
+
+// Writes any source as NRRD (.nrrd, raw encoding, attached), MetaImage (.mha) or raw (.raw) by the name's
+// ending, streamed, under a temporary name that is renamed when complete. Throws CannotWrite, BadInput.
+void write_volume(SliceSource& source, const std::string& path);
+
+}  // namespace isoweave

@@ -1,0 +1,53 @@
+// Triangle meshes held in memory, and files of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace isoweave {
+
+using Point = std::array<float, 3>;
+
+// An indexed triangle mesh. 32-bit indices: at most 2^32 - 1 vertices, which read_mesh checks.
+struct TriangleMesh {
+  std::vector<Point> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<Point> normals;                           // one per vertex, or none
+};
+
+// Reads PLY (binary little- and big-endian, ascii; polygons are fanned), STL (binary, ascii; corners with
+// equal coordinates become one vertex) or OBJ (v and f; polygons are fanned), told by content, then by name.
+// Throws BadInput for anything missing, truncated, out of range or not understood.
+TriangleMesh read_mesh(const std::string& path);
+
+// Where finished pieces of a mesh go. Not thread-safe.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+
+  // Appends vertices, numbered on from the ones before (the first ever is 0), their normals (as many as
+  // vertices, or none throughout), and triangles over any vertices appended so far.
+  virtual void append(std::span<const Point> vertices, std::span<const Point> normals,
+                      std::span<const std::array<std::uint64_t, 3>> triangles) = 0;
+
+  // Completes the mesh. Without it the destructor discards everything.
+  virtual void finish() = 0;
+};
+
+struct MeshFileOptions {
+  bool normals = false;               // STL has no place for vertex normals and ignores them
+  std::vector<std::string> comments;  // one line each, into the header where the format has comments
+};
+
+// Writes a mesh file, the format by the name's ending: .ply (binary little-endian, 32-bit indices), .stl (binary),
+// .obj. The file appears under its name only when finish() has written, counted, flushed and renamed it;
+// until then it is a temporary file in the same folder, which the destructor removes.
+// Throws CannotWrite when the ending is unknown, the folder is missing or read-only, the disk is full, or the
+// format cannot hold the counts.
+std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
+
+}  // namespace isoweave

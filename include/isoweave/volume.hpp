@@ -1,0 +1,98 @@
+// Volumes: regular grids of scalar samples, handed out slice by slice.
+//
+// Samples are f[k][j][i], i fastest. Slice k is one plane of samples (nx * ny of them); slices are
+// read in increasing k, once, so a compressed stream serves as well as a file on disk. Memory of a
+// source is bounded by the slices asked for plus a small constant, never by the volume.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isoweave {
+
+enum class SampleType : std::uint8_t { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64 };
+
+// Size of one sample in bytes.
+std::size_t sample_bytes(SampleType type);
+
+// "uint8", "int16", "float32", ...
+std::string_view sample_type_name(SampleType type);
+
+// The inverse of sample_type_name; nothing if the name is unknown.
+std::optional<SampleType> parse_sample_type(std::string_view name);
+
+// What the world axes mean: LPS (DICOM, ITK: left, posterior, superior) or RAS (NIfTI, FreeSurfer).
+enum class Space : std::uint8_t { kUnknown, kLps, kRas };
+
+// Where samples lie in the world: position(i, j, k) = origin + direction * (spacing * (i, j, k)).
+struct Geometry {
+  std::array<double, 3> spacing{1, 1, 1};                      // > 0, finite
+  std::array<double, 3> origin{0, 0, 0};                       // of sample (0, 0, 0)
+  std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; column a is axis a, unit length
+  Space space = Space::kUnknown;
+  std::string unit;  // "mm", "um", "nm", "m", or empty: not said
+};
+
+struct VolumeInfo {
+  std::string path;                           // as given
+  std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "generated"
+  std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
+  SampleType type = SampleType::kUint8;
+  Geometry geometry;
+  double slope = 1;                // value = slope * stored + intercept; slope is not 0
+  double intercept = 0;            // iso-values are given as values, samples stay as stored
+  std::vector<std::string> notes;  // things a user should know: "4-D: the first of 12 volumes is read"
+
+  std::int64_t slice_samples() const { return dims[0] * dims[1]; }
+  std::size_t slice_bytes() const { return static_cast<std::size_t>(slice_samples()) * sample_bytes(type); }
+};
+
+// A volume being read. Not thread-safe.
+class SliceSource {
+ public:
+  virtual ~SliceSource() = default;
+
+  virtual const VolumeInfo& info() const = 0;
+
+  // Reads slices [first, first + count) into `out`, in the machine's byte order, densely packed.
+  // `first` must not lie before the end of the previous call; slices in between are skipped.
+  // `out` holds at least count * slice_bytes() bytes. Throws BadInput when the data end early, are
+  // corrupt or cannot be read; std::invalid_argument for a range outside the volume or behind.
+  virtual void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) = 0;
+};
+
+// Layout of a headerless file.
+struct RawLayout {
+  std::array<std::int64_t, 3> dims{0, 0, 0};
+  SampleType type = SampleType::kUint8;
+  bool big_endian = false;
+  std::int64_t skip_bytes = 0;
+};
+
+// Parses "WxHxD:type[:big][:skip=N]", e.g. "512x512x300:int16:big:skip=1024".
+// Throws std::invalid_argument naming the part that is wrong.
+RawLayout parse_raw_layout(std::string_view text);
+
+// Reads "foot_256x256x256_uint8.raw" as a layout; nothing if the name does not say one.
+std::optional<RawLayout> raw_layout_from_name(std::string_view path);
+
+struct OpenOptions {
+  std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
+  std::optional<std::array<double, 3>> spacing;  // overrides the file's
+  std::optional<std::array<double, 3>> origin;   // overrides the file's
+};
+
+// Opens a volume; the format is told by its content, then by its name: NRRD/NHDR, MetaImage
+// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), raw. Only the header is read here, and
+// its claims are compared with the size of the file where that is known.
+// Throws BadInput when the file is missing, a directory, of no known format, or its header is wrong.
+std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
+
+}  // namespace isoweave

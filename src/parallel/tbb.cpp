@@ -1,0 +1,64 @@
+// Executor over oneTBB. ThreadSanitizer cannot see the synchronisation inside an uninstrumented libtbb, so the two
+// edges that for_blocks promises (caller before body, body before return) are told to it here.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "parallel/parallel.hpp"
+
+#if defined(__SANITIZE_THREAD__)
+#define ISOWEAVE_TSAN 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define ISOWEAVE_TSAN 1
+#endif
+#endif
+
+#ifdef ISOWEAVE_TSAN
+extern "C" void __tsan_acquire(void* address);
+extern "C" void __tsan_release(void* address);
+#endif
+
+namespace isoweave {
+namespace {
+
+#ifdef ISOWEAVE_TSAN
+void tsan_acquire(void* address) { __tsan_acquire(address); }
+void tsan_release(void* address) { __tsan_release(address); }
+#else
+void tsan_acquire(void*) {}
+void tsan_release(void*) {}
+#endif
+
+}  // namespace
+
+Executor::Executor(int threads) : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {}
+
+void Executor::run(std::int64_t count, std::int64_t grain, void* body, BlockFunction call) const {
+  if (count <= 0) return;
+  const std::int64_t blocks = (count + grain - 1) / grain;
+  const auto run_block = [&](std::int64_t block) { call(body, block * grain, std::min(count, (block + 1) * grain)); };
+  if (threads_ == 1 || blocks == 1) {
+    for (std::int64_t block = 0; block < blocks; ++block) run_block(block);
+    return;
+  }
+  char started = 0;
+  char finished = 0;
+  tsan_release(&started);
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(
+        std::int64_t{0}, blocks,
+        [&](std::int64_t block) {
+          tsan_acquire(&started);
+          run_block(block);
+          tsan_release(&finished);
+        },
+        tbb::simple_partitioner());
+  });
+  tsan_acquire(&finished);
+}
+
+}  // namespace isoweave
