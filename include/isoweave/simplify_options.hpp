@@ -1,0 +1,20 @@
+// Options that the simplification of volumes and of meshes share.
+#pragma once
+
+#include <cstdint>
+
+namespace isoweave {
+
+// How much an edge's cost is refined when it is decided. Every quality gives one mesh, whatever the schedule.
+//   fast    accumulated quadrics alone
+//   normal  the current faces count too, placement preserves volume; an edge dearer than 4 times its key goes back
+//   fine    the same, and an edge dearer than its key goes back: lowest error, about twice the work
+enum class Quality : std::uint8_t { kFast, kNormal, kFine };
+
+// Order in which edges are decided; it never changes the result.
+//   automatic  rounds when more than one thread may run, else queue
+//   queue      one priority queue in one thread: the sequential reference
+//   rounds     spatial parts in parallel, one queue per part, cuts shifted from round to round
+enum class Schedule : std::uint8_t { kAutomatic, kQueue, kRounds };
+
+}  // namespace isoweave

@@ -1,0 +1,81 @@
+// Marching cubes over slabs of layers (Lorensen and Cline, 1987; slabs and the front table as in the source paper).
+//
+// Crossings are bits. For every row of 64 lattice points there is one word of inside bits and one word of crossings
+// per axis; the number of a vertex is the number given to its word plus the crossings before it in the word. So every
+// crossing is computed once, found by its lattice position, and numbered in lattice order.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "extract/rules.hpp"
+#include "extract/surface_piece.hpp"
+#include "parallel/parallel.hpp"
+#include "slab/lattice.hpp"
+#include "slab/slice_window.hpp"
+
+namespace isoweave {
+
+struct ExtractOptions {
+  IsoRule rule;
+  bool normals = false;  // from central differences of the samples; needs one slice more on either side
+};
+
+class MarchingCubes {
+ public:
+  MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor);
+
+  // Layers not yet extracted. Layer k lies between slices k and k + 1; the first is -1, in the pad, and empty in open
+  // mode.
+  std::int64_t layers_left() const { return end_layer_ - next_layer_; }
+
+  // Slices [first, end) that the next `layers` layers read, unclipped.
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const;
+
+  // Extracts the next `layers` layers into `piece`. The window holds what slices_for() names, as far as the volume
+  // goes. Same result for any number of threads. Throws OverMemory when the slab holds 2^32 vertices or more.
+  void extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece);
+
+ private:
+  // Bits and vertex numbers of one slice; one entry per word, row by row.
+  struct Slice {
+    std::vector<std::uint64_t> inside, cross_x, cross_y;
+    std::vector<std::uint32_t> base;  // number of the word's first x-crossing; y-crossings follow
+  };
+  // The same between two slices.
+  struct Layer {
+    std::vector<std::uint64_t> cross_z;
+    std::vector<std::uint32_t> base;
+  };
+
+  void classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const;
+  void find_crossings(std::size_t n, std::size_t row, std::uint32_t& count);
+  void number_row(std::size_t n, std::size_t row, std::uint32_t base);
+  void number_vertices(std::size_t layers, SurfacePiece& piece);
+  template <class T>
+  void emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) const;
+  void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
+  void list_front(SurfacePiece& piece);
+  bool has_cells(std::int64_t k, std::size_t row) const;
+  template <class Visit>
+  void for_active_cells(std::size_t n, std::size_t row, Visit&& visit) const;
+  std::uint32_t vertex_at(std::size_t n, std::size_t row, std::int64_t bit, int edge) const;
+
+  Lattice lattice_;
+  SampleType type_;
+  std::array<double, 3> spacing_;
+  ExtractOptions options_;
+  const Executor& executor_;
+  std::size_t rows_;                                  // padded rows of a slice
+  std::size_t words_;                                 // words of a padded row
+  std::vector<std::uint64_t> edge_mask_, cell_mask_;  // per word: x-edges and cells that exist
+  std::int64_t next_layer_ = -1;
+  std::int64_t end_layer_;
+  std::vector<Slice> slices_;  // slices_[0] is the front left by the slab before
+  std::vector<Layer> layers_;
+  std::vector<std::uint32_t> row_counts_;
+  std::uint32_t front_size_ = 0;
+};
+
+}  // namespace isoweave

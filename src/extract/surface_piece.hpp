@@ -1,0 +1,37 @@
+// What an extractor hands over: a part of a surface. Nothing downstream knows how it was made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+#include "slab/vec3.hpp"
+
+namespace isoweave {
+
+// Vertices 0...inherited-1 are the previous piece's `incomplete`, in its order; new vertices follow. Triangles come in
+// the order in which quadrics are summed. Indices are 32 bit: a piece holds fewer than 2^32 vertices.
+struct SurfacePiece {
+  std::uint32_t inherited = 0;
+  std::vector<Vec3> positions;                          // of new vertices, physical lengths
+  std::vector<std::uint64_t> ids;                       // of new vertices, unique in the whole surface
+  std::vector<Point> normals;                           // of new vertices, unit or zero, outwards; or none
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<std::uint32_t> incomplete;                // vertices that later pieces give more triangles
+  std::vector<std::uint32_t> locked;                    // vertices that must stay as they are
+  std::uint64_t cells_crossed = 0;
+
+  void clear() {
+    inherited = 0;
+    cells_crossed = 0;
+    positions.clear();
+    ids.clear();
+    normals.clear();
+    triangles.clear();
+    incomplete.clear();
+    locked.clear();
+  }
+};
+
+}  // namespace isoweave

@@ -1,0 +1,82 @@
+// Deciding one edge: collapse it, or raise its key.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "isoweave/simplify_options.hpp"
+#include "simplify/zone.hpp"
+
+namespace isoweave {
+
+// The faces around a vertex, counter-clockwise: face n lies between neighbours n and n + 1 (modulo the number of
+// neighbours in a closed star; an open star has one neighbour more than faces).
+struct Star {
+  // Stars with more neighbours cannot merge within kMaxValence and are gathered up to here only.
+  static constexpr int kCapacity = 28;
+
+  Index vertex = kNone;
+  int faces = 0;
+  int neighbours = 0;
+  bool border = false;
+  bool overflow = false;
+  std::array<Index, kCapacity + 1> out;  // half-edge of face n that starts at the vertex
+  std::array<Index, kCapacity + 1> neighbour;
+
+  void gather(const Zone& zone, Index v);
+};
+
+struct DecisionCounts {
+  std::uint64_t collapses = 0;
+  std::uint64_t postponed = 0;  // decided, and illegal at the time
+  std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
+
+  void operator+=(const DecisionCounts& other) {
+    collapses += other.collapses;
+    postponed += other.postponed;
+    rekeyed += other.rekeyed;
+  }
+};
+
+// Decides edges of a zone, one after the other. Reads and writes the two stars of an edge only: deciders in different
+// threads may work on the same zone as long as the stars of their edges share no triangle.
+class Decider {
+ public:
+  Decider(Zone& zone, Quality quality) : zone_(zone), quality_(quality) {}
+
+  // Gathers the stars of the edge's ends; they stay for decide().
+  void look_at(Index half_edge);
+  const Star& first() const { return u_; }
+  const Star& second() const { return v_; }
+
+  // Decides the edge looked at, whose key must be the smallest of all live edges that conflict with it. Afterwards
+  // changed() lists the edges whose keys changed.
+  void decide();
+
+  const std::array<Index, 2 * Star::kCapacity>& changed() const { return changed_; }
+  int changed_count() const { return changed_count_; }
+  const DecisionCounts& counts() const { return counts_; }
+
+ private:
+  bool topology_allows() const;
+  bool keeps_sides(Vec3 x) const;
+  bool star_keeps_sides(const Star& star, const Star& other, Vec3 x) const;
+  Quadric current_faces(Vec3 origin, Vec3& gradient, double& offset) const;
+  void add_current_faces(const Star& star, const Star* skip, Vec3 origin, Quadric& q, Vec3& gradient,
+                         double& offset) const;
+  bool place(Vec3 origin, const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  void raise_key(CostBits cost);
+  void collapse(Vec3 position, const Quadric& quadric);
+  void merge_sides(Index h);
+  void update_keys(CostBits collapse_cost);
+
+  Zone& zone_;
+  Quality quality_;
+  Index edge_ = kNone;
+  Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
+  std::array<Index, 2 * Star::kCapacity> changed_;
+  int changed_count_ = 0;
+  DecisionCounts counts_;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,86 @@
+// Keys, costs and legality: the per-element rules of simplification, shared by every schedule and back end.
+//
+// All costs here are in units of a0, the mean voxel face: dimensionless, so nothing depends on the unit of length.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "parallel/host_device.hpp"
+#include "simplify/quadric.hpp"
+
+namespace isoweave {
+
+// A cost as the bits of a non-negative float32: compares as an integer.
+using CostBits = std::uint32_t;
+
+inline constexpr CostBits kUnknownCost = 0;            // an end is incomplete: live, and undecidable
+inline constexpr CostBits kRetiredCost = 0x7f800000u;  // +infinity: an edge that is never decided
+inline constexpr float kCostFloor = 1e-20F;            // lower costs count as this
+inline constexpr float kPostponeFactor = 16;           // a smaller factor gives far more rounds on noise
+inline constexpr float kPostponeFloor = 2.4e-4F;       // a 64th of a voxel, squared
+inline constexpr int kMaxValence = 24;                 // of a merged vertex
+inline constexpr double kSideCosine = 0.2;             // least cosine between a face before and after
+
+ISOWEAVE_HD inline CostBits cost_bits(float cost) {
+  CostBits bits = 0;
+  memcpy(&bits, &cost, sizeof bits);
+  return bits;
+}
+
+ISOWEAVE_HD inline float cost_value(CostBits bits) {
+  float cost = 0;
+  memcpy(&cost, &bits, sizeof cost);
+  return cost;
+}
+
+ISOWEAVE_HD inline CostBits to_cost(double error) {
+  const float cost = static_cast<float>(error);
+  return cost_bits(cost <= kCostFloor ? kCostFloor : cost);  // NaN stays NaN, above every limit
+}
+
+ISOWEAVE_HD inline CostBits postponed_cost(CostBits cost) {
+  const float raised = kPostponeFactor * cost_value(cost);
+  return cost_bits(raised > kPostponeFloor ? raised : kPostponeFloor);
+}
+
+// Bijective mix of 64 bits (finaliser of SplitMix64, Steele et al., 2014). Ties broken by a hash need far fewer
+// rounds on flats than ties broken by position.
+ISOWEAVE_HD inline std::uint64_t mix_bits(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+// Ids of mesh edges from the ids of their ends, unique in the whole surface.
+//
+// On a lattice the ends are edges of one cell: their points differ by -1, 0 or 1 along each axis, and the smaller end
+// and one of fewer than 256 differences name the edge. For a mesh file the ends are positions in the file below 2^32.
+struct EdgeNumbering {
+  std::uint64_t row = 0;  // of the padded lattice; 0 for a mesh file
+  std::uint64_t plane = 0;
+
+  ISOWEAVE_HD std::uint64_t edge_id(std::uint64_t a, std::uint64_t b) const {
+    const std::uint64_t low = a < b ? a : b;
+    const std::uint64_t high = a < b ? b : a;
+    if (row == 0) return low << 32 | high;
+    // The difference of the ids, made positive, in mixed radix: each digit is below 4 as row, plane / row >= 3.
+    const std::uint64_t step = high - low + 2 + 3 * (1 + row + plane);
+    const std::uint64_t points = step / 3;
+    const std::uint64_t in_plane = points % plane;
+    return low * 256 + step % 3 + 3 * (in_plane % row + 4 * (in_plane / row + 4 * (points / plane)));
+  }
+};
+
+// The face (a, b, c) after a move to (x, b, c) keeps its side and stays a face. A face without area imposes nothing.
+ISOWEAVE_HD inline bool keeps_side(Vec3 a, Vec3 x, Vec3 b, Vec3 c) {
+  const Vec3 side = c - b;
+  const Vec3 before = cross(b - a, side);
+  const double size_before = dot(before, before);
+  if (!(size_before > 0)) return true;
+  const Vec3 after = cross(b - x, side);
+  const double cosine = dot(before, after);
+  return cosine > 0 && cosine * cosine > kSideCosine * kSideCosine * size_before * dot(after, after);
+}
+
+}  // namespace isoweave

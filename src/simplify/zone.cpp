@@ -1,0 +1,259 @@
+#include "simplify/zone.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::int64_t kBlock = 2048;
+
+}  // namespace
+
+CostBits edge_cost(const Vertex& u, const Vertex& v) {
+  const Vec3 middle = midpoint(u.position, v.position);
+  const Quadric q = moved(u.quadric, middle - u.position) + moved(v.quadric, middle - v.position);
+  const Vec3 x = solve(factorise(q), -q.b);
+  return to_cost(evaluate(q, x));
+}
+
+void Zone::append(const SurfacePiece& piece, const Executor& executor) {
+  const std::uint64_t half_edge_count = half_edges.size() + 3 * piece.triangles.size();
+  if (half_edge_count >= kWritten) {
+    throw OverMemory("the undecided zone would hold " + std::to_string(half_edge_count) +
+                     " half-edges, expected fewer than 2^32: choose thinner slabs or a smaller error");
+  }
+  const auto first_vertex = static_cast<Index>(vertices.size());
+  const auto first_half_edge = static_cast<Index>(half_edges.size());
+  vertices.resize(vertices.size() + piece.positions.size());
+  half_edges.resize(half_edge_count);
+  cost.resize(half_edge_count, kUnknownCost);
+  tie.resize(half_edge_count, 0);
+  normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
+  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
+    Vertex& vertex = vertices[first_vertex + static_cast<Index>(n)];
+    vertex.position = piece.positions[static_cast<std::size_t>(n)];
+    vertex.id = piece.ids[static_cast<std::size_t>(n)];
+  });
+  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t t) {
+    for (Index c = 0; c < 3; ++c) {
+      const Index n = piece.triangles[static_cast<std::size_t>(t)][c];
+      half_edges[first_half_edge + 3 * static_cast<Index>(t) + c] = {piece_vertex(piece, first_vertex, n), kNone};
+    }
+  });
+  link(piece, first_half_edge, executor);
+  settle_front(piece, first_vertex, executor);
+  key_edges(first_half_edge, executor);
+}
+
+// Finds twins among the new half-edges and the open ones: lists the half-edges that start at each vertex and
+// looks for (b, a) in the list of b.
+void Zone::link(const SurfacePiece& piece, Index first_half_edge, const Executor& executor) {
+  std::vector<Index> candidates = std::move(open_half_edges_);
+  const std::size_t open = candidates.size();
+  candidates.resize(open + half_edges.size() - first_half_edge);
+  for (std::size_t n = open; n < candidates.size(); ++n) candidates[n] = first_half_edge + static_cast<Index>(n - open);
+
+  // Only front and new vertices have candidates: number them densely, the front first.
+  const auto new_vertices = static_cast<Index>(piece.positions.size());
+  const Index first_new = static_cast<Index>(vertices.size()) - new_vertices;
+  std::vector<std::pair<Index, Index>> old_vertices;  // (vertex, dense number), sorted
+  for (std::size_t n = 0; n < open; ++n) old_vertices.emplace_back(origin(candidates[n]), 0);
+  for (const Index v : front_) old_vertices.emplace_back(v, 0);
+  std::sort(old_vertices.begin(), old_vertices.end());
+  old_vertices.erase(std::unique(old_vertices.begin(), old_vertices.end()), old_vertices.end());
+  for (std::size_t n = 0; n < old_vertices.size(); ++n) old_vertices[n].second = static_cast<Index>(n);
+  const auto old_count = static_cast<Index>(old_vertices.size());
+  const auto dense = [&](Index v) {
+    if (v >= first_new) return old_count + (v - first_new);
+    return std::lower_bound(old_vertices.begin(), old_vertices.end(), std::pair<Index, Index>(v, 0))->second;
+  };
+
+  const auto count = static_cast<std::int64_t>(candidates.size());
+  std::vector<Index> start(old_count + std::size_t{new_vertices} + 1, 0);
+  executor.for_each(count, kBlock, [&](std::int64_t n) {
+    const Index slot = dense(origin(candidates[static_cast<std::size_t>(n)])) + 1;
+    std::atomic_ref(start[slot]).fetch_add(1, std::memory_order_relaxed);
+  });
+  for (std::size_t n = 1; n < start.size(); ++n) start[n] += start[n - 1];
+  std::vector<Index> fill(start.begin(), start.end() - 1);
+  std::vector<Index> outgoing(candidates.size());
+  executor.for_each(count, kBlock, [&](std::int64_t n) {
+    const Index h = candidates[static_cast<std::size_t>(n)];
+    outgoing[std::atomic_ref(fill[dense(origin(h))]).fetch_add(1, std::memory_order_relaxed)] = h;
+  });
+
+  // Each pair is written once, from its half-edge that starts at the smaller vertex.
+  executor.for_each(count, kBlock, [&](std::int64_t n) {
+    const Index h = candidates[static_cast<std::size_t>(n)];
+    const Index a = origin(h);
+    const Index b = destination(h);
+    if (a > b) return;
+    const bool listed =
+        b >= first_new || std::binary_search(old_vertices.begin(), old_vertices.end(), std::pair<Index, Index>(b, 0),
+                                             [](const auto& p, const auto& q) { return p.first < q.first; });
+    if (!listed) return;
+    const Index bucket = dense(b);
+    for (Index m = start[bucket]; m < start[bucket + 1]; ++m) {
+      const Index back = outgoing[m];
+      if (destination(back) != a) continue;
+      half_edges[h].twin = back;
+      half_edges[back].twin = h;
+      return;
+    }
+  });
+
+  // A vertex starts its walks at the border if it has one, else at its first half-edge.
+  executor.for_each(static_cast<std::int64_t>(old_count) + new_vertices, kBlock, [&](std::int64_t n) {
+    const auto slot = static_cast<Index>(n);
+    const Index v = slot < old_count ? old_vertices[slot].first : first_new + (slot - old_count);
+    Index& first = vertices[v].half_edge;
+    for (Index m = start[slot]; m < start[slot + 1]; ++m) first = std::min(first, outgoing[m]);
+    for (Index m = start[slot]; m < start[slot + 1]; ++m) {
+      if (twin(outgoing[m]) == kNone) first = outgoing[m];
+    }
+  });
+  open_half_edges_ = std::move(candidates);
+}
+
+// Vertices that the piece does not name as incomplete are complete now and get their quadrics.
+void Zone::settle_front(const SurfacePiece& piece, Index first_vertex, const Executor& executor) {
+  std::vector<Index> settled = std::move(front_);
+  front_ = settled;
+  std::vector<Index> front(piece.incomplete.size());
+  for (std::size_t n = 0; n < front.size(); ++n) front[n] = piece_vertex(piece, first_vertex, piece.incomplete[n]);
+  for (Index v = first_vertex; v < vertices.size(); ++v) settled.push_back(v);
+  for (const Index v : settled) vertices[v].state = VertexState::kComplete;
+  for (const Index v : front) vertices[v].state = VertexState::kIncomplete;
+  for (const Index n : piece.locked) vertices[piece_vertex(piece, first_vertex, n)].state = VertexState::kLocked;
+  executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
+    const Index v = settled[static_cast<std::size_t>(n)];
+    if (vertices[v].state == VertexState::kComplete && exists(vertices[v].half_edge)) initial_quadric(v);
+  });
+  front_ = std::move(front);
+  std::erase_if(open_half_edges_, [&](Index h) {
+    const bool incomplete = vertices[origin(h)].state == VertexState::kIncomplete ||
+                            vertices[destination(h)].state == VertexState::kIncomplete;
+    return twin(h) != kNone || !incomplete;
+  });
+}
+
+// Planes of the faces around v in the order of the faces, weighted by area / 3; then, on an open border, planes
+// through the two border edges perpendicular to their faces, weighted by squared length.
+void Zone::initial_quadric(Index v) {
+  std::vector<Index> faces;
+  const Index first = vertices[v].half_edge;
+  Index last = first;
+  for (Index h = first; exists(h); h = rotate(h)) {
+    faces.push_back(h);
+    last = h;
+    if (rotate(h) == first) break;
+  }
+  std::sort(faces.begin(), faces.end());
+  const Vec3 p = vertices[v].position;
+  const auto face_normal = [&](Index h) {
+    return cross(vertices[destination(h)].position - p, vertices[origin(previous(h))].position - p);
+  };
+  const double a0 = options_.a0;
+  Quadric q;
+  for (const Index h : faces) {
+    const Vec3 normal = face_normal(h);
+    const double size = std::sqrt(dot(normal, normal));  // twice the area
+    if (size > 0) add_plane(q, normal, {}, size / (6 * a0 * a0));
+  }
+  const auto add_border = [&](Vec3 edge, Vec3 normal) {
+    const Vec3 side = cross(edge, normal);
+    if (dot(side, side) > 0) add_plane(q, side, {}, dot(edge, edge) / (a0 * a0));
+  };
+  if (twin(first) == kNone) {
+    add_border(vertices[destination(first)].position - p, face_normal(first));
+    add_border(p - vertices[origin(previous(last))].position, face_normal(last));
+  }
+  vertices[v].quadric = q;
+}
+
+// Keys of the edges whose two ends are complete now.
+void Zone::key_edges(Index first_half_edge, const Executor& executor) {
+  std::vector<Index> edges = std::move(unkeyed_edges_);
+  for (Index h = first_half_edge; h < half_edges.size(); ++h) {
+    if (represents_edge(h)) edges.push_back(h);
+  }
+  executor.for_each(static_cast<std::int64_t>(edges.size()), kBlock, [&](std::int64_t n) {
+    const Index h = edges[static_cast<std::size_t>(n)];
+    const Vertex& u = vertices[origin(h)];
+    const Vertex& v = vertices[destination(h)];
+    if (u.state == VertexState::kIncomplete || v.state == VertexState::kIncomplete) return;
+    const bool locked = u.state == VertexState::kLocked || v.state == VertexState::kLocked;
+    set_cost(h, locked ? kRetiredCost : edge_cost(u, v));
+    const std::uint64_t mixed = mix_bits(options_.numbering.edge_id(u.id, v.id));
+    tie[h] = mixed;
+    if (exists(twin(h))) tie[twin(h)] = mixed;
+  });
+  std::erase_if(edges, [&](Index h) { return cost[h] != kUnknownCost || !represents_edge(h); });
+  unkeyed_edges_ = std::move(edges);
+}
+
+void Zone::remove_triangle(Index t) {
+  for (Index h = 3 * t; h < 3 * t + 3; ++h) half_edges[h].vertex = kNone;
+}
+
+void Zone::compact() {
+  Index dead = 0;
+  for (Index t = 0; t < triangles(); ++t) dead += !alive(3 * t);
+  dead_triangles_ = dead;
+  if (2 * std::uint64_t{dead} < triangles()) return;
+
+  // A vertex is held as long as a triangle uses it, or will.
+  std::vector<Index> new_vertex(vertices.size(), kNone);
+  std::vector<Index> new_triangle(triangles(), kNone);
+  Index kept = 0;
+  for (Index t = 0; t < triangles(); ++t) {
+    if (!alive(3 * t)) continue;
+    new_triangle[t] = kept++;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) new_vertex[origin(h)] = 0;
+  }
+  for (const Index v : front_) new_vertex[v] = 0;
+  const auto moved_half_edge = [&](Index h) { return exists(h) ? 3 * new_triangle[h / 3] + h % 3 : h; };
+
+  Index count = 0;
+  for (Index v = 0; v < vertices.size(); ++v) {
+    if (new_vertex[v] == kNone) continue;
+    vertices[count] = vertices[v];
+    Index& first = vertices[count].half_edge;
+    if (exists(first)) first = new_triangle[first / 3] == kNone ? kNone : moved_half_edge(first);
+    if (!normals.empty()) normals[count] = normals[v];
+    new_vertex[v] = count++;
+  }
+  vertices.resize(count);
+  if (!normals.empty()) normals.resize(count);
+
+  for (Index t = 0; t < new_triangle.size(); ++t) {
+    if (new_triangle[t] == kNone) continue;
+    for (Index c = 0; c < 3; ++c) {
+      const Index from = 3 * t + c;
+      const Index to = 3 * new_triangle[t] + c;
+      half_edges[to] = {new_vertex[half_edges[from].vertex], moved_half_edge(half_edges[from].twin)};
+      cost[to] = cost[from];
+      tie[to] = tie[from];
+    }
+  }
+  half_edges.resize(3 * std::size_t{kept});
+  cost.resize(half_edges.size());
+  tie.resize(half_edges.size());
+  for (Index& v : front_) v = new_vertex[v];
+  for (Index& h : open_half_edges_) h = moved_half_edge(h);
+  for (Index& h : unkeyed_edges_) h = moved_half_edge(h);
+  dead_triangles_ = 0;
+}
+
+std::uint64_t Zone::bytes() const {
+  return vertices.capacity() * sizeof(Vertex) + normals.capacity() * sizeof(Point) +
+         half_edges.capacity() * sizeof(HalfEdge) + cost.capacity() * sizeof(CostBits) +
+         tie.capacity() * sizeof(std::uint64_t) +
+         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity()) * sizeof(Index);
+}
+
+}  // namespace isoweave
