@@ -1,0 +1,226 @@
+#include "write/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr mode_t kNewFileMode = 0666;          // the umask takes its share, as for any new file
+constexpr std::size_t kLongestNameKept = 200;  // of the 255 bytes of a name; the rest is for the decoration
+constexpr int kAttempts = 100;
+
+[[noreturn]] void cannot_write(const std::string& path, const std::string& what, int error) {
+  throw CannotWrite(path + ": " + what + ": " + std::generic_category().message(error));
+}
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+std::string name_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+std::string resolve_links(const std::string& path) {
+  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr), &std::free);
+  if (!real) cannot_write(path, "cannot resolve the link", errno);
+  return real.get();
+}
+
+// Refuses what a rename would destroy or fail on, and returns the name to rename to.
+std::string checked_target(const std::string& path) {
+  if (path.empty()) throw CannotWrite("the name of the output file is empty");
+  const std::string name = name_of(path);
+  if (name.empty() || name == "." || name == "..") throw CannotWrite(path + ": is a folder, expected a file name");
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno != ENOENT) cannot_write(path, "cannot be looked up", errno);
+    return path;
+  }
+  if (S_ISDIR(status.st_mode)) throw CannotWrite(path + ": is a folder, expected a file name");
+  if (!S_ISREG(status.st_mode)) throw CannotWrite(path + ": exists and is not a regular file");
+  if (::access(path.c_str(), W_OK) != 0) cannot_write(path, "exists and cannot be replaced", errno);
+  struct stat link {};
+  if (::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode)) return resolve_links(path);
+  return path;
+}
+
+std::string temporary_name(const std::string& target, std::random_device& random) {
+  constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
+  std::string infix;
+  for (int i = 0; i < 6; ++i) infix += kLetters[random() % (sizeof(kLetters) - 1)];
+  const std::string decorated = "." + name_of(target).substr(0, kLongestNameKept) + "." + infix + ".partial";
+  return target.find('/') == std::string::npos ? decorated : target.substr(0, target.rfind('/') + 1) + decorated;
+}
+
+// Creates a new file beside `target`; says its name in `temporary`.
+int open_temporary(const std::string& path, const std::string& target, std::string& temporary) {
+  std::random_device random;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const std::string name = temporary_name(target, random);
+    const int fd = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
+    if (fd >= 0) {
+      temporary = name;
+      return fd;
+    }
+    if (errno != EEXIST && errno != EINTR)
+      cannot_write(path, "cannot create a file in '" + folder_of(target) + "'", errno);
+  }
+  throw CannotWrite(path + ": no free temporary name in '" + folder_of(target) + "'");
+}
+
+// Makes the rename durable. A folder that may be written but not read, or a file system without this operation,
+// leaves that to the system; the file itself is complete.
+void sync_folder(const std::string& path, const std::string& target) {
+  const int fd = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  const int result = ::fsync(fd);
+  const int error = errno;
+  ::close(fd);
+  if (result != 0 && error != EINVAL && error != ENOTSUP) cannot_write(path, "cannot flush the folder", error);
+}
+
+}  // namespace
+
+OutputDescriptor::OutputDescriptor(int fd, std::string path) : fd_(fd), path_(std::move(path)) {}
+
+OutputDescriptor::~OutputDescriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void OutputDescriptor::fail(const char* what, int error) const { cannot_write(path_, what, error); }
+
+void OutputDescriptor::write(std::span<const std::byte> bytes) {
+  if (bytes.size() > kBufferBytes - buffer_.size()) flush();
+  if (bytes.size() >= kBufferBytes) {
+    write_now(bytes);
+  } else {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  }
+  size_ += bytes.size();
+}
+
+void OutputDescriptor::flush() {
+  write_now(buffer_);
+  buffer_.clear();
+}
+
+void OutputDescriptor::write_now(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
+    if (written > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    } else if (written == 0 || errno != EINTR) {
+      fail("cannot write", written == 0 ? ENOSPC : errno);
+    }
+  }
+}
+
+void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+  if (offset > size_ || bytes.size() > size_ - offset) throw std::invalid_argument("overwrite past the end of a file");
+  flush();
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      offset += static_cast<std::uint64_t>(written);
+    } else if (written == 0 || errno != EINTR) {
+      fail("cannot write", written == 0 ? ENOSPC : errno);
+    }
+  }
+}
+
+void OutputDescriptor::read_back(std::uint64_t offset, std::span<std::byte> bytes) {
+  flush();
+  while (!bytes.empty()) {
+    const ssize_t got = ::pread(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(got));
+      offset += static_cast<std::uint64_t>(got);
+    } else if (got == 0) {
+      throw CannotWrite(path_ + ": holds less than was written to it");
+    } else if (errno != EINTR) {
+      fail("cannot read back", errno);
+    }
+  }
+}
+
+void OutputDescriptor::append(OutputDescriptor& source) {
+  source.flush();
+  flush();
+  std::uint64_t done = append_in_kernel(source);
+  std::vector<std::byte> block(
+      static_cast<std::size_t>(std::min<std::uint64_t>(4 * kBufferBytes, source.size_ - done)));
+  while (done < source.size_) {
+    const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), source.size_ - done));
+    source.read_back(done, std::span(block).first(count));
+    write_now(std::span(block).first(count));
+    done += count;
+  }
+  size_ += source.size_;
+}
+
+// Copies as far as the file system can do it by itself; returns how far. Errors are left for the plain copy to meet.
+std::uint64_t OutputDescriptor::append_in_kernel(const OutputDescriptor& source) {
+  off_t offset = 0;
+  while (static_cast<std::uint64_t>(offset) < source.size_) {
+    const std::size_t rest = static_cast<std::size_t>(source.size_ - static_cast<std::uint64_t>(offset));
+    const ssize_t copied = ::copy_file_range(source.fd_, &offset, fd_, nullptr, rest, 0);
+    if (copied <= 0 && !(copied < 0 && errno == EINTR)) break;
+  }
+  return static_cast<std::uint64_t>(offset);
+}
+
+void OutputDescriptor::close() {
+  flush();
+  if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
+  struct stat status {};
+  if (::fstat(fd_, &status) != 0) fail("cannot be looked up", errno);
+  if (static_cast<std::uint64_t>(status.st_size) != size_) {
+    throw CannotWrite(path_ + ": wrote " + std::to_string(size_) + " bytes, the disk holds " +
+                      std::to_string(status.st_size));
+  }
+  // Whatever close says, the descriptor is gone afterwards.
+  if (::close(std::exchange(fd_, -1)) != 0) fail("cannot close", errno);
+}
+
+AtomicFile::AtomicFile(const std::string& path)
+    : path_(path), target_(checked_target(path)), file_(open_temporary(path_, target_, temporary_), path_) {}
+
+AtomicFile::~AtomicFile() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::commit() {
+  file_.close();
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) cannot_write(path_, "cannot be renamed into place", errno);
+  temporary_.clear();
+  sync_folder(path_, target_);
+}
+
+int open_scratch(const std::string& path) {
+  std::string temporary;
+  const int fd = open_temporary(path, checked_target(path), temporary);
+  ::unlink(temporary.c_str());
+  return fd;
+}
+
+}  // namespace isoweave

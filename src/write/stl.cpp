@@ -1,0 +1,92 @@
+// STL, binary. Each triangle repeats its corners, and may refer to any vertex appended so far: the positions of all
+// vertices stay in memory, 12 bytes each. (PLY and OBJ keep none.)
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "write/mesh_file_sink.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kTriangleBytes = 50;
+constexpr std::size_t kTrianglesAtOnce = 4096;
+
+// A header that begins with "solid" would announce the ascii dialect.
+std::vector<std::byte> header_bytes(std::uint32_t triangles) {
+  constexpr std::string_view kText = "binary STL, written by isoweave";
+  std::vector<std::byte> header(kHeaderBytes);
+  std::transform(kText.begin(), kText.end(), header.begin(), [](char c) { return static_cast<std::byte>(c); });
+  std::byte* count = header.data() + 80;
+  store_u32(count, triangles);
+  return header;
+}
+
+// Of unit length, by the right-hand rule; zero for a triangle without area, as is the custom.
+Point facet_normal(const Point& a, const Point& b, const Point& c) {
+  std::array<double, 3> u{};
+  std::array<double, 3> v{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    u[i] = double{b[i]} - double{a[i]};
+    v[i] = double{c[i]} - double{a[i]};
+  }
+  const std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  // Overflow of huge coordinates leaves no direction either.
+  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
+  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
+}
+
+class StlSink final : public MeshFileSink {
+ public:
+  StlSink(const std::string& path, const MeshFileOptions& options) : MeshFileSink(path, without_normals(options)) {
+    file().write(header_bytes(0));
+  }
+
+ private:
+  static MeshFileOptions without_normals(MeshFileOptions options) {
+    options.normals = false;
+    return options;
+  }
+
+  void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
+                   std::span<const Triangle64> triangles) override {
+    check_count_fits(path(), "triangles", this->triangles(), triangles.size());
+    positions_.insert(positions_.end(), vertices.begin(), vertices.end());
+    records_.resize(kTrianglesAtOnce * kTriangleBytes);
+    for (std::size_t first = 0; first < triangles.size(); first += kTrianglesAtOnce) {
+      const std::size_t end = std::min(triangles.size(), first + kTrianglesAtOnce);
+      std::byte* out = records_.data();
+      for (std::size_t i = first; i < end; ++i) store_triangle(out, triangles[i]);
+      file().write(std::span(records_).first((end - first) * kTriangleBytes));
+    }
+  }
+
+  void store_triangle(std::byte*& out, const Triangle64& triangle) const {
+    const Point& a = positions_[triangle[0]];
+    const Point& b = positions_[triangle[1]];
+    const Point& c = positions_[triangle[2]];
+    for (const Point& point : {facet_normal(a, b, c), a, b, c}) store_point(out, point);
+    *out++ = std::byte{0};  // the attribute count, unused
+    *out++ = std::byte{0};
+  }
+
+  void complete() override {
+    const std::vector<std::byte> header = header_bytes(static_cast<std::uint32_t>(triangles()));
+    file().overwrite(0, header);
+    check_written(kHeaderBytes + triangles() * kTriangleBytes, header);
+  }
+
+  std::vector<Point> positions_;
+  std::vector<std::byte> records_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshSink> open_stl(const std::string& path, const MeshFileOptions& options) {
+  return std::make_unique<StlSink>(path, options);
+}
+
+}  // namespace isoweave
