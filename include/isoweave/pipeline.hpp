@@ -1,0 +1,106 @@
+// The main job: volume in, simplified surface out, in one sweep.
+//
+// The surface is extracted slab by slab, simplified while it grows, and final triangles leave memory for the sink at
+// once. The result is, bit for bit, the mesh that a sequential greedy simplifier would make from the complete
+// surface, whatever the slab thickness, the number of threads and the schedule.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "isoweave/mesh.hpp"
+#include "isoweave/simplify_options.hpp"
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+// A length: in mean voxels, or in the volume's own unit.
+struct Length {
+  double value = 0;
+  bool voxels = false;
+};
+
+// Parses "0.2vox", "0.05mm", "30um", "500nm" or "0.05" (the volume's own unit). Metric lengths are converted to `unit`
+// ("mm" where the volume does not say). Throws std::invalid_argument naming the text.
+Length parse_length(std::string_view text, std::string_view unit);
+
+// Coordinates of the output: as the volume's own world, in a named convention (x and y change sign between the two), or
+// index * spacing without origin and direction.
+enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
+
+// What a run can tell while it goes on.
+struct Progress {
+  std::int64_t layer = 0;    // done
+  std::int64_t layers = 0;   // in all
+  std::uint64_t voxels = 0;  // read so far
+  std::uint64_t live_triangles = 0;
+  std::uint64_t final_triangles = 0;
+  std::uint64_t bytes = 0;  // held by the slab and the undecided zone
+};
+
+struct RunControl {
+  int threads = 0;  // 0: one per processor
+  Schedule schedule = Schedule::kAutomatic;
+  const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
+  std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
+};
+
+struct MeshOptions {
+  double iso = 0;            // a value: slope and intercept of the volume are accounted for
+  bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
+  bool closed = true;        // caps at the volume's border; else the surface ends there
+  Length error{0.2, true};   // root of the largest quadric error of a collapse; 0: no simplification
+  Quality quality = Quality::kNormal;
+  std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
+  bool normals = false;   // from gradients, unit length, outwards
+  OutputSpace space = OutputSpace::kAsVolume;
+};
+
+struct SlabRecord {
+  std::int64_t layer = 0;                 // done after this slab
+  std::uint64_t live_triangles = 0;       // when the slab was appended
+  std::uint64_t undecided_triangles = 0;  // held over to the next slab
+  std::uint64_t final_triangles = 0;      // written so far
+  std::uint64_t bytes = 0;                // held by the slab and the zone
+};
+
+struct MeshReport {
+  int threads = 0;
+  std::int64_t slab = 0;
+  Schedule schedule = Schedule::kQueue;
+  double min = 0, max = 0;  // values read; min > max when all were NaN
+  std::uint64_t nan = 0;    // samples
+  double error = 0;         // in the volume's unit
+  std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
+  std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
+  std::uint64_t triangles = 0, vertices = 0;  // written
+  std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
+  std::int64_t euler = 0;
+  std::uint64_t digest = 0;
+  std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
+  double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
+  std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
+  std::vector<SlabRecord> sweep;
+  std::vector<std::string> warnings;  // one line each
+};
+
+// Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
+// and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, Interrupted, and
+// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone.
+MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
+
+struct SimplifyOptions {
+  Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
+  Quality quality = Quality::kNormal;
+};
+
+// Simplifies a mesh with the same rules. Vertices on non-manifold or badly oriented edges, and vertices whose triangles
+// form more than one fan, are locked: they stay where they are. Normals of the input are not kept.
+MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
+                         const RunControl& control = {});
+
+}  // namespace isoweave
