@@ -141,13 +141,13 @@ void Decider::add_current_faces(const Star& star, const Star* skip, Vec3 origin,
     const Vec3 normal = cross(zone_.vertices[b].position - origin - p, zone_.vertices[c].position - origin - p);
     const double size = std::sqrt(dot(normal, normal));  // twice the area
     if (!(size > 0)) continue;
-    add_plane(q, normal, p, size / (6 * a0 * a0));
+    add_plane(q, normal, p, size / (2 * a0 * a0));
     gradient = gradient + normal;
     offset += dot(normal, p);
   }
 }
 
-// Planes of the faces around both ends as they are now, and the plane of points x (gradient . x = offset) that keep the
+// Planes of the faces around both ends as they are now, weighted by area, and the plane of points x (gradient . x = offset) that keep the
 // enclosed volume when the edge shrinks to x (Lindstrom and Turk, 1998).
 Quadric Decider::current_faces(Vec3 origin, Vec3& gradient, double& offset) const {
   Quadric q;

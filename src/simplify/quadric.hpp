@@ -57,7 +57,7 @@ struct Factors {
   double l10, l20, l21, i0, i1, i2;
 };
 
-inline constexpr double kPull = 1e-4;
+inline constexpr double kPull = 1e-5;
 
 ISOWEAVE_HD inline Factors factorise(const Quadric& q) {
   const double pull = kPull * (q.xx + q.yy + q.zz) + 1e-300;

@@ -45,6 +45,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
       half_edges[first_half_edge + 3 * static_cast<Index>(t) + c] = {piece_vertex(piece, first_vertex, n), kNone};
     }
   });
+  for (const Index n : piece.locked) states[piece_vertex(piece, first_vertex, n)] = VertexState::kLocked;
   link(piece, first_half_edge, executor);
   settle_front(piece, first_vertex, executor);
   key_edges(first_half_edge, executor);
@@ -87,12 +88,13 @@ void Zone::link(const SurfacePiece& piece, Index first_half_edge, const Executor
     outgoing[std::atomic_ref(fill[dense(origin(h))]).fetch_add(1, std::memory_order_relaxed)] = h;
   });
 
-  // Each pair is written once, from its half-edge that starts at the smaller vertex.
+  // Each pair is written once, from its half-edge that starts at the smaller vertex. Edges between locked vertices may
+  // have any number of triangles and stay unlinked: nobody walks around their ends.
   executor.for_each(count, kBlock, [&](std::int64_t n) {
     const Index h = candidates[static_cast<std::size_t>(n)];
     const Index a = origin(h);
     const Index b = destination(h);
-    if (a > b) return;
+    if (a > b || (states[a] == VertexState::kLocked && states[b] == VertexState::kLocked)) return;
     const bool listed =
         b >= first_new || std::binary_search(old_vertices.begin(), old_vertices.end(), std::pair<Index, Index>(b, 0),
                                              [](const auto& p, const auto& q) { return p.first < q.first; });
@@ -127,9 +129,10 @@ void Zone::settle_front(const SurfacePiece& piece, Index first_vertex, const Exe
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = piece_vertex(piece, first_vertex, piece.incomplete[n]);
   for (Index v = first_vertex; v < vertices.size(); ++v) settled.push_back(v);
-  for (const Index v : settled) states[v] = VertexState::kComplete;
+  for (const Index v : settled) {
+    if (states[v] != VertexState::kLocked) states[v] = VertexState::kComplete;
+  }
   for (const Index v : front) states[v] = VertexState::kIncomplete;
-  for (const Index n : piece.locked) states[piece_vertex(piece, first_vertex, n)] = VertexState::kLocked;
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] == VertexState::kComplete && exists(vertices[v].half_edge)) initial_quadric(v);
