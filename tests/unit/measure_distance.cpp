@@ -171,9 +171,19 @@ TEST(MeasureDistance, PointToTriangleInEveryRegion) {
 
 // The normal of three points on a line is rounding noise; taken seriously, it would put far points on the triangle.
 TEST(MeasureDistance, PointToTriangleOnALine) {
-  const measure::TriangleCorners t{Vector{0.1, 0.1, 0.1}, Vector{0.3, 0.3, 0.3}, Vector{0.7, 0.7, 0.7}};
-  EXPECT_NEAR(measure::squared_distance({1, 0, 0}, t), 2.0 / 3, 1e-12);
-  EXPECT_NEAR(measure::squared_distance({1.7, 0.7, 0.7}, t), 1, 1e-12);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  const auto any_vector = [&] { return Vector{anywhere(random), anywhere(random), anywhere(random)}; };
+  for (int i = 0; i < 20000; ++i) {
+    const Vector a = any_vector();
+    const Vector b = any_vector();
+    const double s = 0.5 + 0.5 * anywhere(random);
+    Vector c{};
+    for (std::size_t axis = 0; axis < 3; ++axis) c[axis] = a[axis] + s * (b[axis] - a[axis]);
+    const Vector p = any_vector();
+    const double expected = measure::squared_distance(p, {a, b, b});
+    EXPECT_NEAR(measure::squared_distance(p, {a, b, c}), expected, 1e-12) << i;
+  }
 }
 
 // The tree against the definition, on triangles of all sizes, duplicates among them so that centres tie.
