@@ -21,7 +21,8 @@ struct TriangleMesh {
 
 // Reads PLY (binary little- and big-endian, ascii; polygons are fanned), STL (binary, ascii; corners with
 // equal coordinates become one vertex) or OBJ (v and f; polygons are fanned), told by content, then by name.
-// Throws BadInput for anything missing, truncated, out of range or not understood.
+// Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are kept when they are
+// numbered like the vertices, PLY normals always.
 TriangleMesh read_mesh(const std::string& path);
 
 // Where finished pieces of a mesh go. Not thread-safe.
@@ -30,7 +31,8 @@ class MeshSink {
   virtual ~MeshSink() = default;
 
   // Appends vertices, numbered on from the ones before (the first ever is 0), their normals (as many as
-  // vertices, or none throughout), and triangles over any vertices appended so far.
+  // vertices, or none throughout), and triangles over any vertices appended so far. Mesh files refuse an index
+  // of no vertex, a coordinate that is not finite and missing normals with std::invalid_argument.
   virtual void append(std::span<const Point> vertices, std::span<const Point> normals,
                       std::span<const std::array<std::uint64_t, 3>> triangles) = 0;
 
@@ -47,7 +49,8 @@ struct MeshFileOptions {
 // .obj. The file appears under its name only when finish() has written, counted, flushed and renamed it;
 // until then it is a temporary file in the same folder, which the destructor removes.
 // Throws CannotWrite when the ending is unknown, the folder is missing or read-only, the disk is full, or the
-// format cannot hold the counts.
+// format cannot hold the counts. PLY needs room for its faces twice while finish() runs; STL keeps the positions of all
+// vertices in memory, 12 bytes each.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 }  // namespace isoweave

@@ -84,7 +84,7 @@ SideTable group_sides(const TriangleMesh& mesh) {
   return table;
 }
 
-// Calls visit(low, high, sides) for every edge, with the sides of all triangles along it.
+// Calls visit(sides) for every edge, with the sides of all triangles along it.
 template <class Visit>
 void for_each_edge(SideTable& table, Visit&& visit) {
   for (std::size_t low = 0; low + 1 < table.first.size(); ++low) {
@@ -93,15 +93,14 @@ void for_each_edge(SideTable& table, Visit&& visit) {
     std::sort(group.begin(), group.end());
     for (std::size_t begin = 0, end = 0; begin < group.size(); begin = end) {
       while (end < group.size() && group[end].high == group[begin].high) ++end;
-      visit(low, group[begin].high, group.subspan(begin, end - begin));
+      visit(group.subspan(begin, end - begin));
     }
   }
 }
 
 class Checker {
  public:
-  explicit Checker(const TriangleMesh& mesh)
-      : mesh_(mesh), corners_(3 * mesh.triangles.size()), at_bad_edge_(mesh.vertices.size()) {}
+  explicit Checker(const TriangleMesh& mesh) : mesh_(mesh), corners_(3 * mesh.triangles.size()) {}
 
   MeshCheck run() {
     result_.triangles = mesh_.triangles.size();
@@ -123,7 +122,7 @@ class Checker {
 
   void count_edges() {
     SideTable table = group_sides(mesh_);
-    for_each_edge(table, [&](std::size_t low, std::size_t high, std::span<const Side> sides) {
+    for_each_edge(table, [&](std::span<const Side> sides) {
       ++edges_;
       if (sides.size() == 1) {
         ++result_.open_edges;
@@ -132,7 +131,6 @@ class Checker {
         join_corners(sides[0], sides[1]);
       } else {
         ++result_.nonmanifold_edges;
-        at_bad_edge_[low] = at_bad_edge_[high] = 1;
       }
     });
   }
@@ -146,7 +144,8 @@ class Checker {
     corners_.unite(corner_at(a, false), corner_at(b, false));
   }
 
-  // Corners that are still roots stand for one fan each.
+  // Corners that are still roots stand for one fan each. A non-manifold edge joins nothing, so three fans or more end
+  // at it; a fan has two ends, hence its vertices have more than one.
   void count_fans() {
     std::vector<std::uint8_t> fans(mesh_.vertices.size(), 0);
     for_each_side(mesh_, [&](std::uint64_t corner, std::uint32_t vertex, std::uint32_t) {
@@ -154,7 +153,7 @@ class Checker {
     });
     for (std::size_t v = 0; v < fans.size(); ++v) {
       ++(fans[v] > 0 ? result_.vertices : result_.unused_vertices);
-      if (fans[v] > 1 || at_bad_edge_[v] != 0) ++result_.nonmanifold_vertices;
+      if (fans[v] > 1) ++result_.nonmanifold_vertices;
     }
   }
 
@@ -189,7 +188,6 @@ class Checker {
   MeshCheck result_;
   std::uint64_t edges_ = 0;
   DisjointSets<std::uint64_t> corners_;
-  std::vector<std::uint8_t> at_bad_edge_;  // of each vertex: an end of a non-manifold edge
 };
 
 }  // namespace

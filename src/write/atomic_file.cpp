@@ -11,6 +11,7 @@
 #include <memory>
 #include <random>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -64,11 +65,14 @@ std::string checked_target(const std::string& path) {
 }
 
 std::string temporary_name(const std::string& target, std::random_device& random) {
-  constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
-  std::string infix;
-  for (int i = 0; i < 6; ++i) infix += kLetters[random() % (sizeof(kLetters) - 1)];
-  const std::string decorated = "." + name_of(target).substr(0, kLongestNameKept) + "." + infix + ".partial";
-  return target.find('/') == std::string::npos ? decorated : target.substr(0, target.rfind('/') + 1) + decorated;
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
+  const std::size_t slash = target.rfind('/');
+  std::string name = slash == std::string::npos ? "" : target.substr(0, slash + 1);
+  name += '.';
+  name += name_of(target).substr(0, kLongestNameKept);
+  name += '.';
+  for (int i = 0; i < 6; ++i) name += kLetters[random() % kLetters.size()];
+  return name + ".partial";
 }
 
 // Creates a new file beside `target`; says its name in `temporary`.

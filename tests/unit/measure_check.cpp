@@ -78,7 +78,7 @@ TEST(MeasureCheck, InsideOutCubeHasNegativeVolume) {
 // Far from the origin the tetrahedra over the origin are huge and cancel; over a point of the mesh they do not.
 TEST(MeasureCheck, VolumeFarFromTheOrigin) {
   TriangleMesh mesh = meshes::cube();
-  for (Point& p : mesh.vertices) p = {p[0] + 4e6F, p[1] - 4e6F, p[2] + 4e6F};
+  for (Point& p : mesh.vertices) p = {p[0] + 4000001.0F, p[1] - 3000017.0F, p[2] + 5000003.0F};
   EXPECT_DOUBLE_EQ(check_mesh(mesh).volume, 1);
 }
 

@@ -72,12 +72,12 @@ TEST(MeasureDistance, ParallelPlanes) {
 // A small square within a large one: at zero one way, not the other. The farthest point of the large one is a corner,
 // 3 sqrt 2 away, and the mean distance from [0,4]^2 to [0,1]^2 is a little calculus.
 TEST(MeasureDistance, TheTwoWaysDiffer) {
-  const MeshDistance d = compare_meshes(meshes::grid(1), meshes::grid(4), {.samples = 200000});
+  const MeshDistance d = compare_meshes(meshes::grid(1), meshes::grid(4), {.samples = 50000});
   EXPECT_LT(d.a_to_b.max, 1e-12);
-  EXPECT_NEAR(d.b_to_a.max, 3 * std::numbers::sqrt2, 0.05);
+  EXPECT_NEAR(d.b_to_a.max, 3 * std::numbers::sqrt2, 0.1);
   const double strips = 2 * 3 * 1.5;  // two strips of 1 x 3, mean distance 1.5
   const double corner = 27 * (std::numbers::sqrt2 + std::log(1 + std::numbers::sqrt2)) / 3;  // 3 x 3 from its corner
-  EXPECT_NEAR(d.b_to_a.mean, (strips + corner) / 16, 0.005);
+  EXPECT_NEAR(d.b_to_a.mean, (strips + corner) / 16, 0.02);
   EXPECT_DOUBLE_EQ(d.mean, (d.a_to_b.mean + d.b_to_a.mean) / 2);
   EXPECT_DOUBLE_EQ(d.rms, std::sqrt((d.a_to_b.rms * d.a_to_b.rms + d.b_to_a.rms * d.b_to_a.rms) / 2));
   EXPECT_DOUBLE_EQ(d.max, d.b_to_a.max);
@@ -85,7 +85,7 @@ TEST(MeasureDistance, TheTwoWaysDiffer) {
 
 // Concentric spheres are the difference of the radii apart, up to the sagitta of their triangles.
 TEST(MeasureDistance, ConcentricSpheres) {
-  const MeshDistance d = compare_meshes(sphere(1, 5), sphere(1.5, 5), {.samples = 20000});
+  const MeshDistance d = compare_meshes(sphere(1, 5), sphere(1.5, 5), {.samples = 4000});
   EXPECT_NEAR(d.mean, 0.5, 2e-3);
   EXPECT_NEAR(d.max, 0.5, 4e-3);
 }
@@ -94,20 +94,20 @@ TEST(MeasureDistance, ConcentricSpheres) {
 TEST(MeasureDistance, OffsetSpheres) {
   TriangleMesh moved = sphere(1, 5);
   for (Point& p : moved.vertices) p[0] += 0.5F;
-  const MeshDistance d = compare_meshes(sphere(1, 5), moved, {.samples = 50000});
+  const MeshDistance d = compare_meshes(sphere(1, 5), moved, {.samples = 6000});
   EXPECT_NEAR(d.a_to_b.max, 0.5, 4e-3);
   // The mean over the unit sphere of | |x - c| - 1 | with |c| = 1/2, integrated over s = |x - c| from 1/2 to 3/2:
   // the density of s is s / (2 |c|) = s, so it is the integral of |s - 1| s = 1/4.
-  EXPECT_NEAR(d.a_to_b.mean, 0.25, 2e-3);
-  EXPECT_NEAR(d.b_to_a.mean, 0.25, 2e-3);
+  EXPECT_NEAR(d.a_to_b.mean, 0.25, 8e-3);
+  EXPECT_NEAR(d.b_to_a.mean, 0.25, 8e-3);
 }
 
 TEST(MeasureDistance, SameForAnyNumberOfThreads) {
   const TriangleMesh a = sphere(1, 4);
   const TriangleMesh b = sphere(1.01, 3);
-  const MeshDistance one = compare_meshes(a, b, {.samples = 30000, .threads = 1});
+  const MeshDistance one = compare_meshes(a, b, {.samples = 9000, .threads = 1});
   for (const int threads : {2, 3, 8}) {
-    const MeshDistance many = compare_meshes(a, b, {.samples = 30000, .threads = threads});
+    const MeshDistance many = compare_meshes(a, b, {.samples = 9000, .threads = threads});
     EXPECT_EQ(one.a_to_b.mean, many.a_to_b.mean);
     EXPECT_EQ(one.a_to_b.rms, many.a_to_b.rms);
     EXPECT_EQ(one.b_to_a.max, many.b_to_a.max);
@@ -171,9 +171,19 @@ TEST(MeasureDistance, PointToTriangleInEveryRegion) {
 
 // The normal of three points on a line is rounding noise; taken seriously, it would put far points on the triangle.
 TEST(MeasureDistance, PointToTriangleOnALine) {
-  const measure::TriangleCorners t{Vector{0.1, 0.1, 0.1}, Vector{0.3, 0.3, 0.3}, Vector{0.7, 0.7, 0.7}};
-  EXPECT_NEAR(measure::squared_distance({1, 0, 0}, t), 2.0 / 3, 1e-12);
-  EXPECT_NEAR(measure::squared_distance({1.7, 0.7, 0.7}, t), 1, 1e-12);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  const auto any_vector = [&] { return Vector{anywhere(random), anywhere(random), anywhere(random)}; };
+  for (int i = 0; i < 20000; ++i) {
+    const Vector a = any_vector();
+    const Vector b = any_vector();
+    const double s = 0.5 + 0.5 * anywhere(random);
+    Vector c{};
+    for (std::size_t axis = 0; axis < 3; ++axis) c[axis] = a[axis] + s * (b[axis] - a[axis]);
+    const Vector p = any_vector();
+    const double expected = measure::squared_distance(p, {a, b, b});
+    EXPECT_NEAR(measure::squared_distance(p, {a, b, c}), expected, 1e-12) << i;
+  }
 }
 
 // The tree against the definition, on triangles of all sizes, duplicates among them so that centres tie.

@@ -207,6 +207,13 @@ TEST(ReadMesh, ObjCornersOfEveryForm) {
   EXPECT_TRUE(mesh.normals.empty()) << "one normal for four vertices has no place in a mesh";
 }
 
+// As many normals as vertices, but in another order: one per vertex by number would be wrong.
+TEST(ReadMesh, ObjNormalsInAnotherOrderAreLeftOut) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n";
+  EXPECT_EQ(parse("a.obj", text + "f 1//1 2//2 3//3\n").normals.size(), 3U);
+  EXPECT_TRUE(parse("a.obj", text + "f 1//2 2//3 3//1\n").normals.empty());
+}
+
 TEST(ReadMesh, FormatIsToldByContentBeforeTheName) {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
