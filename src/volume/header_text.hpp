@@ -16,8 +16,9 @@ inline constexpr std::size_t kLargestHeader = 1 << 20;
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 
-// Words between spaces and tabs.
+// Words between blanks. They point into the text, which must not be a temporary.
 std::vector<std::string_view> words_of(std::string_view text);
+std::vector<std::string_view> words_of(std::string&& text) = delete;
 
 // The whole text as one number; nothing if it is not one or does not fit.
 std::optional<std::int64_t> parse_integer(std::string_view text);

@@ -71,12 +71,14 @@ void StreamSource::read(std::int64_t first, std::int64_t count, std::span<std::b
   check_slice_range(info, next_, first, count, out.size());
   if (count == 0) return;
   const std::uint64_t slice = info.slice_bytes();
+  const std::uint64_t before = static_cast<std::uint64_t>(next_) * slice;
   const std::uint64_t behind = static_cast<std::uint64_t>(first - next_) * slice;
   const std::span<std::byte> wanted = out.first(static_cast<std::size_t>(count) * info.slice_bytes());
+  // After a failure nobody knows where the stream stands: nothing more is read from it.
+  next_ = info.dims[2];
   std::uint64_t got = volume_.samples->skip(behind);
   if (got == behind) got += volume_.samples->read(wanted);
   if (got < behind + wanted.size()) {
-    const std::uint64_t before = static_cast<std::uint64_t>(next_) * slice;
     bad_input(info.path, std::to_string(static_cast<std::uint64_t>(info.dims[2]) * slice) + " bytes of samples",
               std::to_string(before + got));
   }
