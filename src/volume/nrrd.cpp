@@ -273,7 +273,8 @@ void set_plain_step(VolumeInfo& info, Axes& out, std::size_t n, const NrrdAxis& 
   double spacing = axis.spacing;
   if (std::isnan(spacing)) {
     spacing = 1;
-    info.notes.push_back("the spacing of axis " + std::to_string(n) + " is not given and taken as 1");
+    const std::string note = "the spacing is not given for every axis and taken as 1 there";
+    if (info.notes.empty() || info.notes.back() != note) info.notes.push_back(note);
   }
   out.steps[n] = {0, 0, 0};
   out.steps[n][n] = spacing;
