@@ -45,6 +45,14 @@ std::uint64_t FileStream::skip(std::uint64_t count) {
 }
 
 struct InflateStream::State {
+  State() {
+    constexpr int kZlibOrGzip = 15 + 32;
+    if (inflateInit2(&zlib, kZlibOrGzip) != Z_OK) throw std::bad_alloc();
+  }
+  ~State() { inflateEnd(&zlib); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
   z_stream zlib{};
   std::array<std::byte, kBufferBytes> input;
   bool gzip = false;
@@ -53,13 +61,11 @@ struct InflateStream::State {
 
 InflateStream::InflateStream(std::unique_ptr<ByteStream> input, std::string path)
     : input_(std::move(input)), path_(std::move(path)), state_(std::make_unique<State>()) {
-  constexpr int kZlibOrGzip = 15 + 32;
-  if (inflateInit2(&state_->zlib, kZlibOrGzip) != Z_OK) throw std::bad_alloc();
   refill();
   state_->gzip = state_->zlib.avail_in > 0 && state_->input[0] == std::byte{0x1f};
 }
 
-InflateStream::~InflateStream() { inflateEnd(&state_->zlib); }
+InflateStream::~InflateStream() = default;
 
 void InflateStream::refill() {
   if (state_->zlib.avail_in > 0) return;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "text/printable.hpp"
 #include "volume/fields.hpp"
 #include "volume/stream_source.hpp"
 
@@ -89,6 +90,7 @@ class GeneratedSource final : public SliceSource {
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     check_slice_range(info_, next_, first, count, out.size());
+    if (count == 0) return;
     std::byte* to = out.data();
     for (std::int64_t k = first; k < first + count; ++k) {
       field_->begin_slice(k);
@@ -98,7 +100,7 @@ class GeneratedSource final : public SliceSource {
         to += row_.size() * sample_bytes(info_.type);
       }
     }
-    next_ = std::max(next_, first + count);
+    next_ = first + count;
   }
 
  private:

@@ -10,10 +10,6 @@
 
 namespace isoweave {
 
-// Text from a file or a path as it may appear in a one-line message: control characters become '?',
-// and long text is cut.
-std::string printable(std::string_view text);
-
 // Throws BadInput "PATH: expected EXPECTED, found FOUND".
 [[noreturn]] void bad_input(std::string_view path, std::string_view expected, std::string_view found);
 

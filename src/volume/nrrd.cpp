@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "text/printable.hpp"
 #include "volume/data_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"

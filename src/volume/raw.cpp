@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "text/printable.hpp"
 #include "volume/formats.hpp"
 #include "volume/header_text.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
+#include "text/printable.hpp"
 #include "volume/header_text.hpp"
 #include "volume/input_file.hpp"
 #include "write/atomic_file.hpp"

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "text/printable.hpp"
 
 namespace isoweave {
 namespace {
@@ -35,7 +36,7 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   struct stat status {};
   // Renaming over a device or folder would fail late, or succeed and break the device.
   if (::stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    throw CannotWrite(path_ + ": expected a regular file or none, found " +
+    throw CannotWrite(printable(path_) + ": expected a regular file or none, found " +
                       (S_ISDIR(status.st_mode) ? "a directory" : "a device, pipe or socket"));
   }
   create_partial();
@@ -63,7 +64,7 @@ void AtomicFile::create_partial() {
 }
 
 void AtomicFile::fail(std::string_view action) const {
-  throw CannotWrite(path_ + ": " + std::string(action) + ": " + std::strerror(errno));
+  throw CannotWrite(printable(path_) + ": " + std::string(action) + ": " + std::strerror(errno));
 }
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {

@@ -18,7 +18,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  // Appends.
+  // Appends. Nothing is collected: large pieces are faster than many small ones.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 

@@ -158,6 +158,22 @@ TEST(Slices, ReportAFileThatShrank) {
   }
 }
 
+// Offsets beyond 32 bits, in a file that takes no room on the disk.
+TEST(Slices, LieBeyondFourGigabytes) {
+  const TempFolder folder;
+  const std::string path = folder.put("a_65536x32768x3_uint8.raw", "x");
+  std::filesystem::resize_file(path, (std::uint64_t{3} << 31) - 1);
+  std::ofstream(path, std::ios::binary | std::ios::app) << "y";
+  OpenOptions options;
+  options.raw = parse_raw_layout("65536x1x98304:uint8");
+  const auto source = open_volume(path, options);
+  std::vector<std::byte> row(65536);
+  source->read(98303, 1, row);
+  EXPECT_EQ(row.front(), std::byte{0});
+  EXPECT_EQ(row.back(), std::byte{'y'});
+  EXPECT_EQ(open_volume(path)->info().slice_samples(), std::int64_t{1} << 31);
+}
+
 TEST(OpenVolume, RefusesWhatIsNoReadableFile) {
   const TempFolder folder;
   EXPECT_TRUE(contains(refusal(folder / "missing.nrrd"), "No such file"));
