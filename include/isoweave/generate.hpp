@@ -13,7 +13,7 @@
 namespace isoweave {
 
 // Kinds and the surface they hold at their suggested iso-value:
-//   sphere   distance to the centre, one sphere of radius 0.4 of the smallest side
+//   sphere   signed distance in samples, positive inside: one sphere of radius 0.4 of the smallest side
 //   torus    one torus around the slowest axis
 //   gyroid   sin x cos y + sin y cos z + sin z cos x, period 32 samples: many tunnels, the same texture everywhere
 //   box      an axis-aligned box, shifted off the lattice: large flats, sharp edges
@@ -25,7 +25,7 @@ namespace isoweave {
 struct GenerateOptions {
   std::string kind = "sphere";
   std::array<std::int64_t, 3> dims{64, 64, 64};
-  SampleType type = SampleType::kFloat32;  // integer types hold the formula mapped to 0...255
+  SampleType type = SampleType::kFloat32;  // integers hold the formula mapped to 0...255 (int8: -128...127)
   std::array<double, 3> spacing{1, 1, 1};
   std::uint64_t seed = 1;
 };

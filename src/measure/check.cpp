@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
+#include "measure/defects.hpp"
 #include "measure/geometry.hpp"
 
 namespace isoweave {
@@ -100,7 +101,15 @@ void for_each_edge(SideTable& table, Visit&& visit) {
 
 class Checker {
  public:
-  explicit Checker(const TriangleMesh& mesh) : mesh_(mesh), corners_(3 * mesh.triangles.size()) {}
+  explicit Checker(const TriangleMesh& mesh)
+      : mesh_(mesh), corners_(3 * mesh.triangles.size()), misoriented_(mesh.vertices.size()) {}
+
+  std::vector<std::uint8_t> defective() {
+    count_edges();
+    std::vector<std::uint8_t> out = find_fans();
+    for (std::size_t v = 0; v < out.size(); ++v) out[v] = out[v] > 1 || misoriented_[v] != 0;
+    return out;
+  }
 
   MeshCheck run() {
     result_.triangles = mesh_.triangles.size();
@@ -127,7 +136,12 @@ class Checker {
       if (sides.size() == 1) {
         ++result_.open_edges;
       } else if (sides.size() == 2) {
-        if (sides[0].from_high == sides[1].from_high) ++result_.misoriented_edges;
+        if (sides[0].from_high == sides[1].from_high) {
+          ++result_.misoriented_edges;
+          for (const std::uint64_t corner : {sides[0].corner, next_corner(sides[0].corner)}) {
+            misoriented_[mesh_.triangles[corner / 3][corner % 3]] = 1;
+          }
+        }
         join_corners(sides[0], sides[1]);
       } else {
         ++result_.nonmanifold_edges;
@@ -144,13 +158,18 @@ class Checker {
     corners_.unite(corner_at(a, false), corner_at(b, false));
   }
 
-  // Corners that are still roots stand for one fan each. A non-manifold edge joins nothing, so three fans or more end
-  // at it; a fan has two ends, hence its vertices have more than one.
-  void count_fans() {
+  // Fans around every vertex, counted up to two. Corners that are still roots stand for one fan each. A non-manifold
+  // edge joins nothing, so three fans or more end at it; a fan has two ends, hence its vertices have more than one.
+  std::vector<std::uint8_t> find_fans() {
     std::vector<std::uint8_t> fans(mesh_.vertices.size(), 0);
     for_each_side(mesh_, [&](std::uint64_t corner, std::uint32_t vertex, std::uint32_t) {
       if (corners_.root(corner) == corner && fans[vertex] < 2) ++fans[vertex];
     });
+    return fans;
+  }
+
+  void count_fans() {
+    const std::vector<std::uint8_t> fans = find_fans();
     for (std::size_t v = 0; v < fans.size(); ++v) {
       ++(fans[v] > 0 ? result_.vertices : result_.unused_vertices);
       if (fans[v] > 1) ++result_.nonmanifold_vertices;
@@ -188,6 +207,7 @@ class Checker {
   MeshCheck result_;
   std::uint64_t edges_ = 0;
   DisjointSets<std::uint64_t> corners_;
+  std::vector<std::uint8_t> misoriented_;  // of each vertex: an end of a misoriented edge
 };
 
 }  // namespace
@@ -195,6 +215,11 @@ class Checker {
 MeshCheck check_mesh(const TriangleMesh& mesh) {
   measure::require_indices_in_range(mesh);
   return Checker(mesh).run();
+}
+
+std::vector<std::uint8_t> defective_vertices(const TriangleMesh& mesh) {
+  measure::require_indices_in_range(mesh);
+  return Checker(mesh).defective();
 }
 
 }  // namespace isoweave

@@ -19,8 +19,8 @@ class Recorder : public MeshSink {
               std::span<const std::array<std::uint64_t, 3>> triangles) override {
     mesh_.vertices.insert(mesh_.vertices.end(), vertices.begin(), vertices.end());
     for (const auto& t : triangles) {
-      mesh_.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                                 static_cast<std::uint32_t>(t[2])});
+      mesh_.triangles.push_back(
+          {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
     }
     sink_.append(vertices, normals, triangles);
   }

@@ -147,8 +147,8 @@ void Decider::add_current_faces(const Star& star, const Star* skip, Vec3 origin,
   }
 }
 
-// Planes of the faces around both ends as they are now, weighted by area, and the plane of points x (gradient . x = offset) that keep the
-// enclosed volume when the edge shrinks to x (Lindstrom and Turk, 1998).
+// Planes of the faces around both ends as they are now, weighted by area, and the plane of points x (gradient . x =
+// offset) that keep the enclosed volume when the edge shrinks to x (Lindstrom and Turk, 1998).
 Quadric Decider::current_faces(Vec3 origin, Vec3& gradient, double& offset) const {
   Quadric q;
   add_current_faces(u_, nullptr, origin, q, gradient, offset);

@@ -1,0 +1,35 @@
+// One reader per format: reads the header, checks its claims, and gives the stream of samples.
+// All throw BadInput. Geometry overrides are applied by open_volume.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "isoweave/volume.hpp"
+#include "volume/input_file.hpp"
+#include "volume/stream_source.hpp"
+
+namespace isoweave {
+
+using FilePtr = std::shared_ptr<const InputFile>;
+
+OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout);
+
+// Whether `head`, the first bytes of a file (of its inflated data where `gzip`), are a NIfTI header.
+bool is_nifti(std::string_view head);
+// `gzip`: the header and the samples are in a gzip stream.
+OpenedVolume open_nifti(const FilePtr& file, bool gzip);
+// Bytes of a file that is_nifti needs.
+inline constexpr std::size_t kNiftiHeadBytes = 540;
+
+OpenedVolume open_nrrd(const FilePtr& file);
+
+// Whether `head` begins as a MetaImage header does.
+bool is_metaimage(std::string_view head);
+OpenedVolume open_metaimage(const FilePtr& file);
+
+bool is_pvm(std::string_view head);
+OpenedVolume open_pvm(const FilePtr& file);
+
+}  // namespace isoweave

@@ -1,0 +1,147 @@
+// Volumes computed when they are read.
+#include "isoweave/generate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "isoweave/error.hpp"
+#include "volume/fields.hpp"
+#include "volume/printable.hpp"
+#include "volume/stream_source.hpp"
+
+namespace isoweave {
+namespace {
+
+const FieldKind& kind_named(std::string_view name) {
+  for (const FieldKind& kind : field_kinds()) {
+    if (kind.name == name) return kind;
+  }
+  std::string known;
+  for (const FieldKind& kind : field_kinds()) known += (known.empty() ? "" : ", ") + std::string(kind.name);
+  throw std::invalid_argument("generated volume: expected a kind of " + known + ", found '" + printable(name) + "'");
+}
+
+// How the value of a formula is stored: as scale * value + shift, in [0, 255] + base for integers.
+struct Mapping {
+  double scale = 1;
+  double shift = 0;
+  double base = 0;
+};
+
+bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
+
+Mapping mapping_of(const FieldKind& kind, SampleType type) {
+  if (!is_integer(type)) return {};
+  Mapping mapping;
+  mapping.scale = 255 / (kind.high - kind.low);
+  mapping.shift = -kind.low * mapping.scale;
+  // The same 256 steps, where they fit.
+  mapping.base = type == SampleType::kInt8 ? -128 : 0;
+  return mapping;
+}
+
+template <class Sample>
+void store_row(std::span<const double> row, const Mapping& mapping, std::byte* out) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    double value = row[i];
+    if constexpr (std::is_integral_v<Sample>) {
+      value = std::clamp(value * mapping.scale + mapping.shift, 0.0, 255.0);
+      // The operand is not negative, so cutting off the fraction rounds to the nearest.
+      value = static_cast<double>(static_cast<int>(value + 0.5)) + mapping.base;
+    }
+    const auto sample = static_cast<Sample>(value);
+    std::memcpy(out + i * sizeof(Sample), &sample, sizeof(Sample));
+  }
+}
+
+void store_row_as(SampleType type, std::span<const double> row, const Mapping& mapping, std::byte* out) {
+  switch (type) {
+    case SampleType::kUint8:
+      return store_row<std::uint8_t>(row, mapping, out);
+    case SampleType::kInt8:
+      return store_row<std::int8_t>(row, mapping, out);
+    case SampleType::kUint16:
+      return store_row<std::uint16_t>(row, mapping, out);
+    case SampleType::kInt16:
+      return store_row<std::int16_t>(row, mapping, out);
+    case SampleType::kUint32:
+      return store_row<std::uint32_t>(row, mapping, out);
+    case SampleType::kInt32:
+      return store_row<std::int32_t>(row, mapping, out);
+    case SampleType::kFloat32:
+      return store_row<float>(row, mapping, out);
+    case SampleType::kFloat64:
+      return store_row<double>(row, mapping, out);
+  }
+}
+
+class GeneratedSource final : public SliceSource {
+ public:
+  GeneratedSource(VolumeInfo info, const FieldKind& kind, std::uint64_t seed)
+      : info_(std::move(info)),
+        field_(kind.make(info_.dims, seed)),
+        mapping_(mapping_of(kind, info_.type)),
+        row_(static_cast<std::size_t>(info_.dims[0])) {}
+
+  const VolumeInfo& info() const override { return info_; }
+
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    check_slice_range(info_, next_, first, count, out.size());
+    if (count == 0) return;
+    std::byte* to = out.data();
+    for (std::int64_t k = first; k < first + count; ++k) {
+      field_->begin_slice(k);
+      for (std::int64_t j = 0; j < info_.dims[1]; ++j) {
+        field_->fill_row(j, k, row_);
+        store_row_as(info_.type, row_, mapping_, to);
+        to += row_.size() * sample_bytes(info_.type);
+      }
+    }
+    next_ = first + count;
+  }
+
+ private:
+  VolumeInfo info_;
+  std::unique_ptr<Field> field_;
+  Mapping mapping_;
+  std::vector<double> row_;
+  std::int64_t next_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> generator_kinds() {
+  std::vector<std::string> names;
+  for (const FieldKind& kind : field_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+double suggested_iso(std::string_view kind, SampleType type) {
+  const FieldKind& facts = kind_named(kind);
+  const Mapping mapping = mapping_of(facts, type);
+  return facts.iso * mapping.scale + mapping.shift + mapping.base;
+}
+
+std::unique_ptr<SliceSource> generate_volume(const GenerateOptions& options) {
+  const FieldKind& kind = kind_named(options.kind);
+  VolumeInfo info;
+  info.path = "generated " + options.kind;
+  info.format = "generated";
+  info.dims = options.dims;
+  info.type = options.type;
+  try {
+    checked_volume_bytes(info);
+  } catch (const BadInput& error) {
+    throw std::invalid_argument(error.what());
+  }
+  for (const double step : options.spacing) {
+    if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
+  }
+  info.geometry.spacing = options.spacing;
+  return std::make_unique<GeneratedSource>(std::move(info), kind, options.seed);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,32 @@
+// Turns what a header says about axes into a Geometry, or refuses it.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+using Vector3 = std::array<double, 3>;
+
+// Axes as headers give them: steps[a] is the world vector from one sample to the next along axis a.
+struct Axes {
+  std::array<Vector3, 3> steps{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+  Vector3 origin{0, 0, 0};
+};
+
+// Splits steps into spacing (their lengths) and unit directions. Throws BadInput naming `path` when a number is not
+// finite, a step has no length, or the axes do not span space. Mirrored axes (negative determinant) are kept.
+void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
+
+// A unit vector orthogonal to `a` and `b`: the missing third axis of a plane image.
+Vector3 normal_of(const Vector3& a, const Vector3& b);
+
+// One of the units that Geometry allows, for a header's spelling of it; empty for any other.
+std::string_view known_unit(std::string_view text);
+
+// Applies the caller's overrides. Throws std::invalid_argument when they are not usable.
+void apply_overrides(Geometry& geometry, const OpenOptions& options);
+
+}  // namespace isoweave

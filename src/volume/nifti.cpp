@@ -1,0 +1,333 @@
+// NIfTI-1 and NIfTI-2: a fixed binary header of either byte order, in the file of the samples (.nii, .nii.gz) or
+// beside it (.hdr and .img).
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "isoweave/error.hpp"
+#include "volume/formats.hpp"
+#include "volume/geometry.hpp"
+#include "volume/header_text.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::int32_t kHeader1 = 348;
+constexpr std::int32_t kHeader2 = 540;
+
+// The fields of both versions in one form.
+struct NiftiHeader {
+  int version = 1;
+  bool swapped = false;
+  bool single_file = true;
+  std::array<std::int64_t, 8> dim{};
+  std::array<double, 8> pixdim{};
+  double data_offset = 0;
+  double slope = 0;
+  double intercept = 0;
+  std::int64_t type = 0;
+  std::int64_t qform = 0;
+  std::int64_t sform = 0;
+  std::array<double, 6> quaternion{};  // b, c, d, then the offsets of x, y, z
+  std::array<double, 12> rows{};       // srow_x, srow_y, srow_z
+  std::int64_t units = 0;
+};
+
+class FieldReader {
+ public:
+  FieldReader(std::string_view bytes, bool swapped) : bytes_(bytes), swapped_(swapped) {}
+
+  template <class Field>
+  Field at(std::size_t offset) const {
+    std::array<char, sizeof(Field)> raw;
+    std::memcpy(raw.data(), bytes_.data() + offset, sizeof(Field));
+    if (swapped_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<Field>(raw);
+  }
+
+  template <class Field, class Value, std::size_t kCount>
+  void fill(std::array<Value, kCount>& values, std::size_t offset) const {
+    for (std::size_t n = 0; n < kCount; ++n) values[n] = static_cast<Value>(at<Field>(offset + n * sizeof(Field)));
+  }
+
+ private:
+  std::string_view bytes_;
+  bool swapped_;
+};
+
+NiftiHeader parse_version1(const FieldReader& field) {
+  NiftiHeader header;
+  field.fill<std::int16_t>(header.dim, 40);
+  header.type = field.at<std::int16_t>(70);
+  field.fill<float>(header.pixdim, 76);
+  header.data_offset = static_cast<double>(field.at<float>(108));
+  header.slope = static_cast<double>(field.at<float>(112));
+  header.intercept = static_cast<double>(field.at<float>(116));
+  header.units = field.at<std::uint8_t>(123);
+  header.qform = field.at<std::int16_t>(252);
+  header.sform = field.at<std::int16_t>(254);
+  field.fill<float>(header.quaternion, 256);
+  field.fill<float>(header.rows, 280);
+  return header;
+}
+
+NiftiHeader parse_version2(const FieldReader& field) {
+  NiftiHeader header;
+  header.version = 2;
+  header.type = field.at<std::int16_t>(12);
+  field.fill<std::int64_t>(header.dim, 16);
+  field.fill<double>(header.pixdim, 104);
+  header.data_offset = static_cast<double>(field.at<std::int64_t>(168));
+  header.slope = field.at<double>(176);
+  header.intercept = field.at<double>(184);
+  header.qform = field.at<std::int32_t>(344);
+  header.sform = field.at<std::int32_t>(348);
+  field.fill<double>(header.quaternion, 352);
+  field.fill<double>(header.rows, 400);
+  header.units = field.at<std::int32_t>(500);
+  return header;
+}
+
+// Nothing unless both the size field and the magic are those of a NIfTI header.
+std::optional<NiftiHeader> parse_header(std::string_view bytes) {
+  for (const bool swapped : {false, true}) {
+    const FieldReader field(bytes, swapped);
+    if (bytes.size() >= kHeader1 && field.at<std::int32_t>(0) == kHeader1) {
+      const std::string_view magic = bytes.substr(344, 4);
+      if (magic != std::string_view("n+1\0", 4) && magic != std::string_view("ni1\0", 4)) return std::nullopt;
+      NiftiHeader header = parse_version1(field);
+      header.swapped = swapped;
+      header.single_file = magic[1] == '+';
+      return header;
+    }
+    if (bytes.size() >= kHeader2 && field.at<std::int32_t>(0) == kHeader2) {
+      const std::string_view magic = bytes.substr(4, 4);
+      if (magic != std::string_view("n+2\0", 4) && magic != std::string_view("ni2\0", 4)) return std::nullopt;
+      NiftiHeader header = parse_version2(field);
+      header.swapped = swapped;
+      header.single_file = magic[1] == '+';
+      return header;
+    }
+  }
+  return std::nullopt;
+}
+
+SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
+  switch (header.type) {
+    case 2:
+      return SampleType::kUint8;
+    case 4:
+      return SampleType::kInt16;
+    case 8:
+      return SampleType::kInt32;
+    case 16:
+      return SampleType::kFloat32;
+    case 64:
+      return SampleType::kFloat64;
+    case 256:
+      return SampleType::kInt8;
+    case 512:
+      return SampleType::kUint16;
+    case 768:
+      return SampleType::kUint32;
+    default:
+      break;
+  }
+  constexpr std::array<std::pair<int, std::string_view>, 9> kUnsupported{{{1, "1 bit"},
+                                                                          {32, "complex64"},
+                                                                          {128, "RGB"},
+                                                                          {1024, "int64"},
+                                                                          {1280, "uint64"},
+                                                                          {1536, "float128"},
+                                                                          {1792, "complex128"},
+                                                                          {2048, "complex256"},
+                                                                          {2304, "RGBA"}}};
+  std::string name = "code " + std::to_string(header.type);
+  for (const auto& [code, text] : kUnsupported) {
+    if (code == header.type) name = text;
+  }
+  bad_input(path, "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
+}
+
+void set_dims(VolumeInfo& info, const NiftiHeader& header) {
+  const std::int64_t rank = header.dim[0];
+  if (rank < 1 || rank > 7) bad_input(info.path, "1 to 7 dimensions", std::to_string(rank));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    info.dims[axis] = static_cast<std::int64_t>(axis) < rank ? header.dim[axis + 1] : 1;
+  }
+  std::int64_t volumes = 1;
+  for (std::size_t axis = 4; static_cast<std::int64_t>(axis) <= rank; ++axis) {
+    const std::int64_t count = std::max<std::int64_t>(1, header.dim[axis]);
+    if (__builtin_mul_overflow(volumes, count, &volumes)) {
+      bad_input(info.path, "fewer than 2^63 volumes", "dimensions whose product is larger");
+    }
+  }
+  if (volumes > 1) {
+    info.notes.push_back(std::to_string(rank) + "-D: the first of " + std::to_string(volumes) + " volumes is read");
+  }
+}
+
+// Sample distances along the axes; files in use leave them zero or negative.
+Vector3 grid_spacing(VolumeInfo& info, const NiftiHeader& header) {
+  Vector3 spacing{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    spacing[axis] = std::abs(header.pixdim[axis + 1]);
+    if (spacing[axis] == 0) {
+      spacing[axis] = 1;
+      info.notes.push_back("the spacing of axis " + std::to_string(axis) + " is 0 in the file and taken as 1");
+    }
+  }
+  return spacing;
+}
+
+Axes axes_from_rows(const NiftiHeader& header) {
+  Axes axes;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][row] = header.rows[4 * row + axis];
+    axes.origin[row] = header.rows[4 * row + 3];
+  }
+  return axes;
+}
+
+// The rotation of unit quaternion (a, b, c, d), where the file gives b, c, d and a is not negative.
+Axes axes_from_quaternion(const NiftiHeader& header, const Vector3& spacing) {
+  double b = header.quaternion[0];
+  double c = header.quaternion[1];
+  double d = header.quaternion[2];
+  const double square = b * b + c * c + d * d;
+  double a = 0;
+  if (square < 1) {
+    a = std::sqrt(1 - square);
+  } else {
+    // Rounding in the file: a half turn.
+    const double length = std::sqrt(square);
+    b /= length;
+    c /= length;
+    d /= length;
+  }
+  const double mirror = header.pixdim[0] < 0 ? -1 : 1;
+  const std::array<Vector3, 3> columns{
+      Vector3{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
+      Vector3{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
+      Vector3{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c}};
+  Axes axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double scale = spacing[axis] * (axis == 2 ? mirror : 1);
+    for (std::size_t row = 0; row < 3; ++row) axes.steps[axis][row] = columns[axis][row] * scale;
+    axes.origin[axis] = header.quaternion[3 + axis];
+  }
+  return axes;
+}
+
+void set_axes(VolumeInfo& info, const NiftiHeader& header) {
+  Axes axes;
+  info.geometry.space = Space::kRas;
+  if (header.sform > 0) {
+    axes = axes_from_rows(header);
+  } else if (header.qform > 0) {
+    axes = axes_from_quaternion(header, grid_spacing(info, header));
+  } else {
+    const Vector3 spacing = grid_spacing(info, header);
+    for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][axis] = spacing[axis];
+    info.geometry.space = Space::kUnknown;
+    info.notes.push_back("the file gives no orientation (neither sform nor qform)");
+  }
+  set_geometry(info.geometry, axes, info.path);
+  constexpr std::array<std::string_view, 4> kUnits{"", "m", "mm", "um"};
+  const auto unit = static_cast<std::size_t>(header.units & 7);
+  if (unit < kUnits.size()) info.geometry.unit = kUnits[unit];
+}
+
+void set_scaling(VolumeInfo& info, const NiftiHeader& header) {
+  if (header.slope == 0 || !std::isfinite(header.slope)) return;
+  info.slope = header.slope;
+  info.intercept = std::isfinite(header.intercept) ? header.intercept : 0;
+}
+
+VolumeInfo read_info(const NiftiHeader& header, const std::string& path) {
+  VolumeInfo info;
+  info.path = path;
+  info.format = "nifti";
+  info.type = sample_type_of(header, path);
+  set_dims(info, header);
+  checked_volume_bytes(info);
+  set_axes(info, header);
+  set_scaling(info, header);
+  return info;
+}
+
+std::uint64_t data_offset(const NiftiHeader& header, std::string_view path) {
+  const std::uint64_t smallest = header.version == 1 ? 352 : 544;
+  constexpr double kLargest = 4e18;
+  const double offset = header.data_offset;
+  if (header.single_file && offset == 0) return smallest;
+  const double least = header.single_file ? static_cast<double>(smallest) : 0;
+  if (!(offset >= least) || offset > kLargest) {
+    bad_input(path, "samples from byte " + number_text(least) + " on", "an offset of " + number_text(offset));
+  }
+  return static_cast<std::uint64_t>(offset);
+}
+
+std::unique_ptr<ByteStream> whole_file(const FilePtr& file, bool gzip) {
+  auto stored = std::make_unique<FileStream>(file, 0, file->size());
+  if (!gzip) return stored;
+  return std::make_unique<InflateStream>(std::move(stored), file->path());
+}
+
+// The file of samples that belongs to a header file: "scan.img" or "scan.img.gz" for "scan.hdr".
+FilePtr image_of(const std::string& header_path) {
+  std::string stem = header_path;
+  if (stem.ends_with(".gz")) stem.resize(stem.size() - 3);
+  if (stem.ends_with(".hdr")) stem.resize(stem.size() - 4);
+  const std::string plain = stem + ".img";
+  const std::string packed = plain + ".gz";
+  try {
+    return open_file(plain);
+  } catch (const BadInput& error) {
+    try {
+      return open_file(packed);
+    } catch (const BadInput&) {
+      throw error;
+    }
+  }
+}
+
+bool starts_as_gzip(const FilePtr& file) { return file->head(2) == "\x1f\x8b"; }
+
+void check_size(const FilePtr& file, bool gzip, std::uint64_t needed) {
+  if (gzip) {
+    check_plausible(file->path(), needed, file->size(), kDeflateRatio);
+  } else if (file->size() < needed) {
+    bad_input(file->path(), std::to_string(needed) + " bytes by its header", std::to_string(file->size()));
+  }
+}
+
+}  // namespace
+
+bool is_nifti(std::string_view head) { return parse_header(head).has_value(); }
+
+OpenedVolume open_nifti(const FilePtr& file, bool gzip) {
+  std::string head(kNiftiHeadBytes, '\0');
+  head.resize(whole_file(file, gzip)->read(std::as_writable_bytes(std::span(head))));
+  const std::optional<NiftiHeader> header = parse_header(head);
+  if (!header) bad_input(file->path(), "a NIfTI header (size 348 or 540 and its magic)", "other bytes");
+  OpenedVolume volume;
+  volume.info = read_info(*header, file->path());
+  const std::uint64_t offset = data_offset(*header, file->path());
+  const FilePtr image = header->single_file ? file : image_of(file->path());
+  const bool packed = header->single_file ? gzip : starts_as_gzip(image);
+  check_size(image, packed, offset + checked_volume_bytes(volume.info));
+  volume.samples = whole_file(image, packed);
+  if (volume.samples->skip(offset) < offset) {
+    bad_input(image->path(), "samples from byte " + std::to_string(offset) + " on", "fewer bytes");
+  }
+  volume.swap_bytes = header->swapped;
+  return volume;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,73 @@
+// Tells the format of a file by its content, then by its name, and hands it to the format's reader.
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "isoweave/error.hpp"
+#include "volume/formats.hpp"
+#include "volume/geometry.hpp"
+#include "volume/header_text.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::size_t kHeadBytes = 1024;
+
+// What a file holds once inflated; empty when it is no gzip file, or a broken one.
+std::string inflated_head(const FilePtr& file, std::string_view head) {
+  if (!head.starts_with("\x1f\x8b")) return {};
+  std::string text(kNiftiHeadBytes, '\0');
+  InflateStream stream(std::make_unique<FileStream>(file, 0, file->size()), file->path());
+  text.resize(stream.read(std::as_writable_bytes(std::span(text))));
+  return text;
+}
+
+// The format that a name stands for, for the message when the content is not of it.
+std::string_view format_of_name(std::string_view name) {
+  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return "the magic NRRD0001 to NRRD0005";
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz") || name.ends_with(".hdr")) return "a NIfTI header";
+  if (name.ends_with(".pvm")) return "the magic PVM, PVM2, PVM3, DDS v3d or DDS v3e";
+  if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
+  return "NRRD, MetaImage, NIfTI, PVM, or raw with a layout";
+}
+
+// "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
+std::string header_of_image(const std::string& path) {
+  constexpr std::string_view kImage = ".img";
+  return path.ends_with(kImage) ? path.substr(0, path.size() - kImage.size()) + ".hdr" : std::string();
+}
+
+OpenedVolume open_by_name(const FilePtr& file) {
+  const std::string& path = file->path();
+  if (const std::optional<RawLayout> layout = raw_layout_from_name(path)) return open_raw(file, *layout);
+  const std::string name = lower_case(path);
+  if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file);
+  const std::string header = header_of_image(path);
+  if (!header.empty()) {
+    OpenedVolume volume = open_nifti(open_file(header), false);
+    volume.info.path = path;
+    return volume;
+  }
+  bad_input(path, format_of_name(name), "other content");
+}
+
+OpenedVolume open_by_content(const FilePtr& file) {
+  const std::string head = file->head(kHeadBytes);
+  if (head.starts_with("NRRD")) return open_nrrd(file);
+  if (is_pvm(head)) return open_pvm(file);
+  if (is_metaimage(head)) return open_metaimage(file);
+  if (is_nifti(head)) return open_nifti(file, false);
+  if (is_nifti(inflated_head(file, head))) return open_nifti(file, true);
+  return open_by_name(file);
+}
+
+}  // namespace
+
+std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
+  const FilePtr file = open_file(path);
+  OpenedVolume volume = options.raw ? open_raw(file, *options.raw) : open_by_content(file);
+  apply_overrides(volume.info.geometry, options);
+  return std::make_unique<StreamSource>(std::move(volume));
+}
+
+}  // namespace isoweave

@@ -1,0 +1,105 @@
+// Headerless files: the layout comes from the caller or from the file's name.
+#include <bit>
+#include <charconv>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volume/formats.hpp"
+#include "volume/header_text.hpp"
+#include "volume/printable.hpp"
+
+namespace isoweave {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// "WxHxD" with all three at least 1.
+std::optional<std::array<std::int64_t, 3>> parse_dims(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, 'x');
+  if (parts.size() != 3) return std::nullopt;
+  std::array<std::int64_t, 3> dims{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<std::int64_t> side = parse_integer(parts[axis]);
+    if (!side || *side < 1) return std::nullopt;
+    dims[axis] = *side;
+  }
+  return dims;
+}
+
+[[noreturn]] void wrong_part(std::string_view part, std::string_view expected) {
+  throw std::invalid_argument("raw layout: expected " + std::string(expected) + ", found '" + printable(part) + "'");
+}
+
+void parse_option(RawLayout& layout, std::string_view part) {
+  constexpr std::string_view kSkip = "skip=";
+  if (part == "big") {
+    layout.big_endian = true;
+  } else if (part == "little") {
+    layout.big_endian = false;
+  } else if (part.starts_with(kSkip)) {
+    const std::optional<std::int64_t> skip = parse_integer(part.substr(kSkip.size()));
+    if (!skip || *skip < 0) wrong_part(part, "skip=BYTES");
+    layout.skip_bytes = *skip;
+  } else {
+    wrong_part(part, "'big', 'little' or 'skip=BYTES'");
+  }
+}
+
+}  // namespace
+
+RawLayout parse_raw_layout(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ':');
+  if (parts.size() < 2) wrong_part(text, "WxHxD:TYPE");
+  RawLayout layout;
+  const auto dims = parse_dims(parts[0]);
+  if (!dims) wrong_part(parts[0], "WxHxD with sides of at least 1");
+  layout.dims = *dims;
+  const auto type = parse_sample_type(parts[1]);
+  if (!type) wrong_part(parts[1], "a type such as uint8, int16 or float32");
+  layout.type = *type;
+  for (std::size_t part = 2; part < parts.size(); ++part) parse_option(layout, parts[part]);
+  return layout;
+}
+
+std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
+  constexpr std::string_view kEnding = ".raw";
+  if (!path.ends_with(kEnding)) return std::nullopt;
+  path.remove_suffix(kEnding.size());
+  path = path.substr(path.find_last_of('/') + 1);
+  const std::vector<std::string_view> parts = split(path, '_');
+  if (parts.size() < 2) return std::nullopt;
+  const auto dims = parse_dims(parts[parts.size() - 2]);
+  const auto type = parse_sample_type(parts.back());
+  if (!dims || !type) return std::nullopt;
+  return RawLayout{*dims, *type, false, 0};
+}
+
+OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout) {
+  OpenedVolume volume;
+  volume.info.path = file->path();
+  volume.info.format = "raw";
+  volume.info.dims = layout.dims;
+  volume.info.type = layout.type;
+  const std::uint64_t bytes = checked_volume_bytes(volume.info);
+  if (layout.skip_bytes < 0) bad_input(file->path(), "a skip of at least 0", std::to_string(layout.skip_bytes));
+  const auto skip = static_cast<std::uint64_t>(layout.skip_bytes);
+  // Both are below 2^63, so the sum does not wrap.
+  if (file->size() != skip + bytes) {
+    bad_input(file->path(), std::to_string(skip + bytes) + " bytes by its layout", std::to_string(file->size()));
+  }
+  volume.samples = std::make_unique<FileStream>(file, skip, skip + bytes);
+  volume.swap_bytes = layout.big_endian != (std::endian::native == std::endian::big);
+  return volume;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,92 @@
+#include "volume/stream_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace isoweave {
+namespace {
+
+template <std::size_t kBytes>
+void swap_all(std::span<std::byte> samples) {
+  for (std::size_t at = 0; at + kBytes <= samples.size(); at += kBytes) {
+    std::array<std::byte, kBytes> sample;
+    std::memcpy(sample.data(), samples.data() + at, kBytes);
+    std::reverse(sample.begin(), sample.end());
+    std::memcpy(samples.data() + at, sample.data(), kBytes);
+  }
+}
+
+std::string dims_text(const VolumeInfo& info) {
+  return std::to_string(info.dims[0]) + " x " + std::to_string(info.dims[1]) + " x " + std::to_string(info.dims[2]);
+}
+
+}  // namespace
+
+void swap_sample_bytes(std::span<std::byte> samples, std::size_t bytes_each) {
+  if (bytes_each == 2) swap_all<2>(samples);
+  if (bytes_each == 4) swap_all<4>(samples);
+  if (bytes_each == 8) swap_all<8>(samples);
+}
+
+void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t first, std::int64_t count,
+                       std::size_t out_bytes) {
+  if (first < next) {
+    throw std::invalid_argument("slice " + std::to_string(first) + " lies behind slice " + std::to_string(next) +
+                                ", the next to be read");
+  }
+  if (count < 0 || first > info.dims[2] || count > info.dims[2] - first) {
+    throw std::invalid_argument(std::to_string(count) + " slices from " + std::to_string(first) +
+                                " are not all in a volume of " + std::to_string(info.dims[2]));
+  }
+  if (count > 0 && out_bytes / info.slice_bytes() < static_cast<std::size_t>(count)) {
+    throw std::invalid_argument("the memory given holds fewer than " + std::to_string(count) + " slices");
+  }
+}
+
+std::uint64_t checked_volume_bytes(const VolumeInfo& info) {
+  auto bytes = static_cast<std::int64_t>(sample_bytes(info.type));
+  bool overflow = false;
+  for (const std::int64_t side : info.dims) {
+    if (side < 1) bad_input(info.path, "dimensions of at least 1", dims_text(info));
+    overflow = overflow || __builtin_mul_overflow(bytes, side, &bytes);
+  }
+  if (overflow) bad_input(info.path, "a volume of fewer than 2^63 bytes", dims_text(info) + " samples");
+  return static_cast<std::uint64_t>(bytes);
+}
+
+void check_plausible(std::string_view path, std::uint64_t bytes, std::uint64_t stored, std::uint64_t largest_ratio) {
+  if (bytes / largest_ratio <= stored) return;
+  bad_input(path, "compressed data of " + std::to_string(bytes) + " bytes of samples",
+            std::to_string(stored) + " bytes, which cannot hold them");
+}
+
+StreamSource::StreamSource(OpenedVolume volume) : volume_(std::move(volume)) {}
+
+void StreamSource::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+  const VolumeInfo& info = volume_.info;
+  check_slice_range(info, next_, first, count, out.size());
+  if (count == 0) return;
+  const std::uint64_t slice = info.slice_bytes();
+  const std::uint64_t before = static_cast<std::uint64_t>(next_) * slice;
+  const std::uint64_t behind = static_cast<std::uint64_t>(first - next_) * slice;
+  const std::span<std::byte> wanted = out.first(static_cast<std::size_t>(count) * info.slice_bytes());
+  // After a failure nobody knows where the stream stands: nothing more is read from it.
+  next_ = info.dims[2];
+  std::uint64_t got = volume_.samples->skip(behind);
+  if (got == behind) got += volume_.samples->read(wanted);
+  if (got < behind + wanted.size()) {
+    bad_input(info.path, std::to_string(static_cast<std::uint64_t>(info.dims[2]) * slice) + " bytes of samples",
+              std::to_string(before + got));
+  }
+  next_ = first + count;
+  if (volume_.swap_bytes) swap_sample_bytes(wanted, sample_bytes(info.type));
+  // One byte more makes a compressed stream check its sum.
+  std::array<std::byte, 1> beyond;
+  if (next_ == info.dims[2]) volume_.samples->read(beyond);
+}
+
+}  // namespace isoweave

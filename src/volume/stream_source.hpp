@@ -1,0 +1,50 @@
+// The slice source of every file format: slices cut from a forward-only stream of bytes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "isoweave/volume.hpp"
+#include "volume/byte_stream.hpp"
+
+namespace isoweave {
+
+// What the reader of a format finds: the header's facts, and the samples as they are stored.
+struct OpenedVolume {
+  VolumeInfo info;
+  std::unique_ptr<ByteStream> samples;
+  bool swap_bytes = false;  // the stored byte order is not the machine's
+};
+
+class StreamSource final : public SliceSource {
+ public:
+  explicit StreamSource(OpenedVolume volume);
+
+  const VolumeInfo& info() const override { return volume_.info; }
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+
+ private:
+  OpenedVolume volume_;
+  std::int64_t next_ = 0;  // the slice the stream stands at
+};
+
+// Throws std::invalid_argument unless [first, first + count) lies in the volume, not before `next`, and fits `out`.
+void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t first, std::int64_t count,
+                       std::size_t out_bytes);
+
+// Reverses the bytes of every sample of `bytes_each` bytes.
+void swap_sample_bytes(std::span<std::byte> samples, std::size_t bytes_each);
+
+// Size of the volume in bytes. Throws BadInput unless each dimension is at least 1 and the size fits in 63 bits.
+std::uint64_t checked_volume_bytes(const VolumeInfo& info);
+
+// Throws BadInput unless a stored stream of `stored` bytes can hold `bytes` at all, given that one stored byte
+// decodes to at most `largest_ratio`. A header's claim is believed only after this.
+void check_plausible(std::string_view path, std::uint64_t bytes, std::uint64_t stored, std::uint64_t largest_ratio);
+
+// Deflate cannot do better than 258 bytes from two bits.
+inline constexpr std::uint64_t kDeflateRatio = 1032;
+
+}  // namespace isoweave

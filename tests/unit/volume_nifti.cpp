@@ -1,0 +1,249 @@
+#include <cmath>
+
+#include "volume_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
+
+std::string nifti_file(const NiftiFields& fields) { return nifti_header(fields) + stored(kSamples, fields.big); }
+
+VolumeInfo info_of(const TempFolder& folder, const NiftiFields& fields) {
+  return open_volume(folder.put("a.nii", nifti_file(fields)))->info();
+}
+
+TEST(Nifti, ReadsBothVersionsBothByteOrdersPlainAndGzip) {
+  const TempFolder folder;
+  for (const int version : {1, 2}) {
+    for (const bool big : {false, true}) {
+      NiftiFields fields;
+      fields.version = version;
+      fields.big = big;
+      const std::string content = nifti_file(fields);
+      for (const std::string& path : {folder.put("a.nii", content), folder.put("a.nii.gz", gzipped(content))}) {
+        const auto source = open_volume(path);
+        EXPECT_EQ(source->info().format, "nifti");
+        EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{3, 2, 5}));
+        EXPECT_EQ(source->info().type, SampleType::kInt16);
+        EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{0.5, 0.75, 2}));
+        EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples) << path << " version " << version << " big " << big;
+      }
+    }
+  }
+}
+
+TEST(Nifti, ReadsGzipOfSeveralMembersWithPadding) {
+  const TempFolder folder;
+  const std::string content = nifti_file({});
+  const std::string members = gzipped(content.substr(0, 100)) + gzipped(content.substr(100)) + std::string(16, '\0');
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nii.gz", members)), kSamples);
+}
+
+TEST(Nifti, SkipsSlicesOfAGzipStream) {
+  const TempFolder folder;
+  const auto source = open_volume(folder.put("a.nii.gz", gzipped(nifti_file({}))));
+  std::vector<std::int16_t> slice(6);
+  source->read(3, 1, std::as_writable_bytes(std::span(slice)));
+  EXPECT_TRUE(std::equal(slice.begin(), slice.end(), kSamples.begin() + 18));
+}
+
+TEST(Nifti, ReadsAllScalarTypesAndNamesTheOthers) {
+  const TempFolder folder;
+  const std::vector<std::pair<int, SampleType>> types{
+      {2, SampleType::kUint8},    {4, SampleType::kInt16},  {8, SampleType::kInt32},    {16, SampleType::kFloat32},
+      {64, SampleType::kFloat64}, {256, SampleType::kInt8}, {512, SampleType::kUint16}, {768, SampleType::kUint32}};
+  for (const auto& [code, type] : types) {
+    NiftiFields fields;
+    fields.type = static_cast<std::int16_t>(code);
+    const auto path = folder.put("a.nii", nifti_header(fields) + std::string(30 * sample_bytes(type), 'x'));
+    EXPECT_EQ(open_volume(path)->info().type, type);
+  }
+  const std::vector<std::pair<int, std::string>> refused{
+      {1, "1 bit"}, {32, "complex64"}, {128, "RGB"}, {1024, "int64"}, {2304, "RGBA"}, {0, "code 0"}, {-7, "code -7"}};
+  for (const auto& [code, name] : refused) {
+    NiftiFields fields;
+    fields.type = static_cast<std::int16_t>(code);
+    const std::string message = refusal(folder.put("a.nii", nifti_file(fields)));
+    EXPECT_TRUE(contains(message, name)) << message;
+  }
+}
+
+TEST(Nifti, TakesAxesFromSformBeforeQform) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.qform = 1;
+  fields.sform = 1;
+  fields.rows = {0, -2, 0, 10, 3, 0, 0, 20, 0, 0, 4, 30};
+  const Geometry geometry = info_of(folder, fields).geometry;
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{3, 2, 4}));
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
+  EXPECT_EQ(geometry.direction, (std::array<double, 9>{0, -1, 0, 1, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(geometry.space, Space::kRas);
+  EXPECT_EQ(geometry.unit, "mm");
+}
+
+TEST(Nifti, TakesAxesFromQformWithItsMirror) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.qform = 1;
+  fields.pixdim = {-1, 1, 2, 3, 0, 0, 0, 0};
+  // A quarter turn about z: a = d = sqrt(1/2).
+  fields.quaternion = {0, 0, std::sqrt(0.5), 5, 6, 7};
+  const Geometry geometry = info_of(folder, fields).geometry;
+  const std::array<double, 9> expected{0, -1, 0, 1, 0, 0, 0, 0, -1};
+  for (std::size_t n = 0; n < 9; ++n) EXPECT_NEAR(geometry.direction[n], expected[n], 1e-6) << n;
+  EXPECT_NEAR(geometry.spacing[1], 2, 1e-6);
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{5, 6, 7}));
+  EXPECT_EQ(geometry.space, Space::kRas);
+}
+
+TEST(Nifti, WithoutOrientationSaysSo) {
+  const TempFolder folder;
+  const VolumeInfo info = info_of(folder, {});
+  EXPECT_EQ(info.geometry.space, Space::kUnknown);
+  ASSERT_EQ(info.notes.size(), 1u);
+  EXPECT_TRUE(contains(info.notes[0], "no orientation"));
+}
+
+TEST(Nifti, RepairsZeroAndNegativeSpacingButNotNan) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.pixdim = {1, 0, -2, 3, 0, 0, 0, 0};
+  const VolumeInfo info = info_of(folder, fields);
+  EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_TRUE(contains(info.notes.at(0), "taken as 1"));
+  fields.pixdim[1] = std::nan("");
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "spacing"));
+  fields.pixdim[1] = INFINITY;
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "spacing"));
+}
+
+TEST(Nifti, RefusesAxesThatDoNotSpanSpace) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.sform = 1;
+  fields.rows = {1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0};
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "span space"));
+  fields.rows = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "spacing on axis 0"));
+  fields.rows = {1, 0, 0, std::nan(""), 0, 1, 0, 0, 0, 0, 1, 0};
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "origin"));
+}
+
+TEST(Nifti, CarriesScalingUnlessItIsVoid) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.slope = 2;
+  fields.intercept = -1024;
+  EXPECT_EQ(info_of(folder, fields).slope, 2);
+  EXPECT_EQ(info_of(folder, fields).intercept, -1024);
+  for (const double slope : {0.0, std::nan(""), static_cast<double>(INFINITY)}) {
+    fields.slope = slope;
+    EXPECT_EQ(info_of(folder, fields).slope, 1);
+    EXPECT_EQ(info_of(folder, fields).intercept, 0);
+  }
+}
+
+TEST(Nifti, ReadsTheFirstOfSeveralVolumesAndNotesIt) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.dim = {4, 3, 2, 5, 12, 1, 1, 1};
+  const auto source = open_volume(folder.put("a.nii", nifti_file(fields) + std::string(11 * 60, 'x')));
+  EXPECT_EQ(source->info().notes.at(0), "4-D: the first of 12 volumes is read");
+  EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples);
+}
+
+TEST(Nifti, ReadsPlaneImages) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.dim = {2, 6, 5, 0, 0, 0, 0, 0};
+  EXPECT_EQ(info_of(folder, fields).dims, (std::array<std::int64_t, 3>{6, 5, 1}));
+}
+
+TEST(Nifti, ReadsPairsFromEitherName) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.pair = true;
+  folder.put("a.img", stored(kSamples));
+  const std::string header = folder.put("a.hdr", nifti_header(fields));
+  EXPECT_EQ(read_file<std::int16_t>(header), kSamples);
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a.img"), kSamples);
+  std::filesystem::remove(folder / "a.img");
+  EXPECT_TRUE(contains(refusal(header), "a.img: cannot be opened"));
+  folder.put("a.img.gz", gzipped(stored(kSamples)));
+  EXPECT_EQ(read_file<std::int16_t>(header), kSamples);
+}
+
+TEST(Nifti, ReadsFromADistantOffset) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.offset = 1000;
+  const std::string header = nifti_header(fields);
+  const std::string content = header + std::string(1000 - header.size(), 'x') + stored(kSamples);
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nii", content)), kSamples);
+  for (const double offset : {-1.0, 12.0, 1e18, static_cast<double>(INFINITY), std::nan("")}) {
+    fields.offset = offset;
+    EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "expected")) << offset;
+  }
+}
+
+TEST(Nifti, RefusesHeadersThatLie) {
+  const TempFolder folder;
+  const auto refused = [&](const NiftiFields& fields, const std::string& why) {
+    const std::string content = nifti_file(fields);
+    for (const auto& path : {folder.put("a.nii", content), folder.put("a.nii.gz", gzipped(content))}) {
+      const std::string message = refusal(path);
+      EXPECT_TRUE(contains(message, why) || contains(message, "cannot hold them")) << message;
+    }
+  };
+  NiftiFields fields;
+  fields.dim = {3, 32767, 32767, 32767, 1, 1, 1, 1};
+  refused(fields, "by its header");
+  fields.version = 2;
+  fields.dim = {3, 1 << 30, 1 << 30, 1 << 30, 1, 1, 1, 1};
+  refused(fields, "2^63");
+  fields.dim = {4, 3, 2, 5, std::int64_t{1} << 62, 1, 1, 1};
+  fields.dim[5] = 16;
+  fields.dim[0] = 5;
+  refused(fields, "2^63 volumes");
+  for (const std::int64_t side : {0, -1, -32768}) {
+    fields = {};
+    fields.dim[2] = side;
+    refused(fields, "at least 1");
+  }
+  for (const std::int64_t rank : {0, 8, -1}) {
+    fields = {};
+    fields.dim[0] = rank;
+    refused(fields, "1 to 7 dimensions");
+  }
+}
+
+TEST(Nifti, FindsACorruptedSumAtTheEnd) {
+  const TempFolder folder;
+  std::string content = gzipped(nifti_file({}));
+  content[content.size() - 6] = static_cast<char>(content[content.size() - 6] ^ 1);
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii.gz", content)), "corrupt"));
+}
+
+TEST(Nifti, SurvivesEveryTruncation) {
+  const TempFolder folder;
+  NiftiFields second;
+  second.version = 2;
+  expect_prefixes_are_safe(folder, "a.nii", nifti_file({}));
+  expect_prefixes_are_safe(folder, "b.nii", nifti_file(second));
+  expect_prefixes_are_safe(folder, "c.nii.gz", gzipped(nifti_file({})));
+}
+
+TEST(Nifti, SurvivesRandomChanges) {
+  const TempFolder folder;
+  NiftiFields second;
+  second.version = 2;
+  second.sform = 1;
+  expect_flips_are_safe(folder, "a.nii", nifti_file({}), 348);
+  expect_flips_are_safe(folder, "b.nii", nifti_file(second), 540);
+  expect_flips_are_safe(folder, "c.nii.gz", gzipped(nifti_file({})), 100);
+}
+
+}  // namespace
+}  // namespace isoweave::testing
