@@ -1,0 +1,133 @@
+#include "write/mesh_input.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave::mesh_io {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kLongestMessage = 400;
+
+// Opens without waiting for a writer when the name is a pipe; fails on all but regular files.
+int open_regular(const std::string& path, std::uint64_t& size) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) throw BadInput(path + ": cannot open: " + std::generic_category().message(errno));
+  struct stat status {};
+  const bool known = ::fstat(fd, &status) == 0;
+  if (!known || !S_ISREG(status.st_mode)) {
+    ::close(fd);
+    throw BadInput(path + (known && S_ISDIR(status.st_mode) ? ": is a folder" : ": is not a regular file") +
+                   ", expected a mesh file");
+  }
+  size = static_cast<std::uint64_t>(status.st_size);
+  return fd;
+}
+
+}  // namespace
+
+MeshInput::MeshInput(const std::string& path) : path_(path), fd_(open_regular(path, size_)) {
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_)));
+}
+
+MeshInput::~MeshInput() { ::close(fd_); }
+
+void MeshInput::fail(const std::string& what) const {
+  // Words quoted from the file must not break the line, drive a terminal or fill it.
+  std::string message = path_ + ": " + what.substr(0, kLongestMessage);
+  for (char& c : message) {
+    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) c = '?';
+  }
+  throw BadInput(message);
+}
+
+bool MeshInput::refill() {
+  if (position_ == size_) return false;
+  const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size(), remaining()));
+  ssize_t got = 0;
+  do {
+    got = ::pread(fd_, buffer_.data(), wanted, static_cast<off_t>(position_));
+  } while (got < 0 && errno == EINTR);
+  if (got < 0) fail("cannot read: " + std::generic_category().message(errno));
+  if (got == 0)
+    fail("ends at byte " + std::to_string(position_) + ", it had " + std::to_string(size_) + " when opened");
+  next_ = 0;
+  filled_ = static_cast<std::size_t>(got);
+  return true;
+}
+
+void MeshInput::read(std::span<std::byte> out) {
+  if (out.size() > remaining()) {
+    fail("truncated: expected " + std::to_string(out.size()) + " bytes at byte " + std::to_string(position_) +
+         ", found " + std::to_string(remaining()));
+  }
+  while (!out.empty()) {
+    if (next_ == filled_) refill();
+    const std::size_t count = std::min(out.size(), filled_ - next_);
+    std::memcpy(out.data(), buffer_.data() + next_, count);
+    next_ += count;
+    position_ += count;
+    out = out.subspan(count);
+  }
+}
+
+void MeshInput::skip(std::uint64_t bytes) {
+  if (bytes > remaining()) {
+    fail("truncated: expected " + std::to_string(bytes) + " bytes at byte " + std::to_string(position_) + ", found " +
+         std::to_string(remaining()));
+  }
+  position_ += bytes;
+  if (bytes <= filled_ - next_) {
+    next_ += static_cast<std::size_t>(bytes);
+  } else {
+    next_ = filled_ = 0;
+  }
+}
+
+bool MeshInput::read_line(std::string& line) {
+  line.clear();
+  int c = get();
+  if (c < 0) return false;
+  for (; c >= 0 && c != '\n'; c = get()) {
+    if (line.size() == kLongestLine) fail("a line is longer than " + std::to_string(kLongestLine) + " bytes");
+    line.push_back(static_cast<char>(c));
+  }
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return true;
+}
+
+std::string_view MeshInput::read_token() {
+  token_.clear();
+  int c = get();
+  while (c >= 0 && is_blank(c)) c = get();
+  for (; c >= 0 && !is_blank(c); c = get()) {
+    if (token_.size() == kLongestToken) fail("a number is longer than " + std::to_string(kLongestToken) + " bytes");
+    token_.push_back(static_cast<char>(c));
+  }
+  return token_;
+}
+
+std::string MeshInput::head(std::size_t bytes) const {
+  std::string text(bytes, '\0');
+  const ssize_t got = ::pread(fd_, text.data(), bytes, 0);
+  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return text;
+}
+
+std::string_view take_word(std::string_view& rest) {
+  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+  std::size_t end = 0;
+  while (end < rest.size() && !is_blank(rest[end])) ++end;
+  const std::string_view word = rest.substr(0, end);
+  rest.remove_prefix(end);
+  return word;
+}
+
+}  // namespace isoweave::mesh_io

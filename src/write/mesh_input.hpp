@@ -1,0 +1,132 @@
+// What the mesh readers share: a file read once from front to back through a bounded buffer, and numbers from text.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave::mesh_io {
+
+// Every failure is BadInput with one line that begins with the path.
+class MeshInput {
+ public:
+  explicit MeshInput(const std::string& path);
+  ~MeshInput();
+  MeshInput(const MeshInput&) = delete;
+  MeshInput& operator=(const MeshInput&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  std::uint64_t remaining() const { return size_ - position_; }
+
+  // The next byte, or -1 at the end.
+  int get() {
+    if (next_ == filled_ && !refill()) return -1;
+    ++position_;
+    return std::to_integer<int>(buffer_[next_++]);
+  }
+
+  void read(std::span<std::byte> out);
+  void skip(std::uint64_t bytes);
+
+  // The next line without its end ("\n" or "\r\n"); false at the end of the file.
+  bool read_line(std::string& line);
+
+  // The next run of characters that are not blanks or line ends; empty at the end of the file.
+  std::string_view read_token();
+
+  // Up to `bytes` bytes from the beginning, without moving.
+  std::string head(std::size_t bytes) const;
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  bool refill();
+
+  std::string path_;
+  std::uint64_t size_ = 0;
+  int fd_ = -1;                 // after size_, which opening sets
+  std::uint64_t position_ = 0;  // of the next byte to hand out
+  std::vector<std::byte> buffer_;
+  std::size_t next_ = 0;
+  std::size_t filled_ = 0;
+  std::string token_;
+};
+
+// Longest line and token accepted; a file without line ends must not be read into memory whole.
+inline constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+inline constexpr std::size_t kLongestToken = 256;
+
+inline bool is_blank(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+// Takes the first word off `rest`; empty when there is none.
+std::string_view take_word(std::string_view& rest);
+
+// The whole of `text` as a decimal integer.
+template <class Integer>
+std::optional<Integer> parse_integer(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// The whole of `text` as the nearest number of type Real; "inf" and "nan" are numbers here.
+template <class Real>
+std::optional<Real> parse_real(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Real value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc{}) return value;
+  if constexpr (sizeof(Real) < sizeof(double)) {
+    // Too small or too large for a float: a double says which.
+    const std::optional<double> wide =
+        error == std::errc::result_out_of_range ? parse_real<double>(text) : std::nullopt;
+    if (wide && std::abs(*wide) < 1) return static_cast<Real>(*wide);
+  }
+  return std::nullopt;
+}
+
+// Adds the fan over a polygon's corners as they come.
+class PolygonFan {
+ public:
+  explicit PolygonFan(std::vector<std::array<std::uint32_t, 3>>& triangles) : triangles_(triangles) {}
+
+  void add(std::uint32_t corner) {
+    if (corners_ == 0) first_ = corner;
+    if (corners_ >= 2) triangles_.push_back({first_, previous_, corner});
+    previous_ = corner;
+    ++corners_;
+  }
+  std::uint64_t corners() const { return corners_; }
+
+ private:
+  std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  std::uint32_t first_ = 0;
+  std::uint32_t previous_ = 0;
+  std::uint64_t corners_ = 0;
+};
+
+inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
+
+TriangleMesh read_ply(MeshInput& input);
+TriangleMesh read_stl_binary(MeshInput& input);
+TriangleMesh read_stl_ascii(MeshInput& input);
+TriangleMesh read_obj(MeshInput& input);
+
+// Whether the file is exactly as long as the count in a binary STL header makes it.
+bool is_binary_stl(const MeshInput& input);
+
+}  // namespace isoweave::mesh_io

@@ -1,0 +1,225 @@
+// PLY: any order and type of properties, lists, further elements; ascii, little- and big-endian.
+#include <array>
+#include <bit>
+
+#include "write/ply_header.hpp"
+
+namespace isoweave::mesh_io {
+namespace {
+
+// Loads the bytes of one number, most significant first or last.
+std::uint64_t load_bits(std::span<const std::byte> bytes, bool big_endian) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::size_t at = big_endian ? i : bytes.size() - 1 - i;
+    bits = bits << 8 | std::to_integer<std::uint64_t>(bytes[at]);
+  }
+  return bits;
+}
+
+// Every PLY type fits in a double exactly.
+double number_from_bits(std::uint64_t bits, PlyType type) {
+  switch (type) {
+    case PlyType::kInt8:
+      return static_cast<std::int8_t>(bits);
+    case PlyType::kInt16:
+      return static_cast<std::int16_t>(bits);
+    case PlyType::kInt32:
+      return static_cast<std::int32_t>(bits);
+    case PlyType::kUint8:
+    case PlyType::kUint16:
+    case PlyType::kUint32:
+      return static_cast<double>(bits);
+    case PlyType::kFloat32:
+      return double{std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
+    case PlyType::kFloat64:
+      return std::bit_cast<double>(bits);
+  }
+  return 0;
+}
+
+// The fewest digits that say the number: 3, not 3.000000.
+std::string text_of(double value) {
+  std::array<char, 32> digits{};
+  const std::to_chars_result result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  return {digits.data(), result.ptr};
+}
+
+class PlyReader {
+ public:
+  explicit PlyReader(MeshInput& input) : input_(input), header_(read_ply_header(input)) {}
+
+  TriangleMesh read() {
+    check_size();
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "face") {
+        read_faces(element);
+      } else {
+        skip_element(element);
+      }
+    }
+    check_end();
+    return std::move(mesh_);
+  }
+
+ private:
+  // Nothing is allocated before the file is known to be long enough for all that its header claims.
+  void check_size() const {
+    std::uint64_t least = 0;
+    for (const PlyElement& element : header_.elements) {
+      std::uint64_t bytes = 0;
+      const bool too_large = __builtin_mul_overflow(element.count, least_bytes(element, header_.encoding), &bytes) ||
+                             __builtin_add_overflow(least, bytes, &least);
+      // The last number of an ascii file may lack the blank behind it.
+      if (too_large || least > input_.remaining() + 1) {
+        input_.fail("truncated: its header promises " + std::to_string(element.count) + " of '" + element.name +
+                    "', expected at least " + (too_large ? "2^64" : std::to_string(least)) +
+                    " bytes after the header, found " + std::to_string(input_.remaining()));
+      }
+    }
+  }
+
+  double next(PlyType type) {
+    if (header_.encoding == PlyEncoding::kAscii) return next_in_text(type);
+    std::array<std::byte, 8> bytes{};
+    const std::span<std::byte> used = std::span(bytes).first(bytes_of(type));
+    input_.read(used);
+    return number_from_bits(load_bits(used, header_.encoding == PlyEncoding::kBigEndian), type);
+  }
+
+  // A float is parsed as one: by way of a double it would be rounded twice.
+  double next_in_text(PlyType type) {
+    const std::string_view token = input_.read_token();
+    if (token.empty()) input_.fail("truncated: expected a number, found the end of the file");
+    std::optional<double> value;
+    if (type == PlyType::kFloat32) {
+      if (const std::optional<float> narrow = parse_real<float>(token)) value = *narrow;
+    } else {
+      value = parse_real<double>(token);
+    }
+    if (!value) input_.fail("expected a number, found '" + std::string(token.substr(0, 40)) + "'");
+    return *value;
+  }
+
+  std::uint64_t next_list_length(const PlyProperty& property) {
+    const double length = next(*property.length_type);
+    if (!(length >= 0 && length <= 4294967295.0) || length != std::floor(length)) {
+      input_.fail("expected the length of list '" + property.name + "', found " + text_of(length));
+    }
+    return static_cast<std::uint64_t>(length);
+  }
+
+  void skip_value(const PlyProperty& property) {
+    if (!property.length_type) {
+      next(property.type);
+      return;
+    }
+    const std::uint64_t length = next_list_length(property);
+    if (header_.encoding != PlyEncoding::kAscii) {
+      input_.skip(length * bytes_of(property.type));
+    } else {
+      for (std::uint64_t i = 0; i < length; ++i) next(property.type);
+    }
+  }
+
+  void skip_element(const PlyElement& element) {
+    // A hostile count of nothing at all would keep the loop busy for ever.
+    if (element.properties.empty()) return;
+    if (header_.encoding != PlyEncoding::kAscii && !has_lists(element)) {
+      input_.skip(element.count * least_bytes(element, header_.encoding));
+      return;
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const PlyProperty& property : element.properties) skip_value(property);
+    }
+  }
+
+  void read_vertices(const PlyElement& element) {
+    const std::vector<int> slots = coordinate_slots(element);
+    mesh_.vertices.reserve(element.count);
+    if (header_.has_normals) mesh_.normals.reserve(element.count);
+    for (std::uint64_t vertex = 0; vertex < element.count; ++vertex) {
+      std::array<float, 6> values{};
+      for (std::size_t i = 0; i < slots.size(); ++i) {
+        if (slots[i] < 0) {
+          skip_value(element.properties[i]);
+        } else {
+          values[static_cast<std::size_t>(slots[i])] = next_coordinate(element.properties[i], vertex);
+        }
+      }
+      mesh_.vertices.push_back({values[0], values[1], values[2]});
+      if (header_.has_normals) mesh_.normals.push_back({values[3], values[4], values[5]});
+    }
+  }
+
+  // Where each property belongs among x y z nx ny nz; -1 for all others.
+  std::vector<int> coordinate_slots(const PlyElement& element) const {
+    constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
+    std::vector<int> slots;
+    for (const PlyProperty& property : element.properties) {
+      const auto found = std::find(kNames.begin(), kNames.begin() + (header_.has_normals ? 6 : 3), property.name);
+      const bool used = found != kNames.begin() + (header_.has_normals ? 6 : 3);
+      slots.push_back(used ? static_cast<int>(found - kNames.begin()) : -1);
+    }
+    return slots;
+  }
+
+  float next_coordinate(const PlyProperty& property, std::uint64_t vertex) {
+    const double value = next(property.type);
+    if (!(std::abs(value) <= double{std::numeric_limits<float>::max()})) {
+      input_.fail("vertex " + std::to_string(vertex) + " has '" + property.name + "' = " + text_of(value) +
+                  ", expected a finite float32");
+    }
+    return static_cast<float>(value);
+  }
+
+  void read_faces(const PlyElement& element) {
+    mesh_.triangles.reserve(element.count);
+    for (std::uint64_t face = 0; face < element.count; ++face) {
+      for (const PlyProperty& property : element.properties) {
+        if (is_corner_list(property)) {
+          read_corners(property, face);
+        } else {
+          skip_value(property);
+        }
+      }
+    }
+  }
+
+  void read_corners(const PlyProperty& property, std::uint64_t face) {
+    const std::uint64_t length = next_list_length(property);
+    if (length < 3) {
+      input_.fail("face " + std::to_string(face) + " has " + std::to_string(length) + " corners, expected 3 or more");
+    }
+    PolygonFan fan(mesh_.triangles);
+    for (std::uint64_t i = 0; i < length; ++i) {
+      const double index = next(property.type);
+      if (!(index >= 0 && index < static_cast<double>(header_.vertices)) || index != std::floor(index)) {
+        input_.fail("face " + std::to_string(face) + " refers to vertex " + text_of(index) + ", the file has " +
+                    std::to_string(header_.vertices));
+      }
+      fan.add(static_cast<std::uint32_t>(index));
+    }
+  }
+
+  // More data than the header says means that one of them is wrong.
+  void check_end() {
+    for (int c = input_.get(); c >= 0; c = input_.get()) {
+      if (!is_blank(c)) {
+        input_.fail("expected the end of the file, found " + std::to_string(input_.remaining() + 1) + " more bytes");
+      }
+    }
+  }
+
+  MeshInput& input_;
+  PlyHeader header_;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh read_ply(MeshInput& input) { return PlyReader(input).read(); }
+
+}  // namespace isoweave::mesh_io

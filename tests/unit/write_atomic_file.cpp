@@ -1,0 +1,236 @@
+// A file is complete under its name, or there is no trace of it.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "files.hpp"
+#include "isoweave/error.hpp"
+#include "meshes.hpp"
+#include "write/atomic_file.hpp"
+
+namespace isoweave {
+namespace {
+
+std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+template <class Call>
+std::string message_of(Call&& call) {
+  try {
+    call();
+  } catch (const CannotWrite& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+// Files may not grow past a limit while this lives: a full disk, without a disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(AtomicFile, AppearsOnCommitOnly) {
+  const files::Folder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write(bytes_of("hello"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+    ASSERT_EQ(folder.entries().size(), 1U);
+    const std::string temporary = folder.entries()[0];
+    EXPECT_TRUE(temporary.starts_with(".a.txt.") && temporary.ends_with(".partial")) << temporary;
+    file.commit();
+  }
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.txt"});
+  EXPECT_EQ(files::read_bytes(folder / "a.txt"), "hello");
+}
+
+TEST(AtomicFile, WithoutCommitNothingIsLeft) {
+  const files::Folder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write(bytes_of(std::string(3 << 20, 'x')));
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(AtomicFile, ReplacesAnOldFileOnCommitAndNotBefore) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.txt", "old");
+  { AtomicFile(folder / "a.txt").write(bytes_of("lost")); }
+  EXPECT_EQ(files::read_bytes(folder / "a.txt"), "old");
+  AtomicFile file(folder / "a.txt");
+  file.write(bytes_of("new"));
+  file.commit();
+  EXPECT_EQ(files::read_bytes(folder / "a.txt"), "new");
+}
+
+TEST(AtomicFile, OverwritesBufferedAndWrittenBytes) {
+  const files::Folder folder;
+  AtomicFile file(folder / "a.txt");
+  file.write(bytes_of("count=0000;"));
+  file.overwrite(6, bytes_of("0042"));                    // still in the buffer
+  file.write(bytes_of(std::string((5 << 20) + 3, 'x')));  // larger than any buffer
+  file.overwrite(6, bytes_of("7"));                       // long on the disk
+  file.write(bytes_of("end"));                            // goes to the end all the same
+  EXPECT_EQ(file.size(), 11U + (5U << 20U) + 3U + 3U);
+  EXPECT_THROW(file.overwrite(file.size() - 1, bytes_of("xx")), std::invalid_argument);
+  file.commit();
+  EXPECT_EQ(files::read_bytes(folder / "a.txt"), "count=7042;" + std::string((5 << 20) + 3, 'x') + "end");
+}
+
+TEST(AtomicFile, AppendsAScratchFileThatHasNoName) {
+  const files::Folder folder;
+  const std::string block((3 << 20) + 1, 'y');
+  AtomicFile file(folder / "a.txt");
+  OutputDescriptor scratch(open_scratch(folder / "a.txt"), folder / "a.txt");
+  EXPECT_EQ(folder.entries().size(), 1U) << "only the temporary file of `file` has a name";
+  scratch.write(bytes_of(block));
+  scratch.write(bytes_of("tail"));
+  file.write(bytes_of("head"));
+  file.append(scratch);
+  file.write(bytes_of("end"));
+  file.commit();
+  EXPECT_EQ(files::read_bytes(folder / "a.txt"), "head" + block + "tailend");
+}
+
+// A command-line user expects the mode of any new file, not the 0600 of mkstemp.
+TEST(AtomicFile, ModeFollowsTheUmask) {
+  const files::Folder folder;
+  const mode_t before = ::umask(027);
+  AtomicFile file(folder / "a.txt");
+  ::umask(before);
+  file.commit();
+  struct stat status {};
+  ASSERT_EQ(::stat((folder / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0640U);
+}
+
+TEST(AtomicFile, LongNamesAreNotMadeTooLongByTheTemporaryName) {
+  const files::Folder folder;
+  const std::string name(255, 'n');
+  AtomicFile file(folder / name);
+  file.commit();
+  EXPECT_TRUE(std::filesystem::exists(folder / name));
+}
+
+// A link to a file on another disk must not be replaced by the file.
+TEST(AtomicFile, WritesThroughASymbolicLink) {
+  const files::Folder folder;
+  std::filesystem::create_directory(folder / "store");
+  files::write_bytes(folder / "store/real.txt", "old");
+  std::filesystem::create_symlink("store/real.txt", folder / "link.txt");
+  AtomicFile file(folder / "link.txt");
+  file.write(bytes_of("new"));
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(files::read_bytes(folder / "store/real.txt"), "new");
+}
+
+TEST(AtomicFile, OpeningFailsAtOnceWithThePathAndTheReason) {
+  const files::Folder folder;
+  std::filesystem::create_directory(folder / "sub");
+  const auto open = [](const std::string& path) { return message_of([&] { AtomicFile file(path); }); };
+  EXPECT_NE(open("").find("empty"), std::string::npos);
+  EXPECT_EQ(open(folder / "sub"), (folder / "sub") + ": is a folder, expected a file name");
+  EXPECT_EQ(open(folder / "sub/"), (folder / "sub/") + ": is a folder, expected a file name");
+  EXPECT_NE(open(folder / "missing/a.txt").find("missing/a.txt: cannot create a file in"), std::string::npos);
+  EXPECT_NE(open(folder / "missing/a.txt").find("No such file or directory"), std::string::npos);
+  files::write_bytes(folder / "file", "");
+  EXPECT_NE(open(folder / "file/a.txt").find("Not a directory"), std::string::npos);
+  EXPECT_EQ(folder.entries().size(), 2U);
+}
+
+// A rename onto a device would replace the device: as root, /dev/null would become a mesh.
+TEST(AtomicFile, DevicesAreNotReplaced) {
+  EXPECT_EQ(message_of([] { AtomicFile file("/dev/null"); }), "/dev/null: exists and is not a regular file");
+}
+
+TEST(AtomicFile, ReadOnlyFolderAndFileAreErrors) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const files::Folder folder;
+  files::write_bytes(folder / "a.txt", "");
+  ::chmod((folder / "a.txt").c_str(), 0444);
+  EXPECT_THROW(AtomicFile file(folder / "a.txt"), CannotWrite);
+  ::chmod(folder.path().c_str(), 0555);
+  EXPECT_THROW(AtomicFile file(folder / "b.txt"), CannotWrite);
+  ::chmod(folder.path().c_str(), 0755);
+}
+
+TEST(AtomicFile, FailingWriteSaysWhyAndLeavesNothing) {
+  const files::Folder folder;
+  {
+    const FileSizeLimit limit(1 << 16);
+    const std::string message = message_of([&] {
+      AtomicFile file(folder / "a.txt");
+      file.write(bytes_of(std::string(1 << 17, 'x')));
+      file.commit();
+    });
+    EXPECT_NE(message.find("a.txt: cannot write: File too large"), std::string::npos) << message;
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+// Every way a mesh writer can run out of room: in the vertices, in the spooled faces, in the copy at the end.
+TEST(AtomicFile, MeshWritersLeaveNothingWhenTheDiskIsFull) {
+  const TriangleMesh mesh = meshes::grid(300);
+  const std::vector<std::array<std::uint64_t, 3>> triangles(mesh.triangles.size(), {0, 1, 302});
+  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
+    for (const rlim_t limit_bytes : {1U << 10U, 1200U << 10U, 2500U << 10U}) {
+      const files::Folder folder;
+      const FileSizeLimit limit(limit_bytes);
+      EXPECT_THROW(
+          {
+            const auto sink = open_mesh_file(folder / name);
+            sink->append(mesh.vertices, {}, triangles);
+            sink->finish();
+          },
+          CannotWrite)
+          << name << " with " << limit_bytes;
+      EXPECT_TRUE(folder.entries().empty()) << name << " with " << limit_bytes;
+    }
+  }
+}
+
+TEST(AtomicFile, MeshWritersLeaveNothingWithoutFinish) {
+  const files::Folder folder;
+  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
+    const auto sink = open_mesh_file(folder / name);
+    sink->append(meshes::cube().vertices, {}, {});
+    EXPECT_FALSE(folder.entries().empty());
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+// After a failed write the file has a hole or a tail; to go on and finish would hide it.
+TEST(AtomicFile, AMeshCannotBeFinishedAfterAFailedWrite) {
+  const files::Folder folder;
+  const TriangleMesh mesh = meshes::grid(300);
+  const auto sink = open_mesh_file(folder / "a.ply");
+  {
+    const FileSizeLimit limit(1 << 10);
+    EXPECT_THROW(sink->append(mesh.vertices, {}, {}), CannotWrite);
+  }
+  EXPECT_THROW(sink->finish(), std::logic_error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));
+}
+
+}  // namespace
+}  // namespace isoweave
