@@ -37,7 +37,7 @@ std::vector<Index> Simplifier::final_triangles() {
   const CostBits retire = zone_.options().retire;
   std::vector<std::uint8_t> undecided(zone_.vertices.size(), 0);
   std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
-  for (Index v = 0; v < undecided.size(); ++v) undecided[v] = zone_.vertices[v].state == VertexState::kIncomplete;
+  for (Index v = 0; v < undecided.size(); ++v) undecided[v] = zone_.states[v] == VertexState::kIncomplete;
   for (Index h = 0; h < zone_.half_edges.size(); ++h) {
     if (!zone_.alive(h)) continue;
     ++corners[zone_.origin(h)];
@@ -46,9 +46,9 @@ std::vector<Index> Simplifier::final_triangles() {
     undecided[zone_.destination(h)] = 1;
   }
   for (Index v = 0; v < undecided.size(); ++v) {
-    if (undecided[v] || corners[v] == 0 || zone_.vertices[v].state == VertexState::kFinal) continue;
-    if (zone_.vertices[v].state == VertexState::kComplete) inspect_final_vertex(v, corners[v]);
-    zone_.vertices[v].state = VertexState::kFinal;
+    if (undecided[v] || corners[v] == 0 || zone_.states[v] == VertexState::kFinal) continue;
+    if (zone_.states[v] == VertexState::kComplete) inspect_final_vertex(v, corners[v]);
+    zone_.states[v] = VertexState::kFinal;
   }
   std::vector<Index> triangles;
   for (Index t = 0; t < zone_.triangles(); ++t) {

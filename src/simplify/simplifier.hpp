@@ -41,6 +41,7 @@ class Simplifier {
   std::vector<Index> final_triangles();
 
   DecisionCounts counts() const;
+  Schedule schedule() const { return rounds_ ? Schedule::kRounds : Schedule::kQueue; }
   std::uint64_t rounds() const { return rounds_ ? rounds_->rounds() : runs_; }
   const SurfaceDefects& defects() const { return defects_; }
 

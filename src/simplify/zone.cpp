@@ -29,6 +29,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   const auto first_vertex = static_cast<Index>(vertices.size());
   const auto first_half_edge = static_cast<Index>(half_edges.size());
   vertices.resize(vertices.size() + piece.positions.size());
+  states.resize(vertices.size(), VertexState::kIncomplete);
   half_edges.resize(half_edge_count);
   cost.resize(half_edge_count, kUnknownCost);
   tie.resize(half_edge_count, 0);
@@ -126,17 +127,17 @@ void Zone::settle_front(const SurfacePiece& piece, Index first_vertex, const Exe
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = piece_vertex(piece, first_vertex, piece.incomplete[n]);
   for (Index v = first_vertex; v < vertices.size(); ++v) settled.push_back(v);
-  for (const Index v : settled) vertices[v].state = VertexState::kComplete;
-  for (const Index v : front) vertices[v].state = VertexState::kIncomplete;
-  for (const Index n : piece.locked) vertices[piece_vertex(piece, first_vertex, n)].state = VertexState::kLocked;
+  for (const Index v : settled) states[v] = VertexState::kComplete;
+  for (const Index v : front) states[v] = VertexState::kIncomplete;
+  for (const Index n : piece.locked) states[piece_vertex(piece, first_vertex, n)] = VertexState::kLocked;
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
-    if (vertices[v].state == VertexState::kComplete && exists(vertices[v].half_edge)) initial_quadric(v);
+    if (states[v] == VertexState::kComplete && exists(vertices[v].half_edge)) initial_quadric(v);
   });
   front_ = std::move(front);
   std::erase_if(open_half_edges_, [&](Index h) {
-    const bool incomplete = vertices[origin(h)].state == VertexState::kIncomplete ||
-                            vertices[destination(h)].state == VertexState::kIncomplete;
+    const bool incomplete =
+        states[origin(h)] == VertexState::kIncomplete || states[destination(h)] == VertexState::kIncomplete;
     return twin(h) != kNone || !incomplete;
   });
 }
@@ -185,8 +186,10 @@ void Zone::key_edges(Index first_half_edge, const Executor& executor) {
     const Index h = edges[static_cast<std::size_t>(n)];
     const Vertex& u = vertices[origin(h)];
     const Vertex& v = vertices[destination(h)];
-    if (u.state == VertexState::kIncomplete || v.state == VertexState::kIncomplete) return;
-    const bool locked = u.state == VertexState::kLocked || v.state == VertexState::kLocked;
+    const VertexState u_state = states[origin(h)];
+    const VertexState v_state = states[destination(h)];
+    if (u_state == VertexState::kIncomplete || v_state == VertexState::kIncomplete) return;
+    const bool locked = u_state == VertexState::kLocked || v_state == VertexState::kLocked;
     set_cost(h, locked ? kRetiredCost : edge_cost(u, v));
     const std::uint64_t mixed = mix_bits(options_.numbering.edge_id(u.id, v.id));
     tie[h] = mixed;
@@ -222,12 +225,14 @@ void Zone::compact() {
   for (Index v = 0; v < vertices.size(); ++v) {
     if (new_vertex[v] == kNone) continue;
     vertices[count] = vertices[v];
+    states[count] = states[v];
     Index& first = vertices[count].half_edge;
     if (exists(first)) first = new_triangle[first / 3] == kNone ? kNone : moved_half_edge(first);
     if (!normals.empty()) normals[count] = normals[v];
     new_vertex[v] = count++;
   }
   vertices.resize(count);
+  states.resize(count);
   if (!normals.empty()) normals.resize(count);
 
   for (Index t = 0; t < new_triangle.size(); ++t) {
@@ -250,7 +255,7 @@ void Zone::compact() {
 }
 
 std::uint64_t Zone::bytes() const {
-  return vertices.capacity() * sizeof(Vertex) + normals.capacity() * sizeof(Point) +
+  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) + normals.capacity() * sizeof(Point) +
          half_edges.capacity() * sizeof(HalfEdge) + cost.capacity() * sizeof(CostBits) +
          tie.capacity() * sizeof(std::uint64_t) +
          (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity()) * sizeof(Index);

@@ -31,15 +31,18 @@ enum class VertexState : std::uint8_t {
   kLocked,  // stays where it is; all its edges are retired from the start
 };
 
+inline constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
+
 struct alignas(64) Vertex {
   Vec3 position;
   Quadric quadric;  // relative to position
   std::uint64_t id = 0;
-  std::uint64_t output = 0;  // number in the output, once written
-  Index half_edge = kNone;   // one that starts here; on a border the one without a twin; kNone: the vertex is gone
-  VertexState state = VertexState::kIncomplete;
-  bool written = false;
+  std::uint64_t output = kNotWritten;  // number in the output
+  Index half_edge = kNone;  // one that starts here; on a border the one without a twin; kNone: the vertex is gone
+  Index component = 0;      // of the written surface, once written
 };
+
+static_assert(sizeof(Vertex) == 128, "two cache lines");
 
 struct HalfEdge {
   Index vertex;  // kNone in a triangle that is gone
@@ -57,7 +60,8 @@ class Zone {
   explicit Zone(const ZoneOptions& options) : options_(options) {}
 
   std::vector<Vertex> vertices;
-  std::vector<Point> normals;  // parallel to vertices, or empty: sum of the unit normals merged into each
+  std::vector<VertexState> states;  // parallel to vertices
+  std::vector<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
   std::vector<HalfEdge> half_edges;
   std::vector<CostBits> cost;      // of the edge, equal on both half-edges
   std::vector<std::uint64_t> tie;  // likewise

@@ -16,6 +16,7 @@ class SliceWindow {
 
   const VolumeInfo& info() const { return source_.info(); }
   std::int64_t end() const { return end_; }
+  std::uint64_t bytes() const { return buffer_.capacity(); }
 
   // Drops slices before `first` and reads on up to `end`, both clipped to the volume. Windows only move forward.
   // Returns the number of slices read; they are the last ones held.

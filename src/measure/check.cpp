@@ -1,0 +1,202 @@
+// Counts of a mesh from its triangles alone. Edges are found by sorting: every triangle records its three sides under
+// the smaller of their vertices, and the sides of one vertex, a handful, are sorted by the other.
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "measure/geometry.hpp"
+
+namespace isoweave {
+namespace {
+
+using measure::operator-;
+using Triangle = std::array<std::uint32_t, 3>;
+
+// A corner is numbered 3 * triangle + place; a side has the number of the corner it starts from.
+struct Side {
+  std::uint32_t high;    // the larger vertex; the smaller one is known from where the side is stored
+  bool from_high;        // runs from the larger to the smaller vertex
+  std::uint64_t corner;  // where it starts
+
+  bool operator<(const Side& other) const { return high != other.high ? high < other.high : corner < other.corner; }
+};
+
+std::uint64_t next_corner(std::uint64_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+// Sides grouped by their smaller vertex: those of vertex v are [first[v], first[v + 1]).
+struct SideTable {
+  std::vector<std::uint64_t> first;
+  std::vector<Side> sides;
+};
+
+// Union-find with path halving. The smaller root wins, so the sets do not depend on anything but their members.
+template <class Index>
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+
+  Index root(Index i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  void unite(Index a, Index b) {
+    a = root(a);
+    b = root(b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+// Calls visit(corner, from, to) for the sides of all triangles with three different vertices.
+template <class Visit>
+void for_each_side(const TriangleMesh& mesh, Visit&& visit) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (is_degenerate(triangle)) continue;
+    for (std::size_t i = 0; i < 3; ++i) visit(3 * t + i, triangle[i], triangle[(i + 1) % 3]);
+  }
+}
+
+SideTable group_sides(const TriangleMesh& mesh) {
+  SideTable table;
+  table.first.assign(mesh.vertices.size() + 1, 0);
+  for_each_side(mesh, [&](std::uint64_t, std::uint32_t from, std::uint32_t to) { ++table.first[std::min(from, to)]; });
+  std::uint64_t total = 0;
+  for (std::uint64_t& entry : table.first) {
+    total += entry;
+    entry = total;  // the end of the group for now; storing from the back turns it into the beginning
+  }
+  table.sides.resize(total);
+  for_each_side(mesh, [&](std::uint64_t corner, std::uint32_t from, std::uint32_t to) {
+    table.sides[--table.first[std::min(from, to)]] = {std::max(from, to), from > to, corner};
+  });
+  return table;
+}
+
+// Calls visit(low, high, sides) for every edge, with the sides of all triangles along it.
+template <class Visit>
+void for_each_edge(SideTable& table, Visit&& visit) {
+  for (std::size_t low = 0; low + 1 < table.first.size(); ++low) {
+    const std::span<Side> group =
+        std::span(table.sides).subspan(table.first[low], table.first[low + 1] - table.first[low]);
+    std::sort(group.begin(), group.end());
+    for (std::size_t begin = 0, end = 0; begin < group.size(); begin = end) {
+      while (end < group.size() && group[end].high == group[begin].high) ++end;
+      visit(low, group[begin].high, group.subspan(begin, end - begin));
+    }
+  }
+}
+
+class Checker {
+ public:
+  explicit Checker(const TriangleMesh& mesh)
+      : mesh_(mesh), corners_(3 * mesh.triangles.size()), at_bad_edge_(mesh.vertices.size()) {}
+
+  MeshCheck run() {
+    result_.triangles = mesh_.triangles.size();
+    count_degenerate();
+    count_edges();
+    count_fans();
+    count_components();
+    result_.euler = static_cast<std::int64_t>(result_.vertices) - static_cast<std::int64_t>(edges_) +
+                    static_cast<std::int64_t>(result_.triangles - result_.degenerate_triangles);
+    measure_surface();
+    return result_;
+  }
+
+ private:
+  void count_degenerate() {
+    const auto count = std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_degenerate);
+    result_.degenerate_triangles = static_cast<std::uint64_t>(count);
+  }
+
+  void count_edges() {
+    SideTable table = group_sides(mesh_);
+    for_each_edge(table, [&](std::size_t low, std::size_t high, std::span<const Side> sides) {
+      ++edges_;
+      if (sides.size() == 1) {
+        ++result_.open_edges;
+      } else if (sides.size() == 2) {
+        if (sides[0].from_high == sides[1].from_high) ++result_.misoriented_edges;
+        join_corners(sides[0], sides[1]);
+      } else {
+        ++result_.nonmanifold_edges;
+        at_bad_edge_[low] = at_bad_edge_[high] = 1;
+      }
+    });
+  }
+
+  // Two triangles that share an edge belong to one fan around each of its ends.
+  void join_corners(const Side& a, const Side& b) {
+    const auto corner_at = [](const Side& side, bool high) {
+      return side.from_high == high ? side.corner : next_corner(side.corner);
+    };
+    corners_.unite(corner_at(a, true), corner_at(b, true));
+    corners_.unite(corner_at(a, false), corner_at(b, false));
+  }
+
+  // Corners that are still roots stand for one fan each.
+  void count_fans() {
+    std::vector<std::uint8_t> fans(mesh_.vertices.size(), 0);
+    for_each_side(mesh_, [&](std::uint64_t corner, std::uint32_t vertex, std::uint32_t) {
+      if (corners_.root(corner) == corner && fans[vertex] < 2) ++fans[vertex];
+    });
+    for (std::size_t v = 0; v < fans.size(); ++v) {
+      ++(fans[v] > 0 ? result_.vertices : result_.unused_vertices);
+      if (fans[v] > 1 || at_bad_edge_[v] != 0) ++result_.nonmanifold_vertices;
+    }
+  }
+
+  void count_components() {
+    DisjointSets<std::uint32_t> sets(mesh_.vertices.size());
+    std::vector<std::uint8_t> used(mesh_.vertices.size(), 0);
+    for_each_side(mesh_, [&](std::uint64_t, std::uint32_t from, std::uint32_t to) {
+      sets.unite(from, to);
+      used[from] = 1;
+    });
+    for (std::uint32_t v = 0; v < used.size(); ++v) {
+      if (used[v] != 0 && sets.root(v) == v) ++result_.components;
+    }
+  }
+
+  // Volumes of tetrahedra over a point of the mesh: over the origin, a mesh far from it would lose digits.
+  void measure_surface() {
+    if (mesh_.triangles.empty()) return;
+    const measure::Vector apex = measure::corners_of(mesh_, 0)[0];
+    double six_volumes = 0;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const measure::TriangleCorners c = measure::corners_of(mesh_, t);
+      result_.area += measure::area_of(c);
+      six_volumes += measure::dot(c[0] - apex, measure::cross(c[1] - apex, c[2] - apex));
+      const Triangle& v = mesh_.triangles[t];
+      result_.digest += triangle_digest(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
+    }
+    result_.volume = six_volumes / 6;
+  }
+
+  const TriangleMesh& mesh_;
+  MeshCheck result_;
+  std::uint64_t edges_ = 0;
+  DisjointSets<std::uint64_t> corners_;
+  std::vector<std::uint8_t> at_bad_edge_;  // of each vertex: an end of a non-manifold edge
+};
+
+}  // namespace
+
+MeshCheck check_mesh(const TriangleMesh& mesh) {
+  measure::require_indices_in_range(mesh);
+  return Checker(mesh).run();
+}
+
+}  // namespace isoweave

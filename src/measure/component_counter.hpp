@@ -1,0 +1,33 @@
+// Connected components of a surface that is seen piece by piece.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace isoweave {
+
+// Union-find over labels. compact() forgets labels that no longer matter, so memory follows the vertices held.
+class ComponentCounter {
+ public:
+  // A new component of one vertex; returns its label.
+  std::uint32_t add();
+
+  // The two labels name the same component from now on.
+  void join(std::uint32_t a, std::uint32_t b);
+
+  // Components so far.
+  std::uint64_t count() const { return added_ - joined_; }
+
+  // Renumbers the labels of the vertices still held, in place; all other labels become invalid.
+  void compact(std::span<std::uint32_t*> labels);
+
+ private:
+  std::uint32_t root(std::uint32_t label);
+
+  std::vector<std::uint32_t> parent_;
+  std::uint64_t added_ = 0;
+  std::uint64_t joined_ = 0;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,130 @@
+// Distance between two surfaces: points spread over each by area, exact distances to the other.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "measure/geometry.hpp"
+#include "measure/splitmix64.hpp"
+#include "measure/triangle_tree.hpp"
+#include "parallel/parallel.hpp"
+
+namespace isoweave {
+namespace {
+
+using measure::operator*;
+using measure::operator+;
+using measure::operator-;
+using measure::Vector;
+
+constexpr std::int64_t kSamplesPerBlock = 1024;
+
+// Point i of n lies in the i-th of n parts of equal area, in the order of the triangles: neighbours in number are
+// neighbours on the surface, and every part of it is met. Pure functions of (seed, i).
+class AreaSampler {
+ public:
+  AreaSampler(const TriangleMesh& mesh, const DistanceOptions& options)
+      : mesh_(mesh), samples_(options.samples), key_(measure::splitmix64(options.seed)) {
+    cumulative_.reserve(mesh.triangles.size());
+    double total = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      total += measure::area_of(measure::corners_of(mesh, t));
+      cumulative_.push_back(total);
+    }
+    // Without area, all triangles count alike: they still are somewhere.
+    if (!(total > 0) || !std::isfinite(total)) std::iota(cumulative_.begin(), cumulative_.end(), 1.0);
+  }
+
+  Vector point(std::uint64_t i) const {
+    const double part = (static_cast<double>(i) + uniform(3 * i)) / static_cast<double>(samples_);
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), part * cumulative_.back());
+    const std::size_t last = cumulative_.size() - 1;
+    const std::size_t triangle = std::min(last, static_cast<std::size_t>(found - cumulative_.begin()));
+    const measure::TriangleCorners c = measure::corners_of(mesh_, triangle);
+    // The root spreads points evenly between a corner, where the triangle is narrow, and the side across.
+    const double across = std::sqrt(uniform(3 * i + 1));
+    const double along = uniform(3 * i + 2);
+    return c[0] + (across * (1 - along)) * (c[1] - c[0]) + (across * along) * (c[2] - c[0]);
+  }
+
+ private:
+  // In [0, 1).
+  double uniform(std::uint64_t counter) const {
+    return static_cast<double>(measure::splitmix64(key_ + counter) >> 11U) * 0x1p-53;
+  }
+
+  const TriangleMesh& mesh_;
+  std::uint64_t samples_;
+  std::uint64_t key_;
+  std::vector<double> cumulative_;
+};
+
+struct Sums {
+  double distance = 0, squared = 0, max = 0;
+};
+
+Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, std::int64_t begin, std::int64_t end) {
+  Sums sums;
+  std::size_t hint = measure::TriangleTree::kNoHint;
+  for (std::int64_t i = begin; i < end; ++i) {
+    const double squared = tree.squared_distance_from(sampler.point(static_cast<std::uint64_t>(i)), hint);
+    const double distance = std::sqrt(squared);
+    sums.distance += distance;
+    sums.squared += squared;
+    sums.max = std::max(sums.max, distance);
+  }
+  return sums;
+}
+
+// Blocks are fixed and their sums are added in their order: the result is the same for any number of threads.
+OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const DistanceOptions& options,
+                       const Executor& executor) {
+  const AreaSampler sampler(from, options);
+  const measure::TriangleTree tree(to, executor);
+  const std::int64_t samples = static_cast<std::int64_t>(options.samples);
+  std::vector<Sums> blocks(static_cast<std::size_t>((samples + kSamplesPerBlock - 1) / kSamplesPerBlock));
+  executor.for_blocks(samples, kSamplesPerBlock, [&](std::int64_t begin, std::int64_t end) {
+    blocks[static_cast<std::size_t>(begin / kSamplesPerBlock)] = block_sums(sampler, tree, begin, end);
+  });
+  Sums total;
+  for (const Sums& block : blocks) {
+    total.distance += block.distance;
+    total.squared += block.squared;
+    total.max = std::max(total.max, block.max);
+  }
+  const double count = static_cast<double>(samples);
+  return {total.distance / count, std::sqrt(total.squared / count), total.max};
+}
+
+void check_arguments(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) throw std::invalid_argument("expected a mesh with triangles, found none");
+  if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
+  measure::require_indices_in_range(mesh);
+  for (const Point& p : mesh.vertices) {
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
+      throw std::invalid_argument("a vertex has a coordinate that is not finite");
+    }
+  }
+}
+
+}  // namespace
+
+MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options) {
+  check_arguments(a);
+  check_arguments(b);
+  if (options.samples == 0) throw std::invalid_argument("expected at least one sample");
+  const Executor executor(options.threads);
+  MeshDistance result;
+  result.a_to_b = one_way(a, b, options, executor);
+  result.b_to_a = one_way(b, a, options, executor);
+  const auto& [ab, ba] = std::pair(result.a_to_b, result.b_to_a);
+  result.mean = (ab.mean + ba.mean) / 2;
+  result.rms = std::sqrt((ab.rms * ab.rms + ba.rms * ba.rms) / 2);
+  result.max = std::max(ab.max, ba.max);
+  return result;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,45 @@
+// Vectors in double for measures of float32 meshes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave::measure {
+
+using Vector = std::array<double, 3>;
+
+inline Vector vector_of(const Point& p) { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vector operator*(double s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+using TriangleCorners = std::array<Vector, 3>;
+
+inline TriangleCorners corners_of(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {vector_of(mesh.vertices[t[0]]), vector_of(mesh.vertices[t[1]]), vector_of(mesh.vertices[t[2]])};
+}
+
+inline double area_of(const TriangleCorners& t) {
+  const Vector normal = cross(t[1] - t[0], t[2] - t[0]);
+  return 0.5 * std::sqrt(dot(normal, normal));
+}
+
+// Meshes may come from any program: measures look before they follow an index.
+inline void require_indices_in_range(const TriangleMesh& mesh) {
+  for (const auto& triangle : mesh.triangles) {
+    if (std::max({triangle[0], triangle[1], triangle[2]}) >= mesh.vertices.size()) {
+      throw std::invalid_argument("a triangle refers to a vertex that the mesh does not have");
+    }
+  }
+}
+
+}  // namespace isoweave::measure

@@ -1,0 +1,53 @@
+#include "pipeline/sweep.hpp"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+
+std::uint64_t peak_process_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+double cube_root(double x) {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  while (exponent % 3 != 0) {
+    mantissa *= 2;
+    --exponent;
+  }
+  double root = 1;
+  for (int step = 0; step < 8; ++step) root = (2 * root + mantissa / (root * root)) / 3;
+  return std::ldexp(root, exponent / 3);
+}
+
+CostBits retire_cost(double error, double a0) {
+  if (!(error >= 0) || std::isinf(error)) {
+    throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
+  }
+  // Edges whose keys are not known yet have cost 0 and must stay live, also when nothing is simplified.
+  return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
+}
+
+void check_stop(const RunControl& control) {
+  if (control.stop != nullptr && control.stop->load()) throw Interrupted("interrupted");
+}
+
+void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
+  const DecisionCounts counts = simplifier.counts();
+  report.collapses = counts.collapses;
+  report.postponed = counts.postponed;
+  report.rekeyed = counts.rekeyed;
+  report.rounds = simplifier.rounds();
+  report.nonmanifold_edges = simplifier.defects().nonmanifold_edges;
+  report.nonmanifold_vertices = simplifier.defects().nonmanifold_vertices;
+}
+
+}  // namespace isoweave

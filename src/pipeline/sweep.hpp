@@ -1,0 +1,39 @@
+// What the sweeps over volumes and over meshes share: clock, memory, error, checks of options.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "isoweave/pipeline.hpp"
+#include "simplify/simplifier.hpp"
+
+namespace isoweave {
+
+// Adds the time since the last lap to one of the report's stages.
+class Stopwatch {
+ public:
+  void lap(double& stage) {
+    const auto now = std::chrono::steady_clock::now();
+    stage += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// Largest resident memory of the process so far.
+std::uint64_t peak_process_bytes();
+
+// Cube root by Newton's method: additions, multiplications and divisions only, so equal on every machine.
+double cube_root(double x);
+
+// The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN.
+CostBits retire_cost(double error, double a0);
+
+void check_stop(const RunControl& control);
+
+// Copies the simplifier's counters.
+void report_simplifier(const Simplifier& simplifier, MeshReport& report);
+
+}  // namespace isoweave
