@@ -49,7 +49,7 @@ TriangleMesh read_surface(const std::string& path) {
 void run_compare(const CompareArguments& arguments) {
   DistanceOptions options;
   options.samples = static_cast<std::uint64_t>(parse_count("--samples", arguments.samples));
-  options.threads = run_control({arguments.threads}).threads;
+  options.threads = parse_threads(arguments.threads);
   const double voxel = arguments.voxel.empty() ? 0 : parse_number("--voxel", arguments.voxel);
   if (!arguments.voxel.empty() && !(voxel > 0)) wrong_value("--voxel", "a positive length", arguments.voxel);
   exit_on_signal();

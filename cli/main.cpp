@@ -25,10 +25,12 @@ isoweave VERB --help says more.)";
 
 void check_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
   std::string verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    if (!arguments.empty() && verb->get_name() == arguments[0]) return;
+    verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  }
   if (arguments.empty()) throw std::invalid_argument("expected a verb: " + verbs + "; see isoweave --help");
-  if (arguments[0].starts_with('-') || app.get_subcommand_no_throw(arguments[0]) != nullptr) return;
-  wrong_value("verb", "one of " + verbs, arguments[0]);
+  if (!arguments[0].starts_with('-')) wrong_value("verb", "one of " + verbs, arguments[0]);
 }
 
 int run(const std::vector<std::string>& arguments) {

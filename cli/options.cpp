@@ -157,13 +157,16 @@ void add_run_options(CLI::App& verb, RunOptions& run) {
   verb.add_flag("--quiet", run.quiet, "Say nothing but errors");
 }
 
+int parse_threads(std::string_view text) {
+  if (text == "all") return 0;
+  const std::int64_t threads = parse_count("--threads", text);
+  if (threads > kMostThreads) wrong_value("--threads", fmt::format("at most {}", kMostThreads), text);
+  return static_cast<int>(threads);
+}
+
 RunControl run_control(const RunOptions& run) {
   RunControl control;
-  if (run.threads != "all") {
-    const std::int64_t threads = parse_count("--threads", run.threads);
-    if (threads > kMostThreads) wrong_value("--threads", fmt::format("at most {}", kMostThreads), run.threads);
-    control.threads = static_cast<int>(threads);
-  }
+  control.threads = parse_threads(run.threads);
   control.schedule = parse_choice<Schedule>(
       "--schedule", run.schedule,
       {{"auto", Schedule::kAutomatic}, {"queue", Schedule::kQueue}, {"rounds", Schedule::kRounds}});

@@ -65,6 +65,7 @@ struct RunOptions {
   bool quiet = false;
 };
 
+int parse_threads(std::string_view text);  // 0: all
 void add_run_options(CLI::App& verb, RunOptions& run);
 
 // The part of RunControl that options decide. Throws DeviceError when the device asked for is not there.
