@@ -1,0 +1,76 @@
+// isoweave check: counts and defects of a mesh. Defects are findings, not errors.
+#include <memory>
+
+#include "isoweave/measure.hpp"
+#include "options.hpp"
+#include "output.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+struct CheckArguments {
+  std::string path;
+  bool json = false;
+};
+
+Json check_json(const MeshCheck& check, const std::string& path) {
+  return {{"version", ISOWEAVE_VERSION},
+          {"path", path},
+          {"triangles", check.triangles},
+          {"vertices", check.vertices},
+          {"unused_vertices", check.unused_vertices},
+          {"open_edges", check.open_edges},
+          {"nonmanifold_edges", check.nonmanifold_edges},
+          {"nonmanifold_vertices", check.nonmanifold_vertices},
+          {"misoriented_edges", check.misoriented_edges},
+          {"degenerate_triangles", check.degenerate_triangles},
+          {"components", check.components},
+          {"euler", check.euler},
+          {"area", number_or_null(check.area)},
+          {"volume", number_or_null(check.volume)},
+          {"digest", digest_text(check.digest)}};
+}
+
+std::string check_text(const MeshCheck& check, const std::string& path) {
+  std::string text =
+      fmt::format("{}: {}{}\n", path, state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),
+                  check.misoriented_edges == 0 ? ", consistently oriented" : ", not consistently oriented");
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<22}{:>18}\n", name, value);
+  };
+  line("triangles", grouped(check.triangles));
+  line("vertices", grouped(check.vertices));
+  line("unused vertices", grouped(check.unused_vertices));
+  line("open edges", grouped(check.open_edges));
+  line("non-manifold edges", grouped(check.nonmanifold_edges));
+  line("non-manifold vertices", grouped(check.nonmanifold_vertices));
+  line("misoriented edges", grouped(check.misoriented_edges));
+  line("degenerate triangles", grouped(check.degenerate_triangles));
+  line("components", grouped(check.components));
+  line("Euler number", std::to_string(check.euler));
+  line("area", fmt::format("{:.9g}", check.area));
+  line("volume", fmt::format("{:.9g}", check.volume));
+  line("digest", digest_text(check.digest));
+  return text;
+}
+
+void run_check(const CheckArguments& arguments) {
+  exit_on_signal();
+  const MeshCheck check = check_mesh(read_mesh(arguments.path));
+  print_out(arguments.json ? json_text(check_json(check, arguments.path)) : check_text(check, arguments.path));
+}
+
+}  // namespace
+
+void add_check_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
+  const auto arguments = std::make_shared<CheckArguments>();
+  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL or OBJ")->required();
+  verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->callback([arguments] { run_check(*arguments); });
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,213 @@
+#include "options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+
+#include "isoweave/error.hpp"
+#include "output.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr std::string_view kGeneratePrefix = "generate:";
+constexpr std::int64_t kMostThreads = 4096;
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// The whole text as a number, or nothing.
+template <class T>
+std::optional<T> to_number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<double> to_finite(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const std::optional<double> value = to_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const std::filesystem::path first = std::filesystem::weakly_canonical(a, error);
+  const std::filesystem::path second = std::filesystem::weakly_canonical(b, error);
+  return !error && first == second;
+}
+
+}  // namespace
+
+void wrong_value(std::string_view option, std::string_view expected, std::string_view found) {
+  throw std::invalid_argument(fmt::format("{}: expected {}, found '{}'", option, expected, found));
+}
+
+double parse_number(std::string_view option, std::string_view text) {
+  const std::optional<double> value = to_finite(text);
+  if (!value) wrong_value(option, "a number", text);
+  return *value;
+}
+
+std::int64_t parse_count(std::string_view option, std::string_view text) {
+  const std::optional<std::int64_t> value = to_number<std::int64_t>(text);
+  if (!value || *value < 1) wrong_value(option, "a whole number of at least 1", text);
+  return *value;
+}
+
+std::array<double, 3> parse_triple(std::string_view option, std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ',');
+  std::array<double, 3> values{};
+  if (parts.size() != values.size()) wrong_value(option, "three numbers x,y,z", text);
+  for (std::size_t axis = 0; axis < values.size(); ++axis) {
+    const std::optional<double> value = to_finite(parts[axis]);
+    if (!value) wrong_value(option, "three numbers x,y,z", text);
+    values[axis] = *value;
+  }
+  return values;
+}
+
+std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text) {
+  std::vector<std::string_view> parts = split(text, 'x');
+  if (parts.size() == 1) parts.assign(3, parts[0]);
+  std::array<std::int64_t, 3> dims{};
+  if (parts.size() != dims.size()) wrong_value(option, "WxHxD with sides of at least 1", text);
+  for (std::size_t axis = 0; axis < dims.size(); ++axis) {
+    const std::optional<std::int64_t> side = to_number<std::int64_t>(parts[axis]);
+    if (!side || *side < 1) wrong_value(option, "WxHxD with sides of at least 1", text);
+    dims[axis] = *side;
+  }
+  return dims;
+}
+
+Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit) {
+  try {
+    const Length length = parse_length(text, unit);
+    if (std::isfinite(length.value) && length.value >= 0) return length;
+  } catch (const std::invalid_argument&) {
+    // The library does not know which option the text came from.
+  }
+  wrong_value(option, "a length of at least 0 such as 0.2vox, 0.05mm, 30um or 500nm", text);
+}
+
+Quality parse_quality(std::string_view text) {
+  return parse_choice<Quality>("--quality", text,
+                               {{"fast", Quality::kFast}, {"normal", Quality::kNormal}, {"fine", Quality::kFine}});
+}
+
+void add_input_options(CLI::App& verb, InputOptions& input) {
+  verb.add_option("VOLUME", input.path, "Volume file, or generate:KIND:WxHxD[:TYPE[:SEED]]")->required();
+  verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
+  verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
+  verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
+}
+
+std::optional<GenerateOptions> generated_input(const InputOptions& input) {
+  if (!input.path.starts_with(kGeneratePrefix)) return std::nullopt;
+  if (!input.raw.empty()) throw std::invalid_argument("--raw does not go with a generated volume");
+  if (!input.origin.empty()) throw std::invalid_argument("--origin does not go with a generated volume");
+  const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
+  if (parts.size() < 2 || parts.size() > 4) wrong_value("VOLUME", "generate:KIND:WxHxD[:TYPE[:SEED]]", input.path);
+  GenerateOptions options;
+  options.kind = parts[0];
+  options.dims = parse_size("VOLUME", parts[1]);
+  if (parts.size() > 2) {
+    const std::optional<SampleType> type = parse_sample_type(parts[2]);
+    if (!type) wrong_value("VOLUME", "a type such as uint8, int16 or float32", parts[2]);
+    options.type = *type;
+  }
+  if (parts.size() > 3) {
+    const std::optional<std::uint64_t> seed = to_number<std::uint64_t>(parts[3]);
+    if (!seed) wrong_value("VOLUME", "a seed that is a whole number", parts[3]);
+    options.seed = *seed;
+  }
+  if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
+  return options;
+}
+
+std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
+  if (const std::optional<GenerateOptions> generated = generated_input(input)) return generate_volume(*generated);
+  OpenOptions options;
+  if (!input.raw.empty()) options.raw = parse_raw_layout(input.raw);
+  if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
+  if (!input.origin.empty()) options.origin = parse_triple("--origin", input.origin);
+  return open_volume(input.path, options);
+}
+
+void add_run_options(CLI::App& verb, RunOptions& run) {
+  verb.add_option("--threads", run.threads, "Threads, or all; never changes the result")->capture_default_str();
+  verb.add_option("--device", run.device, "auto, cpu or cuda")->capture_default_str();
+  verb.add_option("--schedule", run.schedule,
+                  "auto, queue (one thread, the reference) or rounds; never changes the result")
+      ->capture_default_str();
+  verb.add_option("--report", run.report, "Write what was done and measured to this JSON file");
+  verb.add_option("--progress", run.progress, "auto (a bar on a terminal), always or never")->capture_default_str();
+  verb.add_flag("--quiet", run.quiet, "Say nothing but errors");
+}
+
+int parse_threads(std::string_view text) {
+  if (text == "all") return 0;
+  const std::int64_t threads = parse_count("--threads", text);
+  if (threads > kMostThreads) wrong_value("--threads", fmt::format("at most {}", kMostThreads), text);
+  return static_cast<int>(threads);
+}
+
+RunControl run_control(const RunOptions& run) {
+  RunControl control;
+  control.threads = parse_threads(run.threads);
+  control.schedule = parse_choice<Schedule>(
+      "--schedule", run.schedule,
+      {{"auto", Schedule::kAutomatic}, {"queue", Schedule::kQueue}, {"rounds", Schedule::kRounds}});
+  if (parse_choice<bool>("--device", run.device, {{"auto", false}, {"cpu", false}, {"cuda", true}})) {
+    throw DeviceError("--device cuda: this build has no CUDA back end");
+  }
+  return control;
+}
+
+ProgressMode progress_mode(const std::string& progress, bool quiet) {
+  const auto mode = parse_choice<ProgressMode>(
+      "--progress", progress,
+      {{"auto", ProgressMode::kAuto}, {"always", ProgressMode::kAlways}, {"never", ProgressMode::kNever}});
+  return quiet ? ProgressMode::kNever : mode;
+}
+
+void check_different(std::initializer_list<std::string_view> paths) {
+  for (const std::string_view* a = paths.begin(); a != paths.end(); ++a) {
+    for (const std::string_view* b = a + 1; b != paths.end(); ++b) {
+      if (!a->empty() && !b->empty() && same_file(*a, *b)) {
+        throw std::invalid_argument(fmt::format("{}: would be written over {}, expected different files", *b, *a));
+      }
+    }
+  }
+}
+
+void refuse_unavailable(const std::vector<std::string>& arguments) {
+  const std::string_view full = ISOWEAVE_VERSION;
+  const std::string_view version = full.substr(0, full.rfind('.'));
+  const auto refuse = [&](std::string_view what) {
+    throw std::invalid_argument(fmt::format("{} is not available in version {}", what, version));
+  };
+  if (!arguments.empty() && arguments[0] == "view") refuse("view");
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return;
+    const std::string name = argument.substr(0, argument.find('='));
+    for (const std::string_view option : {"--triangles", "--ratio", "--memory", "--checkpoint", "--every", "--resume",
+                                          "--max-distance", "--lods", "--html", "--dry-run"}) {
+      if (name == option) refuse(option);
+    }
+  }
+}
+
+}  // namespace isoweave::cli

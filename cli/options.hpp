@@ -1,0 +1,81 @@
+// Options that several verbs share, and the parsing of their values. Every wrong value is a std::invalid_argument
+// that names the option, what was expected and what was found.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "isoweave/generate.hpp"
+#include "isoweave/pipeline.hpp"
+#include "isoweave/volume.hpp"
+#include "progress.hpp"
+
+namespace isoweave::cli {
+
+[[noreturn]] void wrong_value(std::string_view option, std::string_view expected, std::string_view found);
+
+double parse_number(std::string_view option, std::string_view text);
+std::int64_t parse_count(std::string_view option, std::string_view text);                // at least 1
+std::array<double, 3> parse_triple(std::string_view option, std::string_view text);      // "x,y,z"
+std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text);  // "N" or "WxHxD"
+
+// parse_length with the option's name in its message; refuses what is not a usable error.
+Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit);
+
+// One of a few words.
+template <class T>
+T parse_choice(std::string_view option, std::string_view text,
+               std::initializer_list<std::pair<std::string_view, T>> of) {
+  std::string expected;
+  for (const auto& [name, value] : of) {
+    if (name == text) return value;
+    expected += (expected.empty() ? "" : ", ") + std::string(name);
+  }
+  wrong_value(option, "one of " + expected, text);
+}
+
+Quality parse_quality(std::string_view text);
+
+// Where a volume comes from: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
+struct InputOptions {
+  std::string path;
+  std::string raw, spacing, origin;
+};
+
+void add_input_options(CLI::App& verb, InputOptions& input);
+std::optional<GenerateOptions> generated_input(const InputOptions& input);
+std::unique_ptr<SliceSource> open_input(const InputOptions& input);
+
+// How a run is carried out, and what it tells.
+struct RunOptions {
+  std::string threads = "all", device = "auto", schedule = "auto";
+  std::string report;
+  std::string progress = "auto";
+  bool quiet = false;
+};
+
+int parse_threads(std::string_view text);  // 0: all
+void add_run_options(CLI::App& verb, RunOptions& run);
+
+// The part of RunControl that options decide. Throws DeviceError when the device asked for is not there.
+RunControl run_control(const RunOptions& run);
+ProgressMode progress_mode(const std::string& progress, bool quiet);
+
+// Refuses to write over what is read, and two outputs to one file.
+void check_different(std::initializer_list<std::string_view> paths);
+
+// Refuses, with a line that says so, the options and verbs that the documents promise for later versions.
+void refuse_unavailable(const std::vector<std::string>& arguments);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,40 @@
+// A run's progress on standard error: a bar on a terminal, now and then a plain line elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "isoweave/pipeline.hpp"
+
+namespace isoweave::cli {
+
+enum class ProgressMode : std::uint8_t { kAuto, kAlways, kNever };  // auto: only on a terminal
+
+class ProgressPrinter {
+ public:
+  explicit ProgressPrinter(ProgressMode mode);
+  ~ProgressPrinter();
+  ProgressPrinter(const ProgressPrinter&) = delete;
+  ProgressPrinter& operator=(const ProgressPrinter&) = delete;
+
+  void show(const Progress& progress);
+
+  // Wipes the bar off, so that other lines can follow.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool on_terminal_;
+  bool shown_;
+  bool bar_drawn_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_;
+};
+
+// The parts of a progress line; `seconds` since the start.
+std::string progress_text(const Progress& progress, double seconds);
+
+}  // namespace isoweave::cli

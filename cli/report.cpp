@@ -1,0 +1,140 @@
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "isoweave/measure.hpp"
+#include "output.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+Json sweep_json(const std::vector<SlabRecord>& sweep) {
+  Json records = Json::array();
+  for (const SlabRecord& record : sweep) {
+    records.push_back({{"layer", record.layer},
+                       {"live_triangles", record.live_triangles},
+                       {"undecided_triangles", record.undecided_triangles},
+                       {"final_triangles", record.final_triangles},
+                       {"bytes", record.bytes}});
+  }
+  return records;
+}
+
+}  // namespace
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json volume_json(const VolumeInfo& info, const std::string& path) {
+  return {{"path", path},
+          {"format", info.format},
+          {"dims", info.dims},
+          {"type", sample_type_name(info.type)},
+          {"spacing", info.geometry.spacing},
+          {"origin", info.geometry.origin},
+          {"direction", info.geometry.direction},
+          {"space", space_name(info.geometry.space)},
+          {"unit", info.geometry.unit},
+          {"slope", info.slope},
+          {"intercept", info.intercept},
+          {"notes", info.notes}};
+}
+
+void add_range(Json& input, double min, double max, std::uint64_t nan) {
+  input["min"] = min <= max ? number_or_null(min) : Json(nullptr);
+  input["max"] = min <= max ? number_or_null(max) : Json(nullptr);
+  input["nan"] = nan;
+}
+
+Json run_json(const MeshReport& report, Json input) {
+  return {{"version", ISOWEAVE_VERSION},
+          {"backend", "cpu"},
+          {"threads", report.threads},
+          {"slab", report.slab},
+          {"schedule", schedule_name(report.schedule)},
+          {"input", std::move(input)},
+          {"error", number_or_null(report.error)},
+          {"cells_crossed", report.cells_crossed},
+          {"triangles_extracted", report.triangles_extracted},
+          {"vertices_extracted", report.vertices_extracted},
+          {"collapses", report.collapses},
+          {"postponed", report.postponed},
+          {"rekeyed", report.rekeyed},
+          {"rounds", report.rounds},
+          {"triangles", report.triangles},
+          {"vertices", report.vertices},
+          {"open_edges", report.open_edges},
+          {"nonmanifold_edges", report.nonmanifold_edges},
+          {"nonmanifold_vertices", report.nonmanifold_vertices},
+          {"components", report.components},
+          {"euler", report.euler},
+          {"locked_vertices", report.locked_vertices},
+          {"digest", digest_text(report.digest)},
+          {"seconds",
+           {{"read", report.seconds_read},
+            {"extract", report.seconds_extract},
+            {"simplify", report.seconds_simplify},
+            {"write", report.seconds_write},
+            {"total", report.seconds_total}}},
+          {"memory", {{"peak_bytes", report.peak_bytes}, {"predicted_bytes", nullptr}}},
+          {"sweep", sweep_json(report.sweep)},
+          {"warnings", report.warnings}};
+}
+
+std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, nlohmann::detail::error_handler_t::replace) + "\n";
+}
+
+void write_report(AtomicFile& file, const Json& json) {
+  const std::string text = json_text(json);
+  file.write(std::as_bytes(std::span(text)));
+  file.commit();
+}
+
+std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices) {
+  std::string text = open_edges == 0 ? "closed" : fmt::format("open ({} border edges)", grouped(open_edges));
+  if (nonmanifold_edges == 0 && nonmanifold_vertices == 0) return text + ", manifold";
+  return text + fmt::format(", not manifold ({} edges, {} vertices)", grouped(nonmanifold_edges),
+                            grouped(nonmanifold_vertices));
+}
+
+void print_summary(const MeshReport& report, const std::string& output, double voxels) {
+  print_note(fmt::format("{}: {} of {} triangles, {} vertices, {}", output, grouped(report.triangles),
+                         grouped(report.triangles_extracted), grouped(report.vertices),
+                         state_text(report.open_edges, report.nonmanifold_edges, report.nonmanifold_vertices)));
+  std::string speed = fmt::format("{:.2f} s", report.seconds_total);
+  if (voxels > 0 && report.seconds_total > 0) {
+    speed += fmt::format(", {:.1f} Mvoxel/s", voxels * 1e-6 / report.seconds_total);
+  }
+  print_note(fmt::format("{}, peak memory {}, {} thread{}", speed, byte_text(report.peak_bytes), report.threads,
+                         report.threads == 1 ? "" : "s"));
+  print_note(fmt::format("digest {}", digest_text(report.digest)));
+}
+
+std::string_view space_name(Space space) {
+  switch (space) {
+    case Space::kLps:
+      return "lps";
+    case Space::kRas:
+      return "ras";
+    case Space::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string_view schedule_name(Schedule schedule) {
+  switch (schedule) {
+    case Schedule::kQueue:
+      return "queue";
+    case Schedule::kRounds:
+      return "rounds";
+    case Schedule::kAutomatic:
+      break;
+  }
+  return "auto";
+}
+
+}  // namespace isoweave::cli

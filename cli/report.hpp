@@ -1,0 +1,44 @@
+// Facts about volumes, meshes and runs, as JSON and as text.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "isoweave/pipeline.hpp"
+#include "isoweave/volume.hpp"
+#include "volume/histogram.hpp"
+#include "write/atomic_file.hpp"
+
+namespace isoweave::cli {
+
+using Json = nlohmann::ordered_json;
+
+// A number, or null for what JSON has no number for.
+Json number_or_null(double value);
+
+// The `input` part: what the header says. `path` is what the user gave.
+Json volume_json(const VolumeInfo& info, const std::string& path);
+
+// Adds min, max and nan; null where there is no value at all.
+void add_range(Json& input, double min, double max, std::uint64_t nan);
+
+// What every run reports; `input` is the first part that differs between runs on volumes and on meshes.
+Json run_json(const MeshReport& report, Json input);
+
+// JSON text that ends with a line feed. Names that are not UTF-8 do not stop it.
+std::string json_text(const Json& json);
+
+// Writes the report into a file that was opened before the run, so that nothing is computed in vain.
+void write_report(AtomicFile& file, const Json& json);
+
+// "closed, manifold" or what is not so.
+std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices);
+
+// A few lines on standard error about a run that is done.
+void print_summary(const MeshReport& report, const std::string& output, double voxels);
+
+std::string_view space_name(Space space);
+std::string_view schedule_name(Schedule schedule);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,14 @@
+// What Ctrl-C and SIGTERM do. A second one always ends the program at once.
+#pragma once
+
+#include <atomic>
+
+namespace isoweave::cli {
+
+// End with exit code 130: for verbs, and parts of verbs, that have nothing to clean up.
+void exit_on_signal();
+
+// Set a flag for the run to see.
+const std::atomic<bool>& stop_on_signal();
+
+}  // namespace isoweave::cli

@@ -1,0 +1,79 @@
+// isoweave simplify: the same simplifier on a mesh that exists already.
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "options.hpp"
+#include "output.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave simplify scan.stl -o smaller.ply --error 0.1
+  isoweave simplify brain.ply -o brain_fine.obj --error 0.5vox --quality fine
+A vox is here the square root of twice the mean triangle area.)";
+
+struct SimplifyArguments {
+  std::string input, output, error, quality = "normal";
+  RunOptions run;
+};
+
+Json report_json(const MeshReport& report, const TriangleMesh& mesh, const SimplifyArguments& arguments) {
+  std::string format = std::filesystem::path(arguments.input).extension().string();
+  if (format.starts_with('.')) format.erase(0, 1);
+  Json json = run_json(report, {{"path", arguments.input},
+                                {"format", format},
+                                {"triangles", mesh.triangles.size()},
+                                {"vertices", mesh.vertices.size()}});
+  json["quality"] = arguments.quality;
+  json["output"] = arguments.output;
+  return json;
+}
+
+void run_simplify(const SimplifyArguments& arguments) {
+  const RunOptions& run = arguments.run;
+  RunControl control = run_control(run);
+  const ProgressMode mode = progress_mode(run.progress, run.quiet);
+  const SimplifyOptions options{parse_error_length("--error", arguments.error, ""), parse_quality(arguments.quality)};
+  check_different({arguments.input, arguments.output, run.report});
+
+  exit_on_signal();
+  const TriangleMesh mesh = read_mesh(arguments.input);
+  control.stop = &stop_on_signal();
+  std::optional<AtomicFile> report_file;
+  if (!run.report.empty()) report_file.emplace(run.report);
+  const std::unique_ptr<MeshSink> sink = open_mesh_file(
+      arguments.output, {false,
+                         {"isoweave " ISOWEAVE_VERSION,
+                          fmt::format("simplified, error {} quality {}", arguments.error, arguments.quality)}});
+  ProgressPrinter printer(mode);
+  control.progress = [&](const Progress& progress) { printer.show(progress); };
+  const MeshReport report = simplify_mesh(mesh, *sink, options, control);
+  printer.finish();
+  if (report_file) write_report(*report_file, report_json(report, mesh, arguments));
+  if (run.quiet) return;
+  for (const std::string& warning : report.warnings) print_note("warning: " + warning);
+  print_summary(report, arguments.output, 0);
+}
+
+}  // namespace
+
+void add_simplify_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
+  const auto arguments = std::make_shared<SimplifyArguments>();
+  verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL or OBJ")->required();
+  verb->add_option("-o,--output", arguments->output, "Mesh to write: .ply, .stl or .obj")->required();
+  verb->add_option("--error", arguments->error, "Simplification error: a length in the mesh's unit, or vox; 0: none")
+      ->required();
+  verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
+  add_run_options(*verb, arguments->run);
+  verb->footer(kExamples);
+  verb->callback([arguments] { run_simplify(*arguments); });
+}
+
+}  // namespace isoweave::cli

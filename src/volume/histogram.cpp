@@ -1,0 +1,182 @@
+#include "volume/histogram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+#include "isoweave/error.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::int64_t kFineBins = 65536;
+constexpr int kNarrowest = -1000;  // its inverse is still a number
+constexpr int kMantissaBits = 52;
+
+bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
+
+template <class T>
+bool is_finite(T value) {
+  if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+  return true;
+}
+
+// Which bin of width 2^exponent holds a value; exact, as the width is a power of two.
+double bin_of(double value, int exponent) { return std::floor(std::ldexp(value, -exponent)); }
+
+// Bins of this width cover [low, high], and their numbers are exact in a double.
+bool fits(double low, double high, int exponent) {
+  const double largest = std::max(std::abs(low), std::abs(high));
+  return std::ldexp(largest, -exponent) < std::ldexp(1.0, kMantissaBits) &&
+         bin_of(high, exponent) - bin_of(low, exponent) < static_cast<double>(kFineBins);
+}
+
+}  // namespace
+
+HistogramCounter::HistogramCounter(SampleType type)
+    : type_(type), exponent_(is_integer(type) ? 0 : kNarrowest), counts_(static_cast<std::size_t>(kFineBins)) {}
+
+void HistogramCounter::add(const std::byte* samples, std::int64_t count) {
+  visit_sample_type(type_, [&]<class T>() { add_typed(reinterpret_cast<const T*>(samples), count); });
+}
+
+template <class T>
+void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
+  T low = std::numeric_limits<T>::max();
+  T high = std::numeric_limits<T>::lowest();
+  std::int64_t finite = 0;
+  for (std::int64_t n = 0; n < count; ++n) {
+    const T value = samples[n];
+    if (is_finite(value)) {
+      low = std::min(low, value);
+      high = std::max(high, value);
+      ++finite;
+    } else {
+      value != value ? ++nan_ : ++infinite_;
+    }
+  }
+  if (finite == 0) return;
+  make_room(static_cast<double>(low), static_cast<double>(high));
+  const double scale = std::ldexp(1.0, -exponent_);
+  for (std::int64_t n = 0; n < count; ++n) {
+    if (!is_finite(samples[n])) continue;
+    const auto bin = static_cast<std::int64_t>(std::floor(static_cast<double>(samples[n]) * scale));
+    ++counts_[static_cast<std::size_t>(bin - first_)];
+  }
+}
+
+// Makes [low, high] and all that was counted before fit into the bins.
+void HistogramCounter::make_room(double low, double high) {
+  const bool is_first = min_ > max_;
+  if (!is_first && low >= min_ && high <= max_) return;
+  const double new_min = is_first ? low : std::min(low, min_);
+  const double new_max = is_first ? high : std::max(high, max_);
+  int exponent = exponent_;
+  while (!fits(new_min, new_max, exponent)) ++exponent;
+  if (!is_first && exponent > exponent_) widen(exponent);
+  exponent_ = exponent;
+  const auto first = static_cast<std::int64_t>(bin_of(new_min, exponent_));
+  // Counted bins lie in [new_min, new_max], which fits from the new first bin on.
+  if (!is_first && first < first_) {
+    std::rotate(counts_.begin(), counts_.end() - std::min(first_ - first, kFineBins), counts_.end());
+  }
+  if (is_first || first < first_) first_ = first;
+  // Room at the front that is not needed any more makes place at the end.
+  if (first > first_) {
+    std::rotate(counts_.begin(), counts_.begin() + std::min(first - first_, kFineBins), counts_.end());
+    first_ = first;
+  }
+  min_ = new_min;
+  max_ = new_max;
+}
+
+// Merges bins to a larger width.
+void HistogramCounter::widen(int exponent) {
+  const int shift = std::min(exponent - exponent_, 62);
+  const std::int64_t first = first_ >> shift;
+  std::vector<std::uint64_t> merged(counts_.size());
+  for (std::int64_t n = 0; n < kFineBins; ++n) {
+    const std::uint64_t samples = counts_[static_cast<std::size_t>(n)];
+    if (samples > 0) merged[static_cast<std::size_t>(((first_ + n) >> shift) - first)] += samples;
+  }
+  counts_ = std::move(merged);
+  first_ = first;
+}
+
+Histogram HistogramCounter::histogram(double slope, double intercept) const {
+  Histogram result;
+  result.nan = nan_;
+  result.infinite = infinite_;
+  if (min_ > max_) return result;
+  const double ends[] = {slope * min_ + intercept, slope * max_ + intercept};
+  result.min = std::min(ends[0], ends[1]);
+  result.max = std::max(ends[0], ends[1]);
+  // A bin of integers holds one value when its width is 1: its lower end, not its middle.
+  const double inside = is_integer(type_) && exponent_ == 0 ? 0 : 0.5;
+  constexpr double kBins = static_cast<double>(Histogram::kBins);
+  for (std::int64_t n = 0; n < kFineBins; ++n) {
+    const std::uint64_t samples = counts_[static_cast<std::size_t>(n)];
+    if (samples == 0) continue;
+    const double stored = std::ldexp(static_cast<double>(first_ + n) + inside, exponent_);
+    // Halves, so that the width of the whole range of doubles is still a number.
+    const double width = max_ / 2 - min_ / 2;
+    const double part = width > 0 ? (stored / 2 - min_ / 2) / width : 0;
+    const double place = std::clamp(std::floor((slope < 0 ? 1 - part : part) * kBins), 0.0, kBins - 1);
+    result.bins[static_cast<std::size_t>(place)] += samples;
+  }
+  return result;
+}
+
+Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
+  const VolumeInfo& info = volume.info();
+  HistogramCounter counter(info.type);
+  std::vector<std::byte> slice(info.slice_bytes());
+  for (std::int64_t k = 0; k < info.dims[2]; ++k) {
+    if (stop != nullptr && stop->load()) throw Interrupted("interrupted");
+    volume.read(k, 1, slice);
+    counter.add(slice.data(), info.slice_samples());
+  }
+  return counter.histogram(info.slope, info.intercept);
+}
+
+std::optional<double> otsu_threshold(const Histogram& histogram) {
+  if (histogram.empty() || histogram.min == histogram.max) return std::nullopt;
+  double total = 0;
+  double moment = 0;
+  for (std::size_t n = 0; n < Histogram::kBins; ++n) {
+    total += static_cast<double>(histogram.bins[n]);
+    moment += static_cast<double>(n) * static_cast<double>(histogram.bins[n]);
+  }
+  double below = 0;
+  double moment_below = 0;
+  double best = 0;
+  std::size_t first_best = 0;
+  std::size_t last_best = 0;
+  for (std::size_t n = 0; n + 1 < Histogram::kBins; ++n) {
+    below += static_cast<double>(histogram.bins[n]);
+    moment_below += static_cast<double>(n) * static_cast<double>(histogram.bins[n]);
+    const double above = total - below;
+    if (below <= 0 || above <= 0) continue;
+    const double gap = moment_below / below - (moment - moment_below) / above;
+    const double variance = below * above * gap * gap;
+    if (variance > best) {
+      best = variance;
+      first_best = n;
+    }
+    if (variance >= best) last_best = n;
+  }
+  const double edge = (static_cast<double>(first_best + last_best) / 2 + 1) / static_cast<double>(Histogram::kBins);
+  return histogram.min * (1 - edge) + histogram.max * edge;
+}
+
+std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts) {
+  if (parts == 0 || Histogram::kBins % parts != 0) throw std::invalid_argument("the number of bins must divide 256");
+  std::vector<std::uint64_t> bins(parts);
+  for (std::size_t n = 0; n < Histogram::kBins; ++n) bins[n * parts / Histogram::kBins] += histogram.bins[n];
+  return bins;
+}
+
+}  // namespace isoweave

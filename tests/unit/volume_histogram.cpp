@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "volume/histogram.hpp"
+
+namespace isoweave {
+namespace {
+
+template <class T>
+Histogram histogram_of(SampleType type, const std::vector<T>& samples, std::int64_t block = 1 << 20) {
+  HistogramCounter counter(type);
+  const auto count = static_cast<std::int64_t>(samples.size());
+  for (std::int64_t first = 0; first < count; first += block) {
+    counter.add(reinterpret_cast<const std::byte*>(samples.data() + first), std::min(block, count - first));
+  }
+  return counter.histogram(1, 0);
+}
+
+std::uint64_t sum(const Histogram& histogram) {
+  return std::accumulate(histogram.bins.begin(), histogram.bins.end(), std::uint64_t{0});
+}
+
+TEST(Histogram, CountsEveryValueOfABytePlainly) {
+  std::vector<std::uint8_t> samples;
+  for (unsigned value = 0; value < 256; ++value)
+    samples.insert(samples.end(), value + 1, static_cast<std::uint8_t>(value));
+  const Histogram histogram = histogram_of(SampleType::kUint8, samples);
+  EXPECT_EQ(histogram.min, 0);
+  EXPECT_EQ(histogram.max, 255);
+  for (std::size_t value = 0; value < 256; ++value) EXPECT_EQ(histogram.bins[value], value + 1);
+}
+
+TEST(Histogram, IsTheSameHoweverTheSamplesAreCut) {
+  std::vector<float> samples;
+  for (int n = 0; n < 5000; ++n) samples.push_back(std::ldexp(static_cast<float>((n * 7919) % 5003), (n % 40) - 20));
+  const Histogram whole = histogram_of(SampleType::kFloat32, samples);
+  EXPECT_EQ(sum(whole), samples.size());
+  for (const std::int64_t block : {1, 3, 1000}) {
+    EXPECT_EQ(histogram_of(SampleType::kFloat32, samples, block).bins, whole.bins) << block;
+  }
+}
+
+TEST(Histogram, HoldsRangesThatGrowBothWays) {
+  const std::vector<std::int32_t> samples{0, 5, -70000, 2000000000, -2000000000, 1};
+  const Histogram histogram = histogram_of(SampleType::kInt32, samples, 1);
+  EXPECT_EQ(histogram.min, -2e9);
+  EXPECT_EQ(histogram.max, 2e9);
+  EXPECT_EQ(sum(histogram), samples.size());
+  EXPECT_EQ(histogram.bins.front(), 1U);
+  EXPECT_EQ(histogram.bins.back(), 1U);
+}
+
+TEST(Histogram, HoldsTheWholeRangeOfDoublesAndTheSmallest) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  const std::vector<double> samples{0, std::numeric_limits<double>::denorm_min(), 1e-300, -1e-300, 1, kMax, -kMax};
+  const Histogram histogram = histogram_of(SampleType::kFloat64, samples, 1);
+  EXPECT_EQ(histogram.min, -kMax);
+  EXPECT_EQ(histogram.max, kMax);
+  EXPECT_EQ(sum(histogram), samples.size());
+  ASSERT_TRUE(otsu_threshold(histogram));
+  EXPECT_TRUE(std::isfinite(*otsu_threshold(histogram)));
+}
+
+TEST(Histogram, CountsNanAndInfinitiesApart) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> samples{std::nanf(""), kInfinity, -kInfinity, 3, 4};
+  const Histogram histogram = histogram_of(SampleType::kFloat32, samples);
+  EXPECT_EQ(histogram.nan, 1U);
+  EXPECT_EQ(histogram.infinite, 2U);
+  EXPECT_EQ(histogram.min, 3);
+  EXPECT_EQ(histogram.max, 4);
+  EXPECT_TRUE(histogram_of(SampleType::kFloat32, std::vector<float>{std::nanf("")}).empty());
+}
+
+TEST(Histogram, IsInValues) {
+  const std::vector<std::int16_t> samples{-10, 0, 0, 0, 10};
+  HistogramCounter counter(SampleType::kInt16);
+  counter.add(reinterpret_cast<const std::byte*>(samples.data()), 5);
+  const Histogram histogram = counter.histogram(-2, 100);
+  EXPECT_EQ(histogram.min, 80);
+  EXPECT_EQ(histogram.max, 120);
+  EXPECT_EQ(coarser_bins(histogram, 2), (std::vector<std::uint64_t>{1, 4}));
+  EXPECT_THROW(coarser_bins(histogram, 3), std::invalid_argument);
+}
+
+TEST(Otsu, LiesInTheMiddleBetweenTwoValues) {
+  EXPECT_NEAR(*otsu_threshold(histogram_of(SampleType::kUint8, std::vector<std::uint8_t>{0, 0, 200, 200})), 100, 0.5);
+  EXPECT_NEAR(*otsu_threshold(histogram_of(SampleType::kFloat32, std::vector<float>{-1, -1, 1})), 0, 0.01);
+}
+
+TEST(Otsu, SaysNothingAboutOneValue) {
+  EXPECT_FALSE(otsu_threshold(histogram_of(SampleType::kUint8, std::vector<std::uint8_t>{7, 7, 7})));
+  EXPECT_FALSE(otsu_threshold(Histogram{}));
+}
+
+}  // namespace
+}  // namespace isoweave
