@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "text/printable.hpp"
 #include "volume/header_text.hpp"
 
 namespace isoweave {
@@ -76,9 +77,7 @@ struct NamePattern {
 };
 
 NamePattern parse_pattern(const std::string& header_path, const std::string& text) {
-  const auto refuse = [&] {
-    bad_input(header_path, "a file name pattern with one %d, such as %03d", "'" + text + "'");
-  };
+  const auto refuse = [&] { bad_input(header_path, "a file name pattern with one %d, such as %03d", quoted(text)); };
   NamePattern pattern;
   const std::size_t percent = text.find('%');
   if (percent == std::string::npos || text.find('%', percent + 1) != std::string::npos) refuse();

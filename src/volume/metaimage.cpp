@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "text/printable.hpp"
 #include "volume/data_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
@@ -52,7 +53,7 @@ MetaFields parse_fields(const std::string& text, std::string_view path) {
     if (trimmed(*line).empty()) continue;
     const std::size_t equals = line->find('=');
     if (equals == std::string_view::npos) {
-      bad_input(path, "header lines 'Key = value'", "'" + std::string(line->substr(0, 60)) + "'");
+      bad_input(path, "header lines 'Key = value'", quoted(*line));
     }
     const std::string key = lower_case(trimmed(line->substr(0, equals)));
     fields.values[key] = trimmed(line->substr(equals + 1));
@@ -75,7 +76,7 @@ std::optional<std::int64_t> integer_of(const MetaFields& fields, std::initialize
   const std::string_view text = fields.get(keys);
   if (text.empty()) return std::nullopt;
   const auto value = parse_integer(text);
-  if (!value) bad_input(path, "a whole number as " + std::string(*keys.begin()), "'" + std::string(text) + "'");
+  if (!value) bad_input(path, "a whole number as " + std::string(*keys.begin()), quoted(text));
   return value;
 }
 
@@ -85,7 +86,7 @@ std::vector<double> numbers_of(const MetaFields& fields, std::initializer_list<c
   std::vector<double> numbers;
   for (const std::string_view word : words_of(fields.get(keys))) {
     const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers in " + std::string(*keys.begin()), "'" + std::string(word) + "'");
+    if (!number) bad_input(path, "numbers in " + std::string(*keys.begin()), quoted(word));
     numbers.push_back(*number);
   }
   if (!numbers.empty() && numbers.size() != count) {
@@ -106,7 +107,7 @@ SampleType sample_type_of(const MetaFields& fields, std::string_view path) {
   const std::string name = lower_case(text);
   const auto found = kTypes.find(name);
   if (found == kTypes.end()) {
-    bad_input(path, "an ElementType of 8 to 32 bit integers, MET_FLOAT or MET_DOUBLE", "'" + std::string(text) + "'");
+    bad_input(path, "an ElementType of 8 to 32 bit integers, MET_FLOAT or MET_DOUBLE", quoted(text));
   }
   return found->second;
 }
@@ -114,14 +115,14 @@ SampleType sample_type_of(const MetaFields& fields, std::string_view path) {
 void check_kind(const MetaFields& fields, std::string_view path) {
   const std::string_view object = fields.get({"objecttype"});
   if (!object.empty() && lower_case(object) != "image") {
-    bad_input(path, "ObjectType Image", "'" + std::string(object) + "'");
+    bad_input(path, "ObjectType Image", quoted(object));
   }
   const auto channels = integer_of(fields, {"elementnumberofchannels"}, path);
   if (channels && *channels != 1) {
     bad_input(path, "one channel per sample", std::to_string(*channels) + " channels");
   }
   const std::string_view binary = fields.get({"binarydata"});
-  if (!binary.empty() && !is_true(binary)) bad_input(path, "BinaryData True", "'" + std::string(binary) + "'");
+  if (!binary.empty() && !is_true(binary)) bad_input(path, "BinaryData True", quoted(binary));
 }
 
 // Number of axes in the file, of which those beyond the third have one sample.
@@ -136,7 +137,7 @@ std::size_t set_dims(VolumeInfo& info, const MetaFields& fields) {
   info.dims = {1, 1, 1};
   for (std::size_t n = 0; n < words.size(); ++n) {
     const auto side = parse_integer(words[n]);
-    if (!side || *side < 1) bad_input(info.path, "DimSize of at least 1", "'" + std::string(words[n]) + "'");
+    if (!side || *side < 1) bad_input(info.path, "DimSize of at least 1", quoted(words[n]));
     if (n < 3) info.dims[n] = *side;
     if (n >= 3 && *side > 1) {
       bad_input(info.path, "3 dimensions", "axis " + std::to_string(n) + " with " + std::to_string(*side) + " samples");

@@ -64,7 +64,7 @@ NrrdFields parse_fields(const std::string& text, const std::string& path) {
   LineReader lines(text);
   const std::string_view magic = lines.next().value_or("");
   if (magic.size() != 8 || magic < "NRRD0001" || magic > "NRRD0005") {
-    bad_input(path, "the magic NRRD0001 to NRRD0005", "'" + std::string(magic.substr(0, 16)) + "'");
+    bad_input(path, "the magic NRRD0001 to NRRD0005", quoted(magic));
   }
   NrrdFields fields;
   while (const auto line = lines.next()) {
@@ -77,7 +77,7 @@ NrrdFields parse_fields(const std::string& text, const std::string& path) {
     const bool key_and_value = line->substr(std::min(colon, line->size())).starts_with(":=");
     if (comment || key_and_value) continue;
     if (colon == std::string_view::npos) {
-      bad_input(path, "header lines 'field: value'", "'" + std::string(line->substr(0, 60)) + "'");
+      bad_input(path, "header lines 'field: value'", quoted(*line));
     }
     const std::string name = field_name(line->substr(0, colon));
     const std::string_view value = trimmed(line->substr(colon + 1));
@@ -96,7 +96,7 @@ std::int64_t integer_field(const NrrdFields& fields, const std::string& name, st
   const std::string_view text = fields.get(name);
   if (text.empty()) return missing;
   const auto value = parse_integer(text);
-  if (!value) bad_input(path, "a whole number as '" + name + "'", "'" + std::string(text) + "'");
+  if (!value) bad_input(path, "a whole number as '" + name + "'", quoted(text));
   return *value;
 }
 
@@ -136,7 +136,7 @@ std::vector<double> axis_numbers(const NrrdFields& fields, const std::string& na
   std::vector<double> numbers;
   for (const std::string_view word : axis_words(fields, name, axes, path)) {
     const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers in '" + name + "'", "'" + std::string(word) + "'");
+    if (!number) bad_input(path, "numbers in '" + name + "'", quoted(word));
     numbers.push_back(*number);
   }
   return numbers;
@@ -149,7 +149,7 @@ Vector3 parse_vector(std::string_view text, std::string_view path) {
   while (true) {
     const std::size_t comma = text.find(',');
     const auto number = parse_double(trimmed(text.substr(0, comma)));
-    if (!number || count == 3) bad_input(path, "vectors of up to 3 numbers", "'(" + std::string(text) + ")'");
+    if (!number || count == 3) bad_input(path, "vectors of up to 3 numbers", quoted(text));
     vector[count++] = *number;
     if (comma == std::string_view::npos) return vector;
     text.remove_prefix(comma + 1);
@@ -167,7 +167,7 @@ std::vector<std::optional<Vector3>> parse_vectors(std::string_view text, std::st
     }
     const std::size_t close = text.find(')');
     if (text[0] != '(' || close == std::string_view::npos) {
-      bad_input(path, "vectors such as (1,0,0)", "'" + std::string(text.substr(0, 60)) + "'");
+      bad_input(path, "vectors such as (1,0,0)", quoted(text));
     }
     const Vector3 vector = parse_vector(text.substr(1, close - 1), path);
     const bool none = std::isnan(vector[0]) && std::isnan(vector[1]) && std::isnan(vector[2]);
@@ -210,7 +210,7 @@ std::vector<NrrdAxis> parse_axes(const NrrdFields& fields, const std::string& pa
   }
   for (std::size_t n = 0; n < axes.size(); ++n) {
     const auto size = parse_integer(sizes[n]);
-    if (!size || *size < 1) bad_input(path, "sizes of at least 1", "'" + std::string(sizes[n]) + "'");
+    if (!size || *size < 1) bad_input(path, "sizes of at least 1", quoted(sizes[n]));
     axes[n].size = *size;
     if (!kinds.empty()) axes[n].kind = lower_case(kinds[n]);
     if (!spacings.empty()) axes[n].spacing = spacings[n];
@@ -333,7 +333,7 @@ DataLayout layout_of(const NrrdFields& fields, std::string_view path) {
 bool is_swapped(const NrrdFields& fields, SampleType type, std::string_view path) {
   const std::string endian = lower_case(fields.get("endian"));
   if (endian != "little" && endian != "big" && sample_bytes(type) > 1) {
-    bad_input(path, "endian 'little' or 'big'", "'" + endian + "'");
+    bad_input(path, "endian 'little' or 'big'", quoted(endian));
   }
   return (endian == "big") != (std::endian::native == std::endian::big);
 }

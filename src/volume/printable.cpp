@@ -12,4 +12,12 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  std::string result(1, '\'');
+  result.append(text.substr(0, kShown));
+  result.push_back('\'');
+  return result;
+}
+
 }  // namespace isoweave

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "text/printable.hpp"
 #include "volume/dds_stream.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
@@ -55,27 +56,27 @@ int version_of(std::string_view magic, std::string_view path) {
   if (magic == "PVM") return 1;
   if (magic == "PVM2") return 2;
   if (magic == "PVM3") return 3;
-  bad_input(path, "PVM, PVM2 or PVM3", "'" + std::string(magic.substr(0, 16)) + "'");
+  bad_input(path, "PVM, PVM2 or PVM3", quoted(magic));
 }
 
 void set_dims(VolumeInfo& info, const std::string& line) {
   const std::vector<std::string_view> words = words_of(line);
-  if (words.size() != 3) bad_input(info.path, "a line 'width height depth'", "'" + line.substr(0, 60) + "'");
+  if (words.size() != 3) bad_input(info.path, "a line 'width height depth'", quoted(line));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto side = parse_integer(words[axis]);
-    if (!side) bad_input(info.path, "whole numbers as dimensions", "'" + std::string(words[axis]) + "'");
+    if (!side) bad_input(info.path, "whole numbers as dimensions", quoted(words[axis]));
     info.dims[axis] = *side;
   }
 }
 
 void set_spacing(VolumeInfo& info, const std::string& line) {
   const std::vector<std::string_view> words = words_of(line);
-  if (words.size() != 3) bad_input(info.path, "a line of 3 spacings", "'" + line.substr(0, 60) + "'");
+  if (words.size() != 3) bad_input(info.path, "a line of 3 spacings", quoted(line));
   Axes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto spacing = parse_double(words[axis]);
     if (!spacing || !(*spacing > 0)) {
-      bad_input(info.path, "positive spacings", "'" + std::string(words[axis]) + "'");
+      bad_input(info.path, "positive spacings", quoted(words[axis]));
     }
     axes.steps[axis][axis] = *spacing;
   }
@@ -86,7 +87,7 @@ SampleType sample_type_of(const std::string& line, std::string_view path) {
   const std::string_view components = trimmed(line);
   if (components == "1") return SampleType::kUint8;
   if (components == "2") return SampleType::kUint16;
-  const std::string found = components == "3" ? "3 (RGB)" : "'" + std::string(components.substr(0, 60)) + "'";
+  const std::string found = components == "3" ? "3 (RGB)" : quoted(components);
   bad_input(path, "1 or 2 bytes per sample", found);
 }
 

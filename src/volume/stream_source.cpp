@@ -1,6 +1,5 @@
 #include "volume/stream_source.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <stdexcept>
@@ -10,13 +9,17 @@
 namespace isoweave {
 namespace {
 
-template <std::size_t kBytes>
+std::uint16_t swapped(std::uint16_t word) { return __builtin_bswap16(word); }
+std::uint32_t swapped(std::uint32_t word) { return __builtin_bswap32(word); }
+std::uint64_t swapped(std::uint64_t word) { return __builtin_bswap64(word); }
+
+template <class Word>
 void swap_all(std::span<std::byte> samples) {
-  for (std::size_t at = 0; at + kBytes <= samples.size(); at += kBytes) {
-    std::array<std::byte, kBytes> sample;
-    std::memcpy(sample.data(), samples.data() + at, kBytes);
-    std::reverse(sample.begin(), sample.end());
-    std::memcpy(samples.data() + at, sample.data(), kBytes);
+  for (std::size_t at = 0; at + sizeof(Word) <= samples.size(); at += sizeof(Word)) {
+    Word word;
+    std::memcpy(&word, samples.data() + at, sizeof(Word));
+    word = swapped(word);
+    std::memcpy(samples.data() + at, &word, sizeof(Word));
   }
 }
 
@@ -27,9 +30,9 @@ std::string dims_text(const VolumeInfo& info) {
 }  // namespace
 
 void swap_sample_bytes(std::span<std::byte> samples, std::size_t bytes_each) {
-  if (bytes_each == 2) swap_all<2>(samples);
-  if (bytes_each == 4) swap_all<4>(samples);
-  if (bytes_each == 8) swap_all<8>(samples);
+  if (bytes_each == 2) swap_all<std::uint16_t>(samples);
+  if (bytes_each == 4) swap_all<std::uint32_t>(samples);
+  if (bytes_each == 8) swap_all<std::uint64_t>(samples);
 }
 
 void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t first, std::int64_t count,
