@@ -9,9 +9,6 @@ namespace {
 
 constexpr std::int64_t kBlock = 1 << 14;
 
-// Below this many live edges one queue is quicker than cutting.
-constexpr std::size_t kSmallZone = 20000;
-
 struct Rung {
   double error_fraction;  // of the largest cost
   double side;            // of the cubes, in mean voxels
@@ -35,7 +32,8 @@ void list_live_edges(const Zone& zone, CostBits limit, const Executor& executor,
       [&](std::uint32_t h) { return is_live(zone, h, limit) ? std::size_t{0} : std::size_t{1}; }, out);
 }
 
-Rounds::Rounds(Zone& zone, Quality quality, const Executor& executor) : zone_(zone), executor_(executor) {
+Rounds::Rounds(Zone& zone, Quality quality, const Executor& executor, const RoundsOptions& options)
+    : zone_(zone), executor_(executor), options_(options) {
   for (int n = 0; n < executor.threads(); ++n) queues_.push_back(std::make_unique<Queue>(zone, quality));
 }
 
@@ -49,12 +47,12 @@ DecisionCounts Rounds::counts() const {
 
 void Rounds::run(const std::atomic<bool>* stop) {
   const CostBits retire = zone_.options().retire;
-  const double voxel = std::sqrt(zone_.options().a0);
+  const double unit = options_.side * std::sqrt(zone_.options().a0);
   list_live_edges(zone_, retire, executor_, parts_);
-  if (parts_.items.size() > kSmallZone) {
+  if (parts_.items.size() > options_.small_zone) {
     for (const Rung& rung : kLadder) {
       const CostBits limit = to_cost(rung.error_fraction * static_cast<double>(cost_value(retire)));
-      round(limit, rung.side * voxel, rung.shift * rung.side * voxel, stop);
+      round(limit, rung.side * unit, rung.shift * rung.side * unit, stop);
     }
     list_live_edges(zone_, retire, executor_, parts_);
   }

@@ -11,12 +11,17 @@
 
 namespace isoweave {
 
+struct RoundsOptions {
+  std::size_t small_zone = 20000;  // below this many live edges one queue is quicker than cutting
+  double side = 1;                 // factor on the sides of the cubes
+};
+
 // Each round cuts the zone into cubes, flags both ends of the edges that cross a cut, and runs one queue per cube,
 // all at the same time. Rounds shift the cuts and climb a ladder of errors: levels nest, and at a small error the
 // blocked rim along a cut is thin. What the cuts have blocked to the end is left to one queue.
 class Rounds {
  public:
-  Rounds(Zone& zone, Quality quality, const Executor& executor);
+  Rounds(Zone& zone, Quality quality, const Executor& executor, const RoundsOptions& options = {});
   ~Rounds();
 
   // Decides every edge that can be decided. Stops early when *stop becomes true.
@@ -33,6 +38,7 @@ class Rounds {
 
   Zone& zone_;
   const Executor& executor_;
+  RoundsOptions options_;
   std::vector<std::unique_ptr<Queue>> queues_;
   std::vector<std::uint8_t> active_;  // per vertex: an edge is live at this level
   std::vector<std::uint32_t> part_;   // per vertex

@@ -11,7 +11,7 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
   const bool parallel =
       options.schedule == Schedule::kRounds || (options.schedule == Schedule::kAutomatic && executor.threads() > 1);
   if (parallel) {
-    rounds_ = std::make_unique<Rounds>(zone_, options.quality, executor);
+    rounds_ = std::make_unique<Rounds>(zone_, options.quality, executor, options.rounds);
   } else {
     queue_ = std::make_unique<Queue>(zone_, options.quality);
   }

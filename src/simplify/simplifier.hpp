@@ -16,6 +16,7 @@ struct SimplifierOptions {
   ZoneOptions zone;
   Quality quality = Quality::kNormal;
   Schedule schedule = Schedule::kAutomatic;
+  RoundsOptions rounds;
 };
 
 // What final vertices are seen to be when their stars are whole for the last time.

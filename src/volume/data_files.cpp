@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "text/printable.hpp"
 #include "volume/header_text.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "text/printable.hpp"
 #include "volume/data_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {

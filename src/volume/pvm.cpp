@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "text/printable.hpp"
 #include "volume/dds_stream.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {

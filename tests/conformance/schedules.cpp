@@ -1,0 +1,124 @@
+// One digest per surface: every schedule, slab thickness and number of threads gives the mesh of the reference queue.
+#include <gtest/gtest.h>
+
+#include "oracle.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
+  SurfaceCase surface;
+  surface.volume.kind = kind;
+  surface.volume.dims = {22, 19, 24};
+  if (anisotropic) surface.volume.spacing = {0.7, 0.7, 1.9};
+  surface.volume.seed = 7;
+  surface.closed = closed;
+  return surface;
+}
+
+SurfaceRun oracle(const SurfaceCase& surface) {
+  const Executor executor(1);
+  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue, {}}, executor, nullptr);
+  DecisionCounts counts;
+  SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
+                         [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
+  run.report.collapses = counts.collapses;
+  run.report.postponed = counts.postponed;
+  run.report.rekeyed = counts.rekeyed;
+  return run;
+}
+
+class Conformance : public ::testing::TestWithParam<std::tuple<std::string, bool, bool>> {
+ protected:
+  SurfaceCase surface() const {
+    return make_case(std::get<0>(GetParam()), std::get<1>(GetParam()), std::get<2>(GetParam()));
+  }
+};
+
+TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
+  for (const Quality quality : {Quality::kFast, Quality::kNormal, Quality::kFine}) {
+    for (const double error : {0.05, 0.4}) {
+      SurfaceCase surface = this->surface();
+      surface.quality = quality;
+      surface.error = error;
+      const SurfaceRun expected = oracle(surface);
+      ASSERT_LT(expected.report.triangles, expected.report.triangles_extracted);
+      for (const std::int64_t slab :
+           {std::int64_t{1}, std::int64_t{2}, std::int64_t{5}, std::int64_t{12}, kWholeVolume}) {
+        const auto same = [&](Schedule schedule, int threads) {
+          const SurfaceRun run = sweep(surface, schedule, threads, slab);
+          EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest))
+              << "slab " << slab << ", threads " << threads << ", error " << error << ", quality "
+              << static_cast<int>(quality) << ", schedule " << static_cast<int>(schedule);
+          EXPECT_EQ(run.report.collapses, expected.report.collapses);
+          EXPECT_EQ(run.report.postponed, expected.report.postponed);
+          EXPECT_EQ(run.report.rekeyed, expected.report.rekeyed);
+        };
+        same(Schedule::kQueue, 1);
+        for (const int threads : {1, 2, 4}) same(Schedule::kRounds, threads);
+      }
+    }
+  }
+}
+
+TEST_P(Conformance, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
+  for (const Quality quality : {Quality::kFast, Quality::kFine}) {
+    SurfaceCase surface = this->surface();
+    surface.volume.dims = {16, 14, 15};
+    surface.quality = quality;
+    surface.error = 0.3;
+    const SurfaceRun expected = oracle(surface);
+    for (const std::int64_t slab : {std::int64_t{4}, kWholeVolume}) {
+      std::mt19937 random(static_cast<unsigned>(slab));
+      const Executor executor(1);
+      Simplifier simplifier({surface.zone(), quality, Schedule::kQueue, {}}, executor, nullptr);
+      const SurfaceRun run =
+          sweep(surface, slab, executor, simplifier, [&] { decide_at_random(simplifier.zone(), quality, random); });
+      EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest)) << "slab " << slab;
+    }
+  }
+}
+
+TEST_P(Conformance, TopologyIsThatOfTheFullSurface) {
+  SurfaceCase surface = this->surface();
+  surface.error = 0;
+  const SurfaceRun full = sweep(surface, Schedule::kQueue, 1, 5);
+  surface.error = 0.4;
+  const SurfaceRun reduced = sweep(surface, Schedule::kRounds, 4, 5);
+  ASSERT_EQ(full.report.triangles, full.report.triangles_extracted);
+  ASSERT_EQ(full.report.vertices, full.report.vertices_extracted);
+  const MeshCheck before = check_mesh(full.mesh);
+  for (const SurfaceRun* run : {&full, &reduced}) {
+    const MeshCheck check = check_mesh(run->mesh);
+    EXPECT_EQ(check.nonmanifold_edges, 0u);
+    EXPECT_EQ(check.nonmanifold_vertices, 0u);
+    EXPECT_EQ(check.misoriented_edges, 0u);
+    EXPECT_EQ(check.unused_vertices, 0u);
+    EXPECT_EQ(check.euler, before.euler);
+    EXPECT_EQ(check.components, before.components);
+    if (surface.closed) {
+      EXPECT_EQ(check.open_edges, 0u);
+      EXPECT_GT(check.volume, 0);
+    }
+    // What the sweep says of itself is what the checker finds.
+    EXPECT_EQ(run->report.open_edges, check.open_edges);
+    EXPECT_EQ(run->report.euler, check.euler);
+    EXPECT_EQ(run->report.components, check.components);
+    EXPECT_EQ(run->report.digest, check.digest);
+    EXPECT_EQ(run->report.vertices, check.vertices);
+  }
+}
+
+std::string case_name(const ::testing::TestParamInfo<Conformance::ParamType>& info) {
+  return std::get<0>(info.param) + (std::get<1>(info.param) ? "Closed" : "Open") +
+         (std::get<2>(info.param) ? "Anisotropic" : "Isotropic");
+}
+
+INSTANTIATE_TEST_SUITE_P(Volumes, Conformance,
+                         ::testing::Combine(::testing::Values("sphere", "torus", "gyroid", "box", "shells", "smooth",
+                                                              "noise", "white"),
+                                            ::testing::Bool(), ::testing::Bool()),
+                         case_name);
+
+}  // namespace
+}  // namespace isoweave::testing

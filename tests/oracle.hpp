@@ -1,0 +1,91 @@
+// Two schedules that are too slow to ship and too simple to be wrong.
+#pragma once
+
+#include <random>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "surfaces.hpp"
+
+namespace isoweave::testing {
+
+inline Index standing_half_edge(const Zone& zone, Index h) {
+  const Index twin = zone.twin(h);
+  return exists(twin) ? std::min(h, twin) : h;
+}
+
+// The reference: an ordered set of all live edges; always decide the first. For complete surfaces.
+inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
+  using Entry = std::tuple<CostBits, std::uint64_t, Index>;
+  const CostBits retire = zone.options().retire;
+  std::set<Entry> live;
+  std::vector<Entry> entry(zone.half_edges.size());
+  const auto offer = [&](Index h) {
+    if (zone.cost[h] > retire) return;
+    entry[h] = {zone.cost[h], zone.tie[h], h};
+    live.insert(entry[h]);
+  };
+  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+    if (zone.represents_edge(h)) offer(h);
+  }
+  Decider decider(zone, quality);
+  while (!live.empty()) {
+    const Entry first = *live.begin();
+    live.erase(live.begin());
+    const Index h = std::get<2>(first);
+    const bool stale =
+        !zone.alive(h) || !zone.represents_edge(h) || entry[h] != first || zone.cost[h] != std::get<0>(first);
+    if (stale) continue;
+    decider.look_at(h);
+    decider.decide();
+    for (int n = 0; n < decider.changed_count(); ++n) {
+      offer(standing_half_edge(zone, decider.changed()[static_cast<std::size_t>(n)]));
+    }
+  }
+  return decider.counts();
+}
+
+// Keys as the safe rule compares them; unknown keys come before all others.
+using Key = std::pair<CostBits, std::uint64_t>;
+
+// Edges whose key is the smallest of all live edges that conflict with them: m1 is the least key at a vertex, m2 the
+// least m1 over its closed ring, and an edge is safe when its key is m2 at both ends.
+inline std::vector<Index> safe_edges(const Zone& zone) {
+  constexpr Key kNothing{0xffffffffu, ~std::uint64_t{0}};
+  const CostBits retire = zone.options().retire;
+  std::vector<Key> m1(zone.vertices.size(), kNothing);
+  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+    if (!zone.alive(h) || zone.cost[h] > retire) continue;
+    const Key key = zone.cost[h] == kUnknownCost ? Key{0, 0} : Key{zone.cost[h], zone.tie[h]};
+    for (const Index v : {zone.origin(h), zone.destination(h)}) m1[v] = std::min(m1[v], key);
+  }
+  std::vector<Key> m2 = m1;
+  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+    if (!zone.alive(h)) continue;
+    m2[zone.origin(h)] = std::min(m2[zone.origin(h)], m1[zone.destination(h)]);
+    m2[zone.destination(h)] = std::min(m2[zone.destination(h)], m1[zone.origin(h)]);
+  }
+  std::vector<Index> safe;
+  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+    if (!zone.alive(h) || !zone.represents_edge(h) || zone.cost[h] > retire || zone.cost[h] == kUnknownCost) continue;
+    const Key key{zone.cost[h], zone.tie[h]};
+    if (m2[zone.origin(h)] == key && m2[zone.destination(h)] == key) safe.push_back(h);
+  }
+  return safe;
+}
+
+// Decides random subsets of the safe edges in random order until none is left.
+inline void decide_at_random(Zone& zone, Quality quality, std::mt19937& random) {
+  Decider decider(zone, quality);
+  for (std::vector<Index> safe = safe_edges(zone); !safe.empty(); safe = safe_edges(zone)) {
+    std::shuffle(safe.begin(), safe.end(), random);
+    safe.resize(1 + random() % safe.size());
+    for (const Index h : safe) {
+      decider.look_at(h);
+      decider.decide();
+    }
+  }
+}
+
+}  // namespace isoweave::testing

@@ -1,0 +1,120 @@
+// Runs of the pipeline's pieces, as tests need them: small volumes, any schedule, the mesh in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "extract/marching_cubes.hpp"
+#include "isoweave/generate.hpp"
+#include "isoweave/measure.hpp"
+#include "isoweave/pipeline.hpp"
+#include "pipeline/final_output.hpp"
+#include "pipeline/sweep.hpp"
+#include "simplify/simplifier.hpp"
+
+namespace isoweave::testing {
+
+// A volume in memory.
+class MemoryVolume final : public SliceSource {
+ public:
+  MemoryVolume(std::array<std::int64_t, 3> dims, std::vector<float> samples) : samples_(std::move(samples)) {
+    info_.path = "memory";
+    info_.format = "memory";
+    info_.dims = dims;
+    info_.type = SampleType::kFloat32;
+  }
+
+  const VolumeInfo& info() const override { return info_; }
+  VolumeInfo& info() { return info_; }
+
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    std::memcpy(out.data(), samples_.data() + first * info_.slice_samples(),
+                static_cast<std::size_t>(count) * info_.slice_bytes());
+  }
+
+ private:
+  VolumeInfo info_;
+  std::vector<float> samples_;
+};
+
+class MemorySink final : public MeshSink {
+ public:
+  void append(std::span<const Point> vertices, std::span<const Point> normals,
+              std::span<const std::array<std::uint64_t, 3>> triangles) override {
+    mesh.vertices.insert(mesh.vertices.end(), vertices.begin(), vertices.end());
+    mesh.normals.insert(mesh.normals.end(), normals.begin(), normals.end());
+    for (const auto& t : triangles) {
+      mesh.triangles.push_back(
+          {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
+    }
+  }
+  void finish() override { finished = true; }
+
+  TriangleMesh mesh;
+  bool finished = false;
+};
+
+struct SurfaceCase {
+  GenerateOptions volume;
+  bool closed = true;
+  double error = 0.2;  // mean voxels
+  Quality quality = Quality::kNormal;
+
+  IsoRule rule() const { return {suggested_iso(volume.kind, volume.type), true, closed}; }
+  double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
+
+  ZoneOptions zone() const {
+    const Lattice lattice{volume.dims};
+    const double a0 = voxel() * voxel();
+    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error * voxel(), a0)};
+  }
+};
+
+struct SurfaceRun {
+  TriangleMesh mesh;
+  MeshReport report;
+};
+
+// Sweeps slab by slab; `decide` settles what it can after each slab.
+template <class Decide>
+SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& executor, Simplifier& simplifier,
+                 Decide&& decide) {
+  const auto source = generate_volume(surface.volume);
+  MarchingCubes extractor(source->info(), {surface.rule(), false}, executor);
+  SliceWindow window(*source);
+  MemorySink sink;
+  const World world;
+  FinalOutput output(world, sink);
+  SurfacePiece piece;
+  SurfaceRun run;
+  while (extractor.layers_left() > 0) {
+    const std::int64_t layers = std::min(slab, extractor.layers_left());
+    const auto [first, end] = extractor.slices_for(layers);
+    window.advance(first, end);
+    extractor.extract(window, layers, piece);
+    run.report.triangles_extracted += piece.triangles.size();
+    run.report.vertices_extracted += piece.positions.size();
+    simplifier.append(piece);
+    decide();
+    output.take(simplifier);
+  }
+  output.report(run.report);
+  report_simplifier(simplifier, run.report);
+  run.mesh = std::move(sink.mesh);
+  return run;
+}
+
+// Small zones are cut too, and into small cubes: otherwise small tests would see one queue only.
+inline SurfaceRun sweep(const SurfaceCase& surface, Schedule schedule, int threads, std::int64_t slab) {
+  const Executor executor(threads);
+  Simplifier simplifier({surface.zone(), surface.quality, schedule, {0, 0.2}}, executor, nullptr);
+  return sweep(surface, slab, executor, simplifier, [&] { simplifier.decide(); });
+}
+
+inline constexpr std::int64_t kWholeVolume = 1 << 20;
+
+}  // namespace isoweave::testing
