@@ -142,6 +142,9 @@ TEST(MeasureDistance, MeshesWithoutArea) {
   const TriangleMesh point{{{0, 0, 0}}, {{0, 0, 0}}, {}};
   EXPECT_NEAR(compare_meshes(point, segment, {.samples = 100}).a_to_b.max, 1, 1e-15);
   EXPECT_NEAR(compare_meshes(segment, point, {.samples = 1000}).a_to_b.max, std::numbers::sqrt2, 0.01);
+  // Two points that count alike: half of the samples are at 0, half at 2.
+  const TriangleMesh two{{{0, 0, 0}, {2, 0, 0}}, {{1, 1, 1}, {0, 0, 0}}, {}};
+  EXPECT_DOUBLE_EQ(compare_meshes(two, point, {.samples = 1000}).a_to_b.mean, 1);
 }
 
 TEST(MeasureDistance, BadArgumentsAreRefused) {
