@@ -78,8 +78,12 @@ TEST(MeasureCheck, InsideOutCubeHasNegativeVolume) {
 // Far from the origin the tetrahedra over the origin are huge and cancel; over a point of the mesh they do not.
 TEST(MeasureCheck, VolumeFarFromTheOrigin) {
   TriangleMesh mesh = meshes::cube();
-  for (Point& p : mesh.vertices) p = {p[0] + 4000001.0F, p[1] - 3000017.0F, p[2] + 5000003.0F};
-  EXPECT_DOUBLE_EQ(check_mesh(mesh).volume, 1);
+  for (Point& p : mesh.vertices) p = {p[0] / 3 + 100000.3F, p[1] / 3 - 70000.2F, p[2] / 3 + 130000.4F};
+  // Rounding to float32 moved the faces, but left a box.
+  const Point& low = mesh.vertices[0];
+  const Point& high = mesh.vertices[7];
+  const double box = (double{high[0]} - low[0]) * (double{high[1]} - low[1]) * (double{high[2]} - low[2]);
+  EXPECT_DOUBLE_EQ(check_mesh(mesh).volume, box);
 }
 
 // A disc: open along its rim, which is not a defect of its vertices.
