@@ -64,6 +64,7 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace isoweave::cli
 
 int main(int argc, char** argv) {
+  isoweave::cli::ignore_write_signals();
   try {
     return isoweave::cli::run(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
   } catch (const std::exception& error) {

@@ -40,7 +40,7 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
 }
 
 bool parse_normals(std::string_view text) {
-  if (text == "quadric") throw std::invalid_argument("--normals quadric is not available in version " ISOWEAVE_VERSION);
+  if (text == "quadric") not_available("--normals quadric");
   return parse_choice<bool>("--normals", text, {{"none", false}, {"gradient", true}});
 }
 
@@ -100,9 +100,6 @@ void run_mesh(const MeshArguments& arguments) {
   const VolumeInfo info = volume->info();
   options.error = parse_error_length("--error", arguments.error, info.geometry.unit);
   options.slab = parse_slab(arguments.slab, info.dims[2]);
-  if (!run.quiet) {
-    for (const std::string& note : info.notes) print_note("warning: " + note);
-  }
 
   control.stop = &stop_on_signal();
   std::optional<AtomicFile> report_file;
@@ -114,7 +111,9 @@ void run_mesh(const MeshArguments& arguments) {
   }
   const std::unique_ptr<MeshSink> sink =
       open_mesh_file(arguments.output, {options.normals, comments(arguments, options)});
-
+  if (!run.quiet) {
+    for (const std::string& note : info.notes) print_note("warning: " + note);
+  }
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = mesh_volume(*volume, *sink, options, control);

@@ -193,19 +193,19 @@ void check_different(std::initializer_list<std::string_view> paths) {
   }
 }
 
-void refuse_unavailable(const std::vector<std::string>& arguments) {
+void not_available(std::string_view what) {
   const std::string_view full = ISOWEAVE_VERSION;
-  const std::string_view version = full.substr(0, full.rfind('.'));
-  const auto refuse = [&](std::string_view what) {
-    throw std::invalid_argument(fmt::format("{} is not available in version {}", what, version));
-  };
-  if (!arguments.empty() && arguments[0] == "view") refuse("view");
+  throw std::invalid_argument(fmt::format("{} is not available in version {}", what, full.substr(0, full.rfind('.'))));
+}
+
+void refuse_unavailable(const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments[0] == "view") not_available("view");
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
     for (const std::string_view option : {"--triangles", "--ratio", "--memory", "--checkpoint", "--every", "--resume",
                                           "--max-distance", "--lods", "--html", "--dry-run"}) {
-      if (name == option) refuse(option);
+      if (name == option) not_available(option);
     }
   }
 }

@@ -15,7 +15,8 @@ namespace {
 
 constexpr auto kBarInterval = std::chrono::milliseconds(100);
 constexpr auto kLineInterval = std::chrono::seconds(3);
-constexpr std::size_t kBarLength = 20;
+constexpr std::size_t kShortestBar = 5;
+constexpr std::size_t kLongestBar = 20;
 
 std::size_t terminal_width() {
   winsize size{};
@@ -28,9 +29,13 @@ double fraction_done(const Progress& progress) {
   return std::clamp(static_cast<double>(progress.layer) / static_cast<double>(progress.layers), 0.0, 1.0);
 }
 
-std::string bar_text(double fraction) {
-  const auto full = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(kBarLength)));
-  return fmt::format("[{:.<{}}] ", std::string(full, '#'), kBarLength);
+// A bar as long as there is room for, or none.
+std::string bar_text(double fraction, std::size_t room) {
+  constexpr std::size_t kFrame = 3;
+  if (room < kShortestBar + kFrame) return {};
+  const std::size_t length = std::min(room - kFrame, kLongestBar);
+  const auto full = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(length)));
+  return fmt::format("[{:.<{}}] ", std::string(full, '#'), length);
 }
 
 std::string time_text(double seconds) {
@@ -72,7 +77,9 @@ void ProgressPrinter::show(const Progress& progress) {
     print_note(text);
     return;
   }
-  const std::string line = (bar_text(fraction_done(progress)) + text).substr(0, terminal_width() - 1);
+  const std::size_t width = terminal_width() - 1;
+  const std::size_t room = width - std::min(width, text.size());
+  const std::string line = (bar_text(fraction_done(progress), room) + text).substr(0, width);
   fmt::print(stderr, "\r\x1b[K{}", line);
   std::fflush(stderr);
   bar_drawn_ = true;

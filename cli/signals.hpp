@@ -5,6 +5,9 @@
 
 namespace isoweave::cli {
 
+// Writing to a closed pipe, or past a limit on the size of files, is an error like others and not the end.
+void ignore_write_signals();
+
 // End with exit code 130: for verbs, and parts of verbs, that have nothing to clean up.
 void exit_on_signal();
 

@@ -1,0 +1,82 @@
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+namespace isoweave::program {
+namespace {
+
+void redirect(int descriptor, const char* path, int flags) {
+  const int file = ::open(path, flags, 0600);
+  if (file < 0 || ::dup2(file, descriptor) < 0) ::_exit(99);
+  ::close(file);
+}
+
+// In the new process, between fork and exec.
+void become_program(const std::string& folder, char* const* arguments, const std::string& out, const std::string& err,
+                    const Setup& setup) {
+  redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  redirect(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
+  redirect(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
+  if (::chdir(folder.c_str()) != 0) ::_exit(99);
+  if (setup.file_limit) {
+    const rlimit limit{*setup.file_limit, *setup.file_limit};
+    if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(99);
+  }
+  ::execv(arguments[0], arguments);
+  ::_exit(99);
+}
+
+void send_when_ready(pid_t child, const Setup& setup) {
+  using namespace std::chrono_literals;
+  const auto give_up = std::chrono::steady_clock::now() + 60s;
+  while (!setup.ready() && std::chrono::steady_clock::now() < give_up) std::this_thread::sleep_for(5ms);
+  std::this_thread::sleep_for(50ms);
+  ::kill(child, setup.signal);
+}
+
+}  // namespace
+
+Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup) {
+  const files::Folder streams;
+  const std::string out = setup.out_path.empty() ? streams / "out" : setup.out_path;
+  const std::string err = streams / "err";
+  std::vector<std::string> texts{ISOWEAVE_BINARY};
+  texts.insert(texts.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("cannot start a process");
+  if (child == 0) become_program(folder, pointers.data(), out, err, setup);
+  if (setup.signal != 0) send_when_ready(child, setup);
+  int status = 0;
+  if (::waitpid(child, &status, 0) != child) throw std::runtime_error("cannot wait for a process");
+
+  Result result;
+  if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+  if (setup.out_path.empty()) result.out = files::read_bytes(out);
+  result.err = files::read_bytes(err);
+  return result;
+}
+
+bool is_one_line(const std::string& text) {
+  return text.starts_with("isoweave: ") && text.find('\n') + 1 == text.size();
+}
+
+std::vector<std::string> listing(const files::Folder& folder) {
+  std::vector<std::string> names = folder.entries();
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace isoweave::program

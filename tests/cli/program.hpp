@@ -1,0 +1,37 @@
+// Runs the real program in a folder of the test's own.
+#pragma once
+
+#include <csignal>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files.hpp"
+
+namespace isoweave::program {
+
+struct Result {
+  int code = -1;    // exit status; -1 when a signal ended it
+  int signal = 0;   // that ended it
+  std::string out;  // standard output
+  std::string err;  // standard error
+};
+
+struct Setup {
+  std::optional<std::size_t> file_limit;  // bytes, as RLIMIT_FSIZE
+  std::string out_path;                   // standard output goes here instead
+  int signal = 0;                         // sent once `ready`
+  std::function<bool()> ready;
+};
+
+// Runs `isoweave ARGUMENTS` in `folder`.
+Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup = {});
+
+// Exactly one line, from the program.
+bool is_one_line(const std::string& text);
+
+// Names of all entries, hidden ones too, sorted.
+std::vector<std::string> listing(const files::Folder& folder);
+
+}  // namespace isoweave::program
