@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "extract/marching_cubes.hpp"
+#include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
@@ -17,6 +18,13 @@
 #include "simplify/simplifier.hpp"
 
 namespace isoweave::testing {
+
+// Sanitizers make every run five to fifteen times slower: they see the same code on fewer combinations.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
 
 // A volume in memory.
 class MemoryVolume final : public SliceSource {

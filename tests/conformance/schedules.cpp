@@ -9,7 +9,7 @@ namespace {
 SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
   SurfaceCase surface;
   surface.volume.kind = kind;
-  surface.volume.dims = {22, 19, 24};
+  surface.volume.dims = {18, 15, 20};
   if (anisotropic) surface.volume.spacing = {0.7, 0.7, 1.9};
   surface.volume.seed = 7;
   surface.closed = closed;
@@ -43,8 +43,9 @@ TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
       surface.error = error;
       const SurfaceRun expected = oracle(surface);
       ASSERT_LT(expected.report.triangles, expected.report.triangles_extracted);
-      for (const std::int64_t slab :
-           {std::int64_t{1}, std::int64_t{2}, std::int64_t{5}, std::int64_t{12}, kWholeVolume}) {
+      const std::vector<std::int64_t> slabs = kSanitized ? std::vector<std::int64_t>{5, kWholeVolume}
+                                                         : std::vector<std::int64_t>{1, 2, 5, 12, kWholeVolume};
+      for (const std::int64_t slab : slabs) {
         const auto same = [&](Schedule schedule, int threads) {
           const SurfaceRun run = sweep(surface, schedule, threads, slab);
           EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest))
@@ -55,7 +56,7 @@ TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
           EXPECT_EQ(run.report.rekeyed, expected.report.rekeyed);
         };
         same(Schedule::kQueue, 1);
-        for (const int threads : {1, 2, 4}) same(Schedule::kRounds, threads);
+        for (const int threads : kSanitized ? std::vector{4} : std::vector{1, 2, 4}) same(Schedule::kRounds, threads);
       }
     }
   }

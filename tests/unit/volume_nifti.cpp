@@ -226,6 +226,31 @@ TEST(Nifti, FindsACorruptedSumAtTheEnd) {
   EXPECT_TRUE(contains(refusal(folder.put("a.nii.gz", content)), "corrupt"));
 }
 
+// The sum lies in the reader's second buffer of 64 KiB, which no sample needs.
+TEST(Nifti, FindsACorruptedSumBehindTheLastBuffer) {
+  const TempFolder folder;
+  std::mt19937 random(3);
+  std::string noise(66000, '\0');
+  for (char& byte : noise) byte = static_cast<char>(random() & 0xff);
+  const auto packed = [&](std::size_t samples) {
+    NiftiFields fields;
+    fields.version = 2;
+    fields.type = 2;
+    fields.dim = {3, static_cast<std::int64_t>(samples), 1, 1, 1, 1, 1, 1};
+    return gzipped(nifti_header(fields) + noise.substr(0, samples));
+  };
+  constexpr std::size_t kWanted = 65536 + 8;
+  std::size_t samples = 65000;
+  for (int round = 0; round < 10 && packed(samples).size() != kWanted; ++round) {
+    samples = samples + kWanted - packed(samples).size();
+  }
+  std::string content = packed(samples);
+  ASSERT_EQ(content.size(), kWanted);
+  EXPECT_EQ(read_file<std::uint8_t>(folder.put("a.nii.gz", content)).size(), samples);
+  content[kWanted - 6] = static_cast<char>(content[kWanted - 6] ^ 1);
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii.gz", content)), "corrupt"));
+}
+
 TEST(Nifti, SurvivesEveryTruncation) {
   const TempFolder folder;
   NiftiFields second;

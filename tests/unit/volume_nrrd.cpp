@@ -17,6 +17,11 @@ std::string header(const std::string& more = "", const std::string& version = "N
   return text + more;
 }
 
+std::string numbered(std::string stem, int number) {
+  stem += std::to_string(number);
+  return stem;
+}
+
 std::string attached(const std::string& more = "") { return header(more) + "\n" + stored(kSamples); }
 
 VolumeInfo info_of(const TempFolder& folder, const std::string& more) {
@@ -56,7 +61,7 @@ TEST(Nrrd, ReadsBothByteOrdersPlainAndGzip) {
 TEST(Nrrd, ReadsLinesEndedByCarriageReturns) {
   const TempFolder folder;
   std::string text = header("spacings: 2 3 4\n");
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
   EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nrrd", text + "\r\n" + stored(kSamples))), kSamples);
 }
 
@@ -133,7 +138,7 @@ TEST(Nrrd, ReadsSeriesOfFiles) {
   for (int slice = 0; slice < 5; ++slice) {
     const std::string part = data.substr(static_cast<std::size_t>(slice) * 12, 12);
     folder.put("p00" + std::to_string(2 * slice + 1) + ".raw", part);
-    folder.put("z" + std::to_string(slice) + ".gz", gzipped("skip" + part));
+    folder.put(numbered("z", slice) + ".gz", gzipped("skip" + part));
     list += "p00" + std::to_string(2 * slice + 1) + ".raw\n";
   }
   for (const std::string& file : {std::string("LIST\n") + list, "LIST 2\n" + list, std::string("p%03d.raw 1 9 2\n"),
@@ -156,7 +161,8 @@ TEST(Nrrd, SkipsWithinFilesOfSeveralSlices) {
   const TempFolder folder;
   const auto samples = ramp<std::uint8_t>(2 * 2 * 12);
   const std::string data = stored(samples);
-  for (std::size_t part = 0; part < 3; ++part) folder.put("p" + std::to_string(part), data.substr(part * 16, 16));
+  for (std::size_t part = 0; part < 3; ++part)
+    folder.put(numbered("p", static_cast<int>(part)), data.substr(part * 16, 16));
   const std::string text = header("type: uchar\nsizes: 2 2 12\ndata file: p%d 0 2 1\n");
   for (std::int64_t first = 0; first < 12; ++first) {
     for (std::int64_t second = first + 1; second < 12; ++second) {
@@ -171,13 +177,15 @@ TEST(Nrrd, SkipsWithinFilesOfSeveralSlices) {
 
 TEST(Nrrd, RefusesSeriesThatDoNotFit) {
   const TempFolder folder;
-  for (int n = 0; n < 5; ++n) folder.put("p" + std::to_string(n), std::string(12, 'x'));
+  for (int n = 0; n < 5; ++n) folder.put(numbered("p", n), std::string(12, 'x'));
   for (const std::string file :
        {"p%d 0 6 1", "p%d 0 3 1", "p%d 0 4 0", "p%d 4 0 1", "p%d 0 9223372036854775807 1", "p%s 0 4 1", "p%d%d 0 4 1",
         "p%999999d 0 4 1", "p%n 0 4 1", "p% 0 4 1", "LIST", "LIST\np0\np1\np2", "LIST\np0\np1\np2\np3\nq4"}) {
     const std::string message = refusal(folder.put("a.nhdr", header("data file: " + file + "\n")));
     EXPECT_TRUE(contains(message, "expected") || contains(message, "cannot be opened")) << file << ": " << message;
   }
+  // A missing file is found before anything is read.
+  EXPECT_THROW(open_volume(folder.put("a.nhdr", header("data file: LIST\np0\np1\np2\np3\nq4\n"))), BadInput);
   folder.put("p2", std::string(11, 'x'));
   EXPECT_TRUE(contains(refusal(folder.put("a.nhdr", header("data file: p%d 0 4 1\n"))), "p2: expected 12 bytes"));
 }
@@ -298,7 +306,7 @@ TEST(Nrrd, SurvivesRandomChanges) {
   expect_flips_are_safe(folder, "a.nrrd", plain + "\n" + stored(kSamples), plain.size());
   const std::string packed = header(axes + "encoding: gzip\n");
   expect_flips_are_safe(folder, "b.nrrd", packed + "\n" + gzipped(stored(kSamples)), packed.size() + 40);
-  for (int n = 0; n < 5; ++n) folder.put("p" + std::to_string(n), std::string(12, 'x'));
+  for (int n = 0; n < 5; ++n) folder.put(numbered("p", n), std::string(12, 'x'));
   const std::string series = header("data file: p%d 0 4 1\n");
   expect_flips_are_safe(folder, "c.nhdr", series, series.size());
 }

@@ -1,0 +1,143 @@
+// The maths of one element: quadrics, keys, ids, queue.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "pipeline/sweep.hpp"
+#include "simplify/radix_heap.hpp"
+#include "simplify/rules.hpp"
+#include "slab/lattice.hpp"
+
+namespace isoweave {
+namespace {
+
+TEST(Quadric, IsTheWeightedSquaredDistanceToThePlane) {
+  Quadric q;
+  add_plane(q, {0, 0, 5}, {7, 8, 2}, 3);
+  EXPECT_DOUBLE_EQ(evaluate(q, {100, -50, 6}), 3 * 16);
+  EXPECT_DOUBLE_EQ(evaluate(q, {1, 1, 2}), 0);
+}
+
+TEST(Quadric, MovedOriginMeasuresTheSame) {
+  Quadric q;
+  add_plane(q, {1, 2, 3}, {0.5, 0.25, 4}, 2);
+  add_plane(q, {-1, 0.5, 1}, {2, 1, 0}, 0.7);
+  const Vec3 d{3, -2, 0.5};
+  const Vec3 x{0.1, 0.7, -4};
+  EXPECT_NEAR(evaluate(moved(q, d), x - d), evaluate(q, x), 1e-9);
+}
+
+TEST(Quadric, MinimiserFindsTheCornerOfThreePlanes) {
+  Quadric q;
+  add_plane(q, {1, 0, 0}, {1, 0, 0}, 1);
+  add_plane(q, {0, 1, 0}, {0, 2, 0}, 1);
+  add_plane(q, {0, 0, 1}, {0, 0, 3}, 1);
+  const Vec3 x = solve(factorise(q), -q.b);
+  EXPECT_NEAR(x.x, 1, 1e-3);
+  EXPECT_NEAR(x.y, 2, 1e-3);
+  EXPECT_NEAR(x.z, 3, 1e-3);
+}
+
+// Where the quadric is flat, the pull keeps the minimiser at the origin: the midpoint of the edge.
+TEST(Quadric, FlatDirectionsStayAtTheOrigin) {
+  Quadric q;
+  add_plane(q, {0, 0, 1}, {0, 0, 2}, 1);
+  const Vec3 x = solve(factorise(q), -q.b);
+  EXPECT_EQ(x.x, 0);
+  EXPECT_EQ(x.y, 0);
+  EXPECT_NEAR(x.z, 2, 1e-3);
+  EXPECT_EQ(solve(factorise(Quadric{}), Vec3{}).x, 0);
+}
+
+TEST(Cost, OrdersAsFloatsAndHasAFloor) {
+  EXPECT_LT(to_cost(1e-30), to_cost(1e-3));
+  EXPECT_EQ(to_cost(-1), cost_bits(kCostFloor));
+  EXPECT_EQ(to_cost(0), cost_bits(kCostFloor));
+  EXPECT_EQ(to_cost(1e300), kRetiredCost);
+  EXPECT_GT(to_cost(std::nan("")), kRetiredCost);
+  EXPECT_GT(postponed_cost(to_cost(0)), to_cost(0));
+  EXPECT_EQ(cost_value(postponed_cost(to_cost(1))), 16);
+  EXPECT_EQ(cost_value(postponed_cost(to_cost(0))), kPostponeFloor);
+}
+
+// All pairs of lattice edges that one cell can join, in a small lattice where every digit is at its tightest.
+TEST(EdgeNumbering, NamesEveryMeshEdgeOnce) {
+  for (const std::array<std::int64_t, 3> dims : {std::array<std::int64_t, 3>{1, 1, 2}, {2, 1, 3}, {3, 4, 2}}) {
+    const Lattice lattice{dims};
+    const EdgeNumbering numbering{lattice.row(), lattice.plane()};
+    std::set<std::uint64_t> ids;
+    std::set<std::pair<std::uint64_t, std::uint64_t>> pairs;
+    for (std::int64_t k = -1; k < dims[2]; ++k) {
+      for (std::int64_t j = -1; j < dims[1]; ++j) {
+        for (std::int64_t i = -1; i < dims[0]; ++i) {
+          std::vector<std::uint64_t> cell;
+          for (int corner = 0; corner < 8; ++corner) {
+            for (int axis = 0; axis < 3; ++axis) {
+              if ((corner >> axis & 1) != 0) continue;
+              cell.push_back(lattice.edge_id(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2), axis));
+            }
+          }
+          for (const std::uint64_t a : cell) {
+            for (const std::uint64_t b : cell) {
+              if (a >= b) continue;
+              EXPECT_EQ(numbering.edge_id(a, b), numbering.edge_id(b, a));
+              pairs.insert({a, b});
+              ids.insert(numbering.edge_id(a, b));
+            }
+          }
+        }
+      }
+    }
+    EXPECT_EQ(ids.size(), pairs.size());
+  }
+}
+
+TEST(Lattice, KnowsWhenIdsDoNotFit) {
+  EXPECT_TRUE(Lattice::fits({65536, 65536, 65536}));
+  EXPECT_FALSE(Lattice::fits({std::int64_t{1} << 20, std::int64_t{1} << 20, std::int64_t{1} << 20}));
+  const Lattice wide{{70000, 70000, 70000}};
+  EXPECT_GT(wide.edge_id(0, 0, 1, 0), std::uint64_t{1} << 32);
+}
+
+TEST(SideTest, RefusesTurnedAndEmptyFacesOnly) {
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  EXPECT_TRUE(keeps_side(a, {-0.5, -0.5, 0.1}, b, c));
+  EXPECT_FALSE(keeps_side(a, {1, 1, 0}, b, c));                 // turned over
+  EXPECT_FALSE(keeps_side(a, {0.5, 0.5, 0}, b, c));             // no area left
+  EXPECT_FALSE(keeps_side(a, {0.5, 0.5, 5}, b, c));             // upright
+  EXPECT_TRUE(keeps_side({2, 0, 0}, {1, 1, 0}, b, {3, 0, 0}));  // had no area: imposes nothing
+}
+
+TEST(RadixHeap, GivesGroupsInOrder) {
+  std::mt19937 random(3);
+  RadixHeap heap;
+  std::multiset<std::uint32_t> expected;
+  const auto push = [&](std::uint32_t cost) {
+    heap.push(cost, cost + 1);
+    expected.insert(cost);
+  };
+  for (int n = 0; n < 2000; ++n) push(static_cast<std::uint32_t>(random() % 5000));
+  std::vector<RadixHeap::Entry> group;
+  std::uint32_t last = 0;
+  while (heap.pop_group(group)) {
+    ASSERT_FALSE(group.empty());
+    const std::uint32_t cost = group.front().cost;
+    ASSERT_GE(cost, last);
+    ASSERT_EQ(cost, *expected.begin());
+    ASSERT_EQ(group.size(), expected.count(cost));
+    for (const auto entry : group) ASSERT_EQ(entry.cost, cost);
+    expected.erase(cost);
+    last = cost;
+    if (random() % 3 == 0 && cost < 100000)
+      push(cost + 1 + static_cast<std::uint32_t>(random() % (1u << random() % 20)));
+  }
+  EXPECT_TRUE(expected.empty());
+}
+
+TEST(CubeRoot, IsTheCubeRoot) {
+  for (const double x : {1.0, 8.0, 27.0, 1e-30, 1.3738, 3e20, 0.5}) EXPECT_NEAR(cube_root(x) / std::cbrt(x), 1, 1e-15);
+}
+
+}  // namespace
+}  // namespace isoweave
