@@ -11,6 +11,13 @@ namespace {
 
 constexpr std::int64_t kBlock = 2048;
 
+// Grows by a quarter where std::vector would double: the zone is what bounds the memory of a run.
+template <class T>
+void grow(std::vector<T>& vector, std::size_t size, const T& value = T()) {
+  if (size > vector.capacity()) vector.reserve(std::max(size, vector.capacity() + vector.capacity() / 4));
+  vector.resize(size, value);
+}
+
 }  // namespace
 
 CostBits edge_cost(const Vertex& u, const Vertex& v) {
@@ -28,11 +35,11 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   }
   const auto first_vertex = static_cast<Index>(vertices.size());
   const auto first_half_edge = static_cast<Index>(half_edges.size());
-  vertices.resize(vertices.size() + piece.positions.size());
-  states.resize(vertices.size(), VertexState::kIncomplete);
-  half_edges.resize(half_edge_count);
-  cost.resize(half_edge_count, kUnknownCost);
-  tie.resize(half_edge_count, 0);
+  grow(vertices, vertices.size() + piece.positions.size());
+  grow(states, vertices.size(), VertexState::kIncomplete);
+  grow(half_edges, half_edge_count);
+  grow(cost, half_edge_count, kUnknownCost);
+  grow(tie, half_edge_count);
   normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     Vertex& vertex = vertices[first_vertex + static_cast<Index>(n)];
@@ -210,7 +217,7 @@ void Zone::compact() {
   Index dead = 0;
   for (Index t = 0; t < triangles(); ++t) dead += !alive(3 * t);
   dead_triangles_ = dead;
-  if (2 * std::uint64_t{dead} < triangles()) return;
+  if (8 * std::uint64_t{dead} < triangles()) return;
 
   // A vertex is held as long as a triangle uses it, or will.
   std::vector<Index> new_vertex(vertices.size(), kNone);

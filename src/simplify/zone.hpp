@@ -92,7 +92,7 @@ class Zone {
   // Marks a triangle as gone.
   void remove_triangle(Index t);
 
-  // Drops what is gone once it is at least half of what is held. Keeps the order of triangles.
+  // Drops what is gone once it is at least an eighth of what is held. Keeps the order of triangles.
   void compact();
 
   std::uint64_t bytes() const;

@@ -38,7 +38,7 @@ std::vector<T> edge_values(std::size_t size) {
 
 template <class T>
 void expect_all(SampleType type) {
-  for (const std::size_t size : {1, 62, 63, 64, 65, 127, 200}) {
+  for (const std::size_t size : {1u, 62u, 63u, 64u, 65u, 127u, 200u}) {
     std::vector<T> row = edge_values<T>(size);
     if constexpr (std::numeric_limits<T>::has_infinity) {
       row[size / 2] = std::numeric_limits<T>::quiet_NaN();
