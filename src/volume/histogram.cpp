@@ -24,6 +24,12 @@ bool is_finite(T value) {
   return true;
 }
 
+template <class T>
+bool is_nan(T value) {
+  if constexpr (std::is_floating_point_v<T>) return std::isnan(value);
+  return false;
+}
+
 // Which bin of width 2^exponent holds a value; exact, as the width is a power of two.
 double bin_of(double value, int exponent) { return std::floor(std::ldexp(value, -exponent)); }
 
@@ -55,7 +61,7 @@ void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
       high = std::max(high, value);
       ++finite;
     } else {
-      value != value ? ++nan_ : ++infinite_;
+      ++(is_nan(value) ? nan_ : infinite_);
     }
   }
   if (finite == 0) return;
