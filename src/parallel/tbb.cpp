@@ -1,8 +1,8 @@
 // Executor over oneTBB.
 //
-// ThreadSanitizer cannot see the synchronisation inside an uninstrumented libtbb. Under it this file is compiled without
-// instrumentation, with ISOWEAVE_TSAN set, and tells the two edges that for_blocks promises: what the caller did
-// comes before every body, and every body before the return.
+// ThreadSanitizer cannot see the synchronisation inside an uninstrumented libtbb. Under it this file is compiled
+// without instrumentation, with ISOWEAVE_TSAN set, and tells the two edges that for_blocks promises: what the caller
+// did comes before every body, and every body before the return.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
