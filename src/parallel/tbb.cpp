@@ -1,5 +1,8 @@
-// Executor over oneTBB. ThreadSanitizer cannot see the synchronisation inside an uninstrumented libtbb, so the two
-// edges that for_blocks promises (caller before body, body before return) are told to it here.
+// Executor over oneTBB.
+//
+// ThreadSanitizer cannot see the synchronisation inside an uninstrumented libtbb. Under it this file is compiled
+// without instrumentation, with ISOWEAVE_TSAN set, and tells the two edges that for_blocks promises: what the caller
+// did comes before every body, and every body before the return.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,14 +10,6 @@
 #include <algorithm>
 
 #include "parallel/parallel.hpp"
-
-#if defined(__SANITIZE_THREAD__)
-#define ISOWEAVE_TSAN 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define ISOWEAVE_TSAN 1
-#endif
-#endif
 
 #ifdef ISOWEAVE_TSAN
 extern "C" void __tsan_acquire(void* address);
