@@ -42,7 +42,7 @@ void BitReader::skip(std::uint64_t count) {
   read(static_cast<unsigned>(count));
 }
 
-DdsCursor::DdsCursor(std::shared_ptr<const InputFile> file, std::uint64_t begin)
+DdsCursor::DdsCursor(const std::shared_ptr<const InputFile>& file, std::uint64_t begin)
     : bits_(file, begin), path_(file->path()), interleave_(bits_.read(2) + 1), strip_(bits_.read(16) + 1) {
   recent_.resize(strip_ + 1);
 }

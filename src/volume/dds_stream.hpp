@@ -40,7 +40,7 @@ class BitReader {
 class DdsCursor {
  public:
   // `begin` is the byte behind the magic.
-  DdsCursor(std::shared_ptr<const InputFile> file, std::uint64_t begin);
+  DdsCursor(const std::shared_ptr<const InputFile>& file, std::uint64_t begin);
 
   unsigned interleave() const { return interleave_; }
   std::uint64_t position() const { return position_; }
