@@ -92,7 +92,7 @@ std::uint64_t DdsCursor::count_rest() {
   return count;
 }
 
-DdsStream::DdsStream(std::shared_ptr<const InputFile> file, std::uint64_t begin, std::uint64_t block_samples) {
+DdsStream::DdsStream(const std::shared_ptr<const InputFile>& file, std::uint64_t begin, std::uint64_t block_samples) {
   cursors_.emplace_back(std::move(file), begin);
   interleave_ = cursors_[0].interleave();
   total_ = DdsCursor(cursors_[0]).count_rest();
