@@ -93,7 +93,7 @@ std::uint64_t DdsCursor::count_rest() {
 }
 
 DdsStream::DdsStream(const std::shared_ptr<const InputFile>& file, std::uint64_t begin, std::uint64_t block_samples) {
-  cursors_.emplace_back(std::move(file), begin);
+  cursors_.emplace_back(file, begin);
   interleave_ = cursors_[0].interleave();
   total_ = DdsCursor(cursors_[0]).count_rest();
   block_bytes_ = block_samples == 0 ? std::max<std::uint64_t>(total_, 1) : block_samples * interleave_;
