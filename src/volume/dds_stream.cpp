@@ -42,7 +42,7 @@ void BitReader::skip(std::uint64_t count) {
   read(static_cast<unsigned>(count));
 }
 
-DdsCursor::DdsCursor(std::shared_ptr<const InputFile> file, std::uint64_t begin)
+DdsCursor::DdsCursor(const std::shared_ptr<const InputFile>& file, std::uint64_t begin)
     : bits_(file, begin), path_(file->path()), interleave_(bits_.read(2) + 1), strip_(bits_.read(16) + 1) {
   recent_.resize(strip_ + 1);
 }
@@ -92,8 +92,8 @@ std::uint64_t DdsCursor::count_rest() {
   return count;
 }
 
-DdsStream::DdsStream(std::shared_ptr<const InputFile> file, std::uint64_t begin, std::uint64_t block_samples) {
-  cursors_.emplace_back(std::move(file), begin);
+DdsStream::DdsStream(const std::shared_ptr<const InputFile>& file, std::uint64_t begin, std::uint64_t block_samples) {
+  cursors_.emplace_back(file, begin);
   interleave_ = cursors_[0].interleave();
   total_ = DdsCursor(cursors_[0]).count_rest();
   block_bytes_ = block_samples == 0 ? std::max<std::uint64_t>(total_, 1) : block_samples * interleave_;

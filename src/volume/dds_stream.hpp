@@ -40,7 +40,7 @@ class BitReader {
 class DdsCursor {
  public:
   // `begin` is the byte behind the magic.
-  DdsCursor(std::shared_ptr<const InputFile> file, std::uint64_t begin);
+  DdsCursor(const std::shared_ptr<const InputFile>& file, std::uint64_t begin);
 
   unsigned interleave() const { return interleave_; }
   std::uint64_t position() const { return position_; }
@@ -71,7 +71,7 @@ class DdsCursor {
 class DdsStream final : public ByteStream {
  public:
   // `block_samples`: samples that were sorted together, 0 for all of them.
-  DdsStream(std::shared_ptr<const InputFile> file, std::uint64_t begin, std::uint64_t block_samples);
+  DdsStream(const std::shared_ptr<const InputFile>& file, std::uint64_t begin, std::uint64_t block_samples);
 
   std::uint64_t total_bytes() const { return total_; }
   std::size_t read(std::span<std::byte> out) override;

@@ -26,7 +26,7 @@ SampleRange typed_range(const T* samples, std::int64_t count) {
       const T value = samples[base + lane];
       low[slot] = value < low[slot] ? value : low[slot];
       high[slot] = high[slot] < value ? value : high[slot];
-      if constexpr (kHasNan) nan += value != value;
+      if constexpr (kHasNan) nan += std::isnan(value);
     }
   };
   std::int64_t base = 0;
