@@ -150,7 +150,7 @@ void add_run_options(CLI::App& verb, RunOptions& run) {
   verb.add_option("--threads", run.threads, "Threads, or all; never changes the result")->capture_default_str();
   verb.add_option("--device", run.device, "auto, cpu or cuda")->capture_default_str();
   verb.add_option("--schedule", run.schedule,
-                  "auto, queue (one thread, the reference) or rounds; never changes the result")
+                  "auto, queue (one thread, the reference), local or rounds; never changes the result")
       ->capture_default_str();
   verb.add_option("--report", run.report, "Write what was done and measured to this JSON file");
   verb.add_option("--progress", run.progress, "auto (a bar on a terminal), always or never")->capture_default_str();
@@ -167,9 +167,11 @@ int parse_threads(std::string_view text) {
 RunControl run_control(const RunOptions& run) {
   RunControl control;
   control.threads = parse_threads(run.threads);
-  control.schedule = parse_choice<Schedule>(
-      "--schedule", run.schedule,
-      {{"auto", Schedule::kAutomatic}, {"queue", Schedule::kQueue}, {"rounds", Schedule::kRounds}});
+  control.schedule = parse_choice<Schedule>("--schedule", run.schedule,
+                                            {{"auto", Schedule::kAutomatic},
+                                             {"queue", Schedule::kQueue},
+                                             {"local", Schedule::kLocal},
+                                             {"rounds", Schedule::kRounds}});
   if (parse_choice<bool>("--device", run.device, {{"auto", false}, {"cpu", false}, {"cuda", true}})) {
     throw DeviceError("--device cuda: this build has no CUDA back end");
   }

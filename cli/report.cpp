@@ -129,6 +129,8 @@ std::string_view schedule_name(Schedule schedule) {
   switch (schedule) {
     case Schedule::kQueue:
       return "queue";
+    case Schedule::kLocal:
+      return "local";
     case Schedule::kRounds:
       return "rounds";
     case Schedule::kAutomatic:

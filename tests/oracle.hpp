@@ -20,13 +20,14 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
   using Entry = std::tuple<CostBits, std::uint64_t, Index>;
   const CostBits retire = zone.options().retire;
   std::set<Entry> live;
-  std::vector<Entry> entry(zone.half_edges.size());
+  std::vector<Entry> entry(4 * std::size_t{zone.triangle_count()});
   const auto offer = [&](Index h) {
-    if (zone.cost[h] > retire) return;
-    entry[h] = {zone.cost[h], zone.tie[h], h};
+    if (zone.cost(h) > retire) return;
+    entry[h] = {zone.cost(h), zone.tie(h), h};
     live.insert(entry[h]);
   };
-  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+  for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
+    if ((h & 3) == 3) continue;
     if (zone.represents_edge(h)) offer(h);
   }
   Decider decider(zone, quality);
@@ -35,7 +36,7 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
     live.erase(live.begin());
     const Index h = std::get<2>(first);
     const bool stale =
-        !zone.alive(h) || !zone.represents_edge(h) || entry[h] != first || zone.cost[h] != std::get<0>(first);
+        !zone.alive(h) || !zone.represents_edge(h) || entry[h] != first || zone.cost(h) != std::get<0>(first);
     if (stale) continue;
     decider.look_at(h);
     decider.decide();
@@ -55,21 +56,24 @@ inline std::vector<Index> safe_edges(const Zone& zone) {
   constexpr Key kNothing{0xffffffffu, ~std::uint64_t{0}};
   const CostBits retire = zone.options().retire;
   std::vector<Key> m1(zone.vertices.size(), kNothing);
-  for (Index h = 0; h < zone.half_edges.size(); ++h) {
-    if (!zone.alive(h) || zone.cost[h] > retire) continue;
-    const Key key = zone.cost[h] == kUnknownCost ? Key{0, 0} : Key{zone.cost[h], zone.tie[h]};
+  for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
+    if ((h & 3) == 3) continue;
+    if (!zone.alive(h) || zone.cost(h) > retire) continue;
+    const Key key = zone.cost(h) == kUnknownCost ? Key{0, 0} : Key{zone.cost(h), zone.tie(h)};
     for (const Index v : {zone.origin(h), zone.destination(h)}) m1[v] = std::min(m1[v], key);
   }
   std::vector<Key> m2 = m1;
-  for (Index h = 0; h < zone.half_edges.size(); ++h) {
+  for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
+    if ((h & 3) == 3) continue;
     if (!zone.alive(h)) continue;
     m2[zone.origin(h)] = std::min(m2[zone.origin(h)], m1[zone.destination(h)]);
     m2[zone.destination(h)] = std::min(m2[zone.destination(h)], m1[zone.origin(h)]);
   }
   std::vector<Index> safe;
-  for (Index h = 0; h < zone.half_edges.size(); ++h) {
-    if (!zone.alive(h) || !zone.represents_edge(h) || zone.cost[h] > retire || zone.cost[h] == kUnknownCost) continue;
-    const Key key{zone.cost[h], zone.tie[h]};
+  for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
+    if ((h & 3) == 3) continue;
+    if (!zone.alive(h) || !zone.represents_edge(h) || zone.cost(h) > retire || zone.cost(h) == kUnknownCost) continue;
+    const Key key{zone.cost(h), zone.tie(h)};
     if (m2[zone.origin(h)] == key && m2[zone.destination(h)] == key) safe.push_back(h);
   }
   return safe;

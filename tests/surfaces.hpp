@@ -116,10 +116,9 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
   return run;
 }
 
-// Small zones are cut too, and into small cubes: otherwise small tests would see one queue only.
 inline SurfaceRun sweep(const SurfaceCase& surface, Schedule schedule, int threads, std::int64_t slab) {
   const Executor executor(threads);
-  Simplifier simplifier({surface.zone(), surface.quality, schedule, {0, 0.2}}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), surface.quality, schedule}, executor, nullptr);
   return sweep(surface, slab, executor, simplifier, [&] { simplifier.decide(); });
 }
 

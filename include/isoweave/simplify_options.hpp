@@ -12,9 +12,10 @@ namespace isoweave {
 enum class Quality : std::uint8_t { kFast, kNormal, kFine };
 
 // Order in which edges are decided; it never changes the result.
-//   automatic  rounds when more than one thread may run, else queue
+//   automatic  local
 //   queue      one priority queue in one thread: the sequential reference
-//   rounds     spatial parts in parallel, one queue per part, cuts shifted from round to round
-enum class Schedule : std::uint8_t { kAutomatic, kQueue, kRounds };
+//   local      workers follow chains of keys to local minima: the fastest on a CPU, also with one thread
+//   rounds     all local minima at a time, in passes over lists: the shape of a device's schedule
+enum class Schedule : std::uint8_t { kAutomatic, kQueue, kLocal, kRounds };
 
 }  // namespace isoweave

@@ -23,7 +23,7 @@ std::array<std::uint64_t, 3> FinalOutput::write_triangle(Zone& zone, Index t) {
   std::array<std::uint64_t, 3> numbers;
   std::array<Point, 3> corners;
   for (Index c = 0; c < 3; ++c) {
-    const Index h = 3 * t + c;
+    const Index h = half_edge(t, c);
     const Index v = zone.origin(h);
     Vertex& vertex = zone.vertices[v];
     corners[c] = world_.point(vertex.position);
@@ -36,11 +36,11 @@ std::array<std::uint64_t, 3> FinalOutput::write_triangle(Zone& zone, Index t) {
     numbers[c] = vertex.output;
     const Index twin = zone.twin(h);
     open_edges_ += twin == kNone;
-    if (exists(twin)) zone.half_edges[twin].twin = kWritten;
+    if (exists(twin)) zone.set_twin(twin, kWritten);
   }
-  const Index first = zone.vertices[zone.origin(3 * t)].component;
-  components_.join(first, zone.vertices[zone.origin(3 * t + 1)].component);
-  components_.join(first, zone.vertices[zone.origin(3 * t + 2)].component);
+  const Index first = zone.vertices[zone.origin(half_edge(t, 0))].component;
+  components_.join(first, zone.vertices[zone.origin(half_edge(t, 1))].component);
+  components_.join(first, zone.vertices[zone.origin(half_edge(t, 2))].component);
   if (world_.mirrors()) {
     std::swap(numbers[1], numbers[2]);
     std::swap(corners[1], corners[2]);

@@ -22,6 +22,7 @@ void Star::gather(const Zone& zone, Index v) {
   do {
     if (faces == kCapacity) {
       overflow = true;
+      neighbours = faces;
       return;
     }
     const auto n = static_cast<std::size_t>(faces++);
@@ -46,7 +47,8 @@ void Decider::look_at(Index half_edge) {
 
 void Decider::decide() {
   changed_count_ = 0;
-  const CostBits key = zone_.cost[edge_];
+  collapsed_ = false;
+  const CostBits key = zone_.cost(edge_);
   if (u_.overflow || v_.overflow || !topology_allows()) {
     ++counts_.postponed;
     raise_key(postponed_cost(key));
@@ -85,6 +87,7 @@ void Decider::decide() {
     return;
   }
   ++counts_.collapses;
+  collapsed_ = true;
   collapse(origin + x, moved(sum, x));
   update_keys(key);
 }
@@ -193,25 +196,31 @@ void Decider::merge_sides(Index h) {
   const Index b = previous(h);
   const Index outer_a = zone_.twin(a);
   const Index outer_b = zone_.twin(b);
-  const bool a_first = zone_.cost[a] != zone_.cost[b] ? zone_.cost[a] < zone_.cost[b] : zone_.tie[a] < zone_.tie[b];
-  const CostBits cost = a_first ? zone_.cost[a] : zone_.cost[b];
-  const std::uint64_t tie = a_first ? zone_.tie[a] : zone_.tie[b];
+  const CostBits cost_a = zone_.cost(a);
+  const CostBits cost_b = zone_.cost(b);
+  const bool a_first = cost_a != cost_b ? cost_a < cost_b : zone_.tie(a) < zone_.tie(b);
+  const CostBits cost = a_first ? cost_a : cost_b;
+  const std::uint64_t tie = zone_.tie(a_first ? a : b);
   for (const Index outer : {outer_a, outer_b}) {
     if (!exists(outer)) continue;
-    zone_.half_edges[outer].twin = outer == outer_a ? outer_b : outer_a;
-    zone_.cost[outer] = cost;
-    zone_.tie[outer] = tie;
+    Triangle& triangle = zone_.triangles[outer >> 2];
+    triangle.twin[outer & 3] = outer == outer_a ? outer_b : outer_a;
+    triangle.cost[outer & 3] = cost;
+    triangle.tie[outer & 3] = tie;
   }
   // The opposite vertex may have started its walks here. Another collapse may look at the same vertex from its side.
   const std::atomic_ref<Index> start(zone_.vertices[zone_.origin(b)].half_edge);
   if (start.load(std::memory_order_relaxed) == b) start.store(outer_a, std::memory_order_relaxed);
-  zone_.remove_triangle(h / 3);
+  zone_.remove_triangle(h >> 2);
 }
 
 // Merges the two ends into the vertex of u_ at `position`.
 void Decider::collapse(Vec3 position, const Quadric& quadric) {
   const Index back = zone_.twin(edge_);
-  for (int n = 0; n < v_.faces; ++n) zone_.half_edges[v_.out[static_cast<std::size_t>(n)]].vertex = u_.vertex;
+  for (int n = 0; n < v_.faces; ++n) {
+    const Index h = v_.out[static_cast<std::size_t>(n)];
+    zone_.triangles[h >> 2].vertex[h & 3] = u_.vertex;
+  }
   merge_sides(edge_);
   if (exists(back)) merge_sides(back);
 
@@ -243,7 +252,7 @@ void Decider::update_keys(CostBits collapse_cost) {
     const bool last_on_border = n == u_.faces;
     const Index h =
         last_on_border ? previous(u_.out[static_cast<std::size_t>(n - 1)]) : u_.out[static_cast<std::size_t>(n)];
-    const CostBits before = zone_.cost[h];
+    const CostBits before = zone_.cost(h);
     if (before > zone_.options().retire) continue;
     const CostBits own = edge_cost(zone_.vertices[merged], zone_.vertices[u_.neighbour[static_cast<std::size_t>(n)]]);
     zone_.set_cost(h, std::max({own, collapse_cost + 1, before}));

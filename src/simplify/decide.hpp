@@ -24,6 +24,23 @@ struct Star {
   std::array<Index, kCapacity + 1> neighbour;
 
   void gather(const Zone& zone, Index v);
+
+  // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
+  // never did.
+  template <class Visit>
+  bool each_neighbour(const Zone& zone, const Visit& visit) const {
+    for (int n = 0; n < neighbours; ++n) {
+      if (!visit(neighbour[static_cast<std::size_t>(n)])) return false;
+    }
+    if (!overflow) return true;
+    const Index first = zone.vertices[vertex].half_edge;
+    Index h = first;
+    do {
+      if (!visit(zone.destination(h)) || !visit(zone.origin(previous(h)))) return false;
+      h = zone.rotate(h);
+    } while (h != first && exists(h));
+    return true;
+  }
 };
 
 struct DecisionCounts {
@@ -55,6 +72,7 @@ class Decider {
 
   const std::array<Index, 2 * Star::kCapacity>& changed() const { return changed_; }
   int changed_count() const { return changed_count_; }
+  bool collapsed() const { return collapsed_; }  // first() is the star of the merged vertex then
   const DecisionCounts& counts() const { return counts_; }
 
  private:
@@ -76,6 +94,7 @@ class Decider {
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
   std::array<Index, 2 * Star::kCapacity> changed_;
   int changed_count_ = 0;
+  bool collapsed_ = false;
   DecisionCounts counts_;
 };
 

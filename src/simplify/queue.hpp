@@ -1,41 +1,36 @@
-// The sequential schedule: one priority queue with flags.
+// The sequential reference: one priority queue with flags.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "simplify/decide.hpp"
+#include "simplify/driver.hpp"
 #include "simplify/radix_heap.hpp"
 
 namespace isoweave {
 
-// One flag per vertex of a zone: set where an edge that comes earlier could not be decided.
-using Flags = std::vector<std::uint8_t>;
-
-// Flags the incomplete vertices of a zone and their neighbours: the keys of the edges there are not known yet.
-void flag_front(const Zone& zone, Flags& flags);
-
-class Queue {
+// Offers all live edges in the order of their keys. An edge whose stars hold a flagged vertex flags its own ends and is
+// set aside; the others are decided. A flag at a vertex says that an edge there comes earlier and could not be decided;
+// the edges whose keys are not known yet are the first such edges.
+class Queue final : public Driver {
  public:
   Queue(Zone& zone, Quality quality) : zone_(zone), decider_(zone, quality) {}
 
-  // Decides, in the order of their keys, those of `edges` and of the edges that follow from them whose keys are at
-  // most `limit` and whose stars hold no flagged vertex. An edge that meets a flag flags its own ends and stays.
-  // Edges outside `edges` that conflict with them must have both ends flagged. Stops early when *stop becomes true.
-  void run(std::span<const Index> edges, CostBits limit, Flags& flags, const std::atomic<bool>* stop);
-
-  const DecisionCounts& counts() const { return decider_.counts(); }
+  void run(const std::atomic<bool>* stop) override;
+  DecisionCounts counts() const override { return decider_.counts(); }
+  std::uint64_t rounds() const override { return rounds_; }
 
  private:
-  void decide_group(CostBits limit, Flags& flags);
-  bool flagged(const Star& star, const Flags& flags) const;
+  void offer_live_edges();
+  void decide_group();
+  bool flagged(const Star& star) const;
 
   Zone& zone_;
   Decider decider_;
   RadixHeap heap_;
   std::vector<RadixHeap::Entry> group_;
+  std::vector<std::uint8_t> flags_;  // per vertex
+  std::uint64_t rounds_ = 0;
 };
 
 }  // namespace isoweave

@@ -1,53 +1,40 @@
-// The parallel schedule: rounds over spatial parts.
+// The bulk schedule: rounds of passes over lists, as a device with thousands of threads runs them.
 #pragma once
 
-#include <atomic>
-#include <memory>
+#include <cstdint>
 #include <vector>
 
-#include "parallel/bucket.hpp"
 #include "parallel/parallel.hpp"
-#include "simplify/queue.hpp"
+#include "simplify/driver.hpp"
 
 namespace isoweave {
 
-struct RoundsOptions {
-  std::size_t small_zone = 20000;  // below this many live edges one queue is quicker than cutting
-  double side = 1;                 // factor on the sides of the cubes
-};
-
-// Each round cuts the zone into cubes, flags both ends of the edges that cross a cut, and runs one queue per cube,
-// all at the same time. Rounds shift the cuts and climb a ladder of errors: levels nest, and at a small error the
-// blocked rim along a cut is thin. What the cuts have blocked to the end is left to one queue.
-class Rounds {
+// Each round looks at the vertices near which a turn has changed, picks the edges that are local minima there, decides
+// them all at the same time, and renews the turns that this has changed. Nothing is held exclusively: the stars of
+// local minima share no triangle.
+class Rounds final : public Driver {
  public:
-  Rounds(Zone& zone, Quality quality, const Executor& executor, const RoundsOptions& options = {});
-  ~Rounds();
+  Rounds(Zone& zone, Quality quality, const Executor& executor);
 
-  // Decides every edge that can be decided. Stops early when *stop becomes true.
-  void run(const std::atomic<bool>* stop);
-
-  DecisionCounts counts() const;
-  std::uint64_t rounds() const { return rounds_; }
+  void run(const std::atomic<bool>* stop) override;
+  DecisionCounts counts() const override { return counts_; }
+  std::uint64_t rounds() const override { return rounds_; }
 
  private:
-  void round(CostBits limit, double side, double shift, const std::atomic<bool>* stop);
-  void mark_active(CostBits limit);
-  std::size_t assign_parts(double side, double shift);
-  void flag_cuts();
+  void list_candidates();
+  void pick_minima();
+  void decide_minima();
+  void renew_turns();
 
   Zone& zone_;
+  Quality quality_;
   const Executor& executor_;
-  RoundsOptions options_;
-  std::vector<std::unique_ptr<Queue>> queues_;
-  std::vector<std::uint8_t> active_;  // per vertex: an edge is live at this level
-  std::vector<std::uint32_t> part_;   // per vertex
-  Flags flags_;
-  Buckets parts_;
+  std::vector<std::uint8_t> marks_;  // per vertex: is in the list that is being made
+  std::vector<Index> changed_;       // vertices whose turn has changed
+  std::vector<Index> candidates_;    // those and their neighbours
+  std::vector<Index> minima_;        // half-edges
+  DecisionCounts counts_;
   std::uint64_t rounds_ = 0;
 };
-
-// All live edges of a zone with keys up to `limit`, in memory order.
-void list_live_edges(const Zone& zone, CostBits limit, const Executor& executor, Buckets& out);
 
 }  // namespace isoweave

@@ -3,47 +3,52 @@
 #include <algorithm>
 
 #include "isoweave/error.hpp"
+#include "simplify/local_minima.hpp"
+#include "simplify/queue.hpp"
+#include "simplify/rounds.hpp"
 
 namespace isoweave {
 
-Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop)
-    : zone_(options.zone), executor_(executor), stop_(stop) {
-  const bool parallel =
-      options.schedule == Schedule::kRounds || (options.schedule == Schedule::kAutomatic && executor.threads() > 1);
-  if (parallel) {
-    rounds_ = std::make_unique<Rounds>(zone_, options.quality, executor, options.rounds);
-  } else {
-    queue_ = std::make_unique<Queue>(zone_, options.quality);
+namespace {
+
+std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, Quality quality, const Executor& executor) {
+  switch (schedule) {
+    case Schedule::kQueue:
+      return std::make_unique<Queue>(zone, quality);
+    case Schedule::kRounds:
+      return std::make_unique<Rounds>(zone, quality, executor);
+    default:
+      return std::make_unique<LocalMinima>(zone, quality, executor);
   }
 }
+
+}  // namespace
+
+Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop)
+    : zone_(options.zone),
+      executor_(executor),
+      stop_(stop),
+      schedule_(options.schedule == Schedule::kAutomatic ? Schedule::kLocal : options.schedule),
+      driver_(make_driver(schedule_, zone_, options.quality, executor)) {}
 
 void Simplifier::decide() {
-  if (rounds_) {
-    rounds_->run(stop_);
-  } else {
-    Buckets edges;
-    list_live_edges(zone_, zone_.options().retire, executor_, edges);
-    Flags flags(zone_.vertices.size(), 0);
-    flag_front(zone_, flags);
-    queue_->run(edges.items, zone_.options().retire, flags, stop_);
-    ++runs_;
-  }
+  driver_->run(stop_);
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted");
 }
-
-DecisionCounts Simplifier::counts() const { return rounds_ ? rounds_->counts() : queue_->counts(); }
 
 std::vector<Index> Simplifier::final_triangles() {
   const CostBits retire = zone_.options().retire;
   std::vector<std::uint8_t> undecided(zone_.vertices.size(), 0);
   std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
   for (Index v = 0; v < undecided.size(); ++v) undecided[v] = zone_.states[v] == VertexState::kIncomplete;
-  for (Index h = 0; h < zone_.half_edges.size(); ++h) {
-    if (!zone_.alive(h)) continue;
-    ++corners[zone_.origin(h)];
-    if (zone_.cost[h] > retire) continue;
-    undecided[zone_.origin(h)] = 1;
-    undecided[zone_.destination(h)] = 1;
+  for (const Triangle& triangle : zone_.triangles) {
+    if (triangle.vertex[0] == kNone) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      ++corners[triangle.vertex[c]];
+      if (triangle.cost[c] > retire) continue;
+      undecided[triangle.vertex[c]] = 1;
+      undecided[triangle.vertex[(c + 1) % 3]] = 1;
+    }
   }
   for (Index v = 0; v < undecided.size(); ++v) {
     if (undecided[v] || corners[v] == 0 || zone_.states[v] == VertexState::kFinal) continue;
@@ -51,12 +56,9 @@ std::vector<Index> Simplifier::final_triangles() {
     zone_.states[v] = VertexState::kFinal;
   }
   std::vector<Index> triangles;
-  for (Index t = 0; t < zone_.triangles(); ++t) {
-    const Index h = 3 * t;
-    if (!zone_.alive(h)) continue;
-    if (!undecided[zone_.origin(h)] && !undecided[zone_.origin(h + 1)] && !undecided[zone_.origin(h + 2)]) {
-      triangles.push_back(t);
-    }
+  for (Index t = 0; t < zone_.triangle_count(); ++t) {
+    const auto& [a, b, c] = zone_.triangles[t].vertex;
+    if (a != kNone && !undecided[a] && !undecided[b] && !undecided[c]) triangles.push_back(t);
   }
   return triangles;
 }

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "isoweave/simplify_options.hpp"
-#include "simplify/rounds.hpp"
+#include "parallel/parallel.hpp"
+#include "simplify/driver.hpp"
 #include "simplify/zone.hpp"
 
 namespace isoweave {
@@ -16,7 +17,6 @@ struct SimplifierOptions {
   ZoneOptions zone;
   Quality quality = Quality::kNormal;
   Schedule schedule = Schedule::kAutomatic;
-  RoundsOptions rounds;
 };
 
 // What final vertices are seen to be when their stars are whole for the last time.
@@ -41,9 +41,9 @@ class Simplifier {
   // Zone::remove_triangle and then calls Zone::compact.
   std::vector<Index> final_triangles();
 
-  DecisionCounts counts() const;
-  Schedule schedule() const { return rounds_ ? Schedule::kRounds : Schedule::kQueue; }
-  std::uint64_t rounds() const { return rounds_ ? rounds_->rounds() : runs_; }
+  DecisionCounts counts() const { return driver_->counts(); }
+  Schedule schedule() const { return schedule_; }  // never automatic
+  std::uint64_t rounds() const { return driver_->rounds(); }
   const SurfaceDefects& defects() const { return defects_; }
 
  private:
@@ -52,9 +52,8 @@ class Simplifier {
   Zone zone_;
   const Executor& executor_;
   const std::atomic<bool>* stop_;
-  std::unique_ptr<Rounds> rounds_;
-  std::unique_ptr<Queue> queue_;
-  std::uint64_t runs_ = 0;
+  Schedule schedule_;
+  std::unique_ptr<Driver> driver_;
   SurfaceDefects defects_;
 };
 

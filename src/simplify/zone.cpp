@@ -28,18 +28,17 @@ CostBits edge_cost(const Vertex& u, const Vertex& v) {
 }
 
 void Zone::append(const SurfacePiece& piece, const Executor& executor) {
-  const std::uint64_t half_edge_count = half_edges.size() + 3 * piece.triangles.size();
-  if (half_edge_count >= kWritten) {
-    throw OverMemory("the undecided zone would hold " + std::to_string(half_edge_count) +
-                     " half-edges, expected fewer than 2^32: choose thinner slabs or a smaller error");
+  const std::uint64_t triangle_total = triangles.size() + piece.triangles.size();
+  if (triangle_total >= kWritten / 4) {
+    throw OverMemory("the undecided zone would hold " + std::to_string(triangle_total) +
+                     " triangles, expected fewer than 2^30: choose thinner slabs or a smaller error");
   }
   const auto first_vertex = static_cast<Index>(vertices.size());
-  const auto first_half_edge = static_cast<Index>(half_edges.size());
+  const Index first_triangle = triangle_count();
   grow(vertices, vertices.size() + piece.positions.size());
   grow(states, vertices.size(), VertexState::kIncomplete);
-  grow(half_edges, half_edge_count);
-  grow(cost, half_edge_count, kUnknownCost);
-  grow(tie, half_edge_count);
+  grow(turns, vertices.size());
+  grow(triangles, triangle_total);
   normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     Vertex& vertex = vertices[first_vertex + static_cast<Index>(n)];
@@ -47,24 +46,26 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     vertex.id = piece.ids[static_cast<std::size_t>(n)];
   });
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t t) {
+    Triangle& triangle = triangles[first_triangle + static_cast<Index>(t)];
     for (Index c = 0; c < 3; ++c) {
-      const Index n = piece.triangles[static_cast<std::size_t>(t)][c];
-      half_edges[first_half_edge + 3 * static_cast<Index>(t) + c] = {piece_vertex(piece, first_vertex, n), kNone};
+      triangle.vertex[c] = piece_vertex(piece, first_vertex, piece.triangles[static_cast<std::size_t>(t)][c]);
     }
   });
   for (const Index n : piece.locked) states[piece_vertex(piece, first_vertex, n)] = VertexState::kLocked;
-  link(piece, first_half_edge, executor);
+  link(piece, first_triangle, executor);
   settle_front(piece, first_vertex, executor);
-  key_edges(first_half_edge, executor);
+  key_edges(first_triangle, executor);
 }
 
 // Finds twins among the new half-edges and the open ones: lists the half-edges that start at each vertex and
 // looks for (b, a) in the list of b.
-void Zone::link(const SurfacePiece& piece, Index first_half_edge, const Executor& executor) {
+void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
   std::vector<Index> candidates = std::move(open_half_edges_);
   const std::size_t open = candidates.size();
-  candidates.resize(open + half_edges.size() - first_half_edge);
-  for (std::size_t n = open; n < candidates.size(); ++n) candidates[n] = first_half_edge + static_cast<Index>(n - open);
+  candidates.reserve(open + 3 * std::size_t{triangle_count() - first_triangle});
+  for (Index t = first_triangle; t < triangle_count(); ++t) {
+    for (Index c = 0; c < 3; ++c) candidates.push_back(half_edge(t, c));
+  }
 
   // Only front and new vertices have candidates: number them densely, the front first.
   const auto new_vertices = static_cast<Index>(piece.positions.size());
@@ -110,8 +111,8 @@ void Zone::link(const SurfacePiece& piece, Index first_half_edge, const Executor
     for (Index m = start[bucket]; m < start[bucket + 1]; ++m) {
       const Index back = outgoing[m];
       if (destination(back) != a) continue;
-      half_edges[h].twin = back;
-      half_edges[back].twin = h;
+      set_twin(h, back);
+      set_twin(back, h);
       return;
     }
   });
@@ -131,8 +132,7 @@ void Zone::link(const SurfacePiece& piece, Index first_half_edge, const Executor
 
 // Vertices that the piece does not name as incomplete are complete now and get their quadrics.
 void Zone::settle_front(const SurfacePiece& piece, Index first_vertex, const Executor& executor) {
-  std::vector<Index> settled = std::move(front_);
-  front_ = settled;
+  settled = front_;
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = piece_vertex(piece, first_vertex, piece.incomplete[n]);
   for (Index v = first_vertex; v < vertices.size(); ++v) settled.push_back(v);
@@ -187,10 +187,17 @@ void Zone::initial_quadric(Index v) {
 }
 
 // Keys of the edges whose two ends are complete now.
-void Zone::key_edges(Index first_half_edge, const Executor& executor) {
+void Zone::key_edges(Index first_triangle, const Executor& executor) {
   std::vector<Index> edges = std::move(unkeyed_edges_);
-  for (Index h = first_half_edge; h < half_edges.size(); ++h) {
-    if (represents_edge(h)) edges.push_back(h);
+  for (const Index h : edges) {
+    for (const Index v : {origin(h), destination(h)}) settled.push_back(v);
+  }
+  std::sort(settled.begin(), settled.end());
+  settled.erase(std::unique(settled.begin(), settled.end()), settled.end());
+  for (Index t = first_triangle; t < triangle_count(); ++t) {
+    for (Index c = 0; c < 3; ++c) {
+      if (represents_edge(half_edge(t, c))) edges.push_back(half_edge(t, c));
+    }
   }
   executor.for_each(static_cast<std::int64_t>(edges.size()), kBlock, [&](std::int64_t n) {
     const Index h = edges[static_cast<std::size_t>(n)];
@@ -202,73 +209,80 @@ void Zone::key_edges(Index first_half_edge, const Executor& executor) {
     const bool locked = u_state == VertexState::kLocked || v_state == VertexState::kLocked;
     set_cost(h, locked ? kRetiredCost : edge_cost(u, v));
     const std::uint64_t mixed = mix_bits(options_.numbering.edge_id(u.id, v.id));
-    tie[h] = mixed;
-    if (exists(twin(h))) tie[twin(h)] = mixed;
+    for (const Index side : {h, twin(h)}) {
+      if (exists(side)) triangles[side >> 2].tie[side & 3] = mixed;
+    }
   });
-  std::erase_if(edges, [&](Index h) { return cost[h] != kUnknownCost || !represents_edge(h); });
+  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost || !represents_edge(h); });
   unkeyed_edges_ = std::move(edges);
 }
 
-void Zone::remove_triangle(Index t) {
-  for (Index h = 3 * t; h < 3 * t + 3; ++h) half_edges[h].vertex = kNone;
-}
+void Zone::remove_triangle(Index t) { triangles[t].vertex = {kNone, kNone, kNone}; }
 
 void Zone::compact() {
   Index dead = 0;
-  for (Index t = 0; t < triangles(); ++t) dead += !alive(3 * t);
+  for (const Triangle& triangle : triangles) dead += triangle.vertex[0] == kNone;
   dead_triangles_ = dead;
-  if (8 * std::uint64_t{dead} < triangles()) return;
+  if (8 * std::uint64_t{dead} < triangles.size()) return;
 
   // A vertex is held as long as a triangle uses it, or will.
   std::vector<Index> new_vertex(vertices.size(), kNone);
-  std::vector<Index> new_triangle(triangles(), kNone);
+  std::vector<Index> new_triangle(triangles.size(), kNone);
   Index kept = 0;
-  for (Index t = 0; t < triangles(); ++t) {
-    if (!alive(3 * t)) continue;
+  for (Index t = 0; t < triangle_count(); ++t) {
+    if (!alive(half_edge(t, 0))) continue;
     new_triangle[t] = kept++;
-    for (Index h = 3 * t; h < 3 * t + 3; ++h) new_vertex[origin(h)] = 0;
+    for (const Index v : triangles[t].vertex) new_vertex[v] = 0;
   }
   for (const Index v : front_) new_vertex[v] = 0;
-  const auto moved_half_edge = [&](Index h) { return exists(h) ? 3 * new_triangle[h / 3] + h % 3 : h; };
+  const auto moved_half_edge = [&](Index h) {
+    if (!exists(h)) return h;
+    return new_triangle[h >> 2] == kNone ? kNone : half_edge(new_triangle[h >> 2], h & 3);
+  };
 
   Index count = 0;
   for (Index v = 0; v < vertices.size(); ++v) {
     if (new_vertex[v] == kNone) continue;
     vertices[count] = vertices[v];
+    vertices[count].half_edge = moved_half_edge(vertices[v].half_edge);
     states[count] = states[v];
-    Index& first = vertices[count].half_edge;
-    if (exists(first)) first = new_triangle[first / 3] == kNone ? kNone : moved_half_edge(first);
+    turns[count] = turns[v];
     if (!normals.empty()) normals[count] = normals[v];
     new_vertex[v] = count++;
   }
   vertices.resize(count);
   states.resize(count);
+  turns.resize(count);
   if (!normals.empty()) normals.resize(count);
+  for (Turn& turn : turns) {
+    turn.edge = moved_half_edge(turn.edge);
+    for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) {
+      if (*v != kNone) *v = new_vertex[*v];
+    }
+  }
 
   for (Index t = 0; t < new_triangle.size(); ++t) {
     if (new_triangle[t] == kNone) continue;
+    Triangle moved = triangles[t];
     for (Index c = 0; c < 3; ++c) {
-      const Index from = 3 * t + c;
-      const Index to = 3 * new_triangle[t] + c;
-      half_edges[to] = {new_vertex[half_edges[from].vertex], moved_half_edge(half_edges[from].twin)};
-      cost[to] = cost[from];
-      tie[to] = tie[from];
+      moved.vertex[c] = new_vertex[moved.vertex[c]];
+      moved.twin[c] = moved_half_edge(moved.twin[c]);
     }
+    triangles[new_triangle[t]] = moved;
   }
-  half_edges.resize(3 * std::size_t{kept});
-  cost.resize(half_edges.size());
-  tie.resize(half_edges.size());
+  triangles.resize(kept);
   for (Index& v : front_) v = new_vertex[v];
   for (Index& h : open_half_edges_) h = moved_half_edge(h);
   for (Index& h : unkeyed_edges_) h = moved_half_edge(h);
+  settled.clear();
   dead_triangles_ = 0;
 }
 
 std::uint64_t Zone::bytes() const {
-  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) + normals.capacity() * sizeof(Point) +
-         half_edges.capacity() * sizeof(HalfEdge) + cost.capacity() * sizeof(CostBits) +
-         tie.capacity() * sizeof(std::uint64_t) +
-         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity()) * sizeof(Index);
+  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) + turns.capacity() * sizeof(Turn) +
+         normals.capacity() * sizeof(Point) + triangles.capacity() * sizeof(Triangle) +
+         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity() + settled.capacity()) *
+             sizeof(Index);
 }
 
 }  // namespace isoweave

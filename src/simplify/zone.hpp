@@ -1,10 +1,11 @@
 // The undecided zone: the part of the surface that is held, as half-edge arrays.
 //
-// Half-edge h = 3 * triangle + corner runs from its vertex to the vertex of next(h); twin(h) runs back. A collapse
-// writes half-edges and keys inside the two stars only, so collapses whose stars share no triangle can run at the
+// Half-edge h = 4 * triangle + corner runs from its vertex to the vertex of next(h); twin(h) runs back. A collapse
+// writes the triangles and vertices of the two stars only, so collapses whose stars share no triangle can run at the
 // same time. Nothing is freed between compactions: indices stay valid while edges are decided.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,13 +16,14 @@
 
 namespace isoweave {
 
-using Index = std::uint32_t;  // of a vertex, triangle or half-edge in the zone; a zone holds fewer than 2^32 half-edges
+using Index = std::uint32_t;  // of a vertex, triangle or half-edge in the zone; a zone holds fewer than 2^30 triangles
 
 inline constexpr Index kNone = 0xffffffffu;     // no half-edge: a border
 inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and gone
 
-inline Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
-inline Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+inline Index half_edge(Index triangle, Index corner) { return 4 * triangle + corner; }
+inline Index next(Index h) { return (h & 3) == 2 ? h - 2 : h + 1; }
+inline Index previous(Index h) { return (h & 3) == 0 ? h + 2 : h - 1; }
 inline bool exists(Index h) { return h < kWritten; }
 
 enum class VertexState : std::uint8_t {
@@ -44,9 +46,23 @@ struct alignas(64) Vertex {
 
 static_assert(sizeof(Vertex) == 128, "two cache lines");
 
-struct HalfEdge {
-  Index vertex;  // kNone in a triangle that is gone
-  Index twin;
+// A triangle's three half-edges: one cache line holds what a walk around a vertex reads.
+struct alignas(64) Triangle {
+  std::array<Index, 3> vertex{kNone, kNone, kNone};  // kNone: the triangle is gone
+  std::array<Index, 3> twin{kNone, kNone, kNone};
+  std::array<CostBits, 3> cost{kUnknownCost, kUnknownCost, kUnknownCost};  // of the edge, equal on both half-edges
+  std::array<std::uint64_t, 3> tie{};                                      // likewise
+};
+
+static_assert(sizeof(Triangle) == 64, "one cache line");
+
+// Whose turn it is at a vertex: the least key of its edges, and who waits for that to change.
+struct Turn {
+  CostBits cost = kUnknownCost;
+  Index edge = kNone;  // half-edge of the least edge; kNone: unknown, or none
+  Index first_waiter = kNone;
+  Index next_waiter = kNone;  // in the list of the vertex waited for
+  Index waits_for = kNone;
 };
 
 struct ZoneOptions {
@@ -62,31 +78,40 @@ class Zone {
   std::vector<Vertex> vertices;
   std::vector<VertexState> states;  // parallel to vertices
   std::vector<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
-  std::vector<HalfEdge> half_edges;
-  std::vector<CostBits> cost;      // of the edge, equal on both half-edges
-  std::vector<std::uint64_t> tie;  // likewise
+  std::vector<Turn> turns;          // parallel to vertices; kept by the schedule that uses it
+  std::vector<Triangle> triangles;
+  std::vector<Index> settled;  // vertices that got keys with the last piece
 
   const ZoneOptions& options() const { return options_; }
-  Index triangles() const { return static_cast<Index>(half_edges.size() / 3); }
-  Index live_triangles() const { return triangles() - dead_triangles_; }
-  Index origin(Index h) const { return half_edges[h].vertex; }
-  Index destination(Index h) const { return half_edges[next(h)].vertex; }
-  Index twin(Index h) const { return half_edges[h].twin; }
-  bool alive(Index h) const { return half_edges[h].vertex != kNone; }
+  Index triangle_count() const { return static_cast<Index>(triangles.size()); }
+  Index live_triangles() const { return triangle_count() - dead_triangles_; }
+  Index origin(Index h) const { return triangles[h >> 2].vertex[h & 3]; }
+  Index destination(Index h) const { return origin(next(h)); }
+  Index twin(Index h) const { return triangles[h >> 2].twin[h & 3]; }
+  CostBits cost(Index h) const { return triangles[h >> 2].cost[h & 3]; }
+  std::uint64_t tie(Index h) const { return triangles[h >> 2].tie[h & 3]; }
+  bool alive(Index h) const { return triangles[h >> 2].vertex[0] != kNone; }
+
+  // The star of v is one fan that can be walked around.
+  bool walkable(Index v) const {
+    return (states[v] == VertexState::kComplete || states[v] == VertexState::kFinal) && exists(vertices[v].half_edge);
+  }
 
   // The half-edge that stands for its edge.
-  bool represents_edge(Index h) const { return h < half_edges[h].twin || !exists(half_edges[h].twin); }
+  bool represents_edge(Index h) const { return h < twin(h) || !exists(twin(h)); }
 
   // The next half-edge around the origin of h, counter-clockwise; kNone past a border.
-  Index rotate(Index h) const { return half_edges[previous(h)].twin; }
+  Index rotate(Index h) const { return twin(previous(h)); }
 
+  void set_twin(Index h, Index other) { triangles[h >> 2].twin[h & 3] = other; }
   void set_cost(Index h, CostBits c) {
-    cost[h] = c;
-    if (exists(twin(h))) cost[twin(h)] = c;
+    triangles[h >> 2].cost[h & 3] = c;
+    const Index other = twin(h);
+    if (exists(other)) triangles[other >> 2].cost[other & 3] = c;
   }
 
   // Takes a piece in: links it to the front, then gives quadrics to the vertices and keys to the edges that are
-  // complete now. Throws OverMemory when the zone would hold 2^32 half-edges.
+  // complete now. Throws OverMemory when the zone would hold 2^30 triangles.
   void append(const SurfacePiece& piece, const Executor& executor);
 
   // Marks a triangle as gone.
@@ -98,9 +123,9 @@ class Zone {
   std::uint64_t bytes() const;
 
  private:
-  void link(const SurfacePiece& piece, Index first_half_edge, const Executor& executor);
+  void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void settle_front(const SurfacePiece& piece, Index first_vertex, const Executor& executor);
-  void key_edges(Index first_half_edge, const Executor& executor);
+  void key_edges(Index first_triangle, const Executor& executor);
   void initial_quadric(Index v);
   Index piece_vertex(const SurfacePiece& piece, Index first_vertex, Index n) const {
     return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);

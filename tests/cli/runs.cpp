@@ -135,6 +135,7 @@ TEST(CliMesh, TheResultDoesNotDependOnHowItIsMade) {
   const std::string expected = files::read_bytes(folder / "a.ply");
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--slab", "1", "--threads", "1"},
                                                {"--slab", "whole", "--schedule", "rounds"},
+                                               {"--slab", "3", "--schedule", "local"},
                                                {"--slab", "7", "--schedule", "queue"},
                                                {"--slab", "999999999999", "--threads", "3", "--device", "cpu"}}) {
     std::vector<std::string> arguments = common;

@@ -18,7 +18,7 @@ SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
 
 SurfaceRun oracle(const SurfaceCase& surface) {
   const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue, {}}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
   DecisionCounts counts;
   SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
                          [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
@@ -42,7 +42,7 @@ TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
       surface.quality = quality;
       surface.error = error;
       const SurfaceRun expected = oracle(surface);
-      ASSERT_LT(expected.report.triangles, expected.report.triangles_extracted);
+      if (error > 0.1) ASSERT_LT(expected.report.triangles, expected.report.triangles_extracted);
       const std::vector<std::int64_t> slabs = kSanitized ? std::vector<std::int64_t>{5, kWholeVolume}
                                                          : std::vector<std::int64_t>{1, 2, 5, 12, kWholeVolume};
       for (const std::int64_t slab : slabs) {
@@ -56,7 +56,10 @@ TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
           EXPECT_EQ(run.report.rekeyed, expected.report.rekeyed);
         };
         same(Schedule::kQueue, 1);
-        for (const int threads : kSanitized ? std::vector{4} : std::vector{1, 2, 4}) same(Schedule::kRounds, threads);
+        for (const int threads : kSanitized ? std::vector{4} : std::vector{1, 2, 4}) {
+          same(Schedule::kLocal, threads);
+          same(Schedule::kRounds, threads);
+        }
       }
     }
   }
@@ -72,7 +75,7 @@ TEST_P(Conformance, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
     for (const std::int64_t slab : {std::int64_t{4}, kWholeVolume}) {
       std::mt19937 random(static_cast<unsigned>(slab));
       const Executor executor(1);
-      Simplifier simplifier({surface.zone(), quality, Schedule::kQueue, {}}, executor, nullptr);
+      Simplifier simplifier({surface.zone(), quality, Schedule::kQueue}, executor, nullptr);
       const SurfaceRun run =
           sweep(surface, slab, executor, simplifier, [&] { decide_at_random(simplifier.zone(), quality, random); });
       EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest)) << "slab " << slab;
@@ -85,7 +88,7 @@ TEST_P(Conformance, TopologyIsThatOfTheFullSurface) {
   surface.error = 0;
   const SurfaceRun full = sweep(surface, Schedule::kQueue, 1, 5);
   surface.error = 0.4;
-  const SurfaceRun reduced = sweep(surface, Schedule::kRounds, 4, 5);
+  const SurfaceRun reduced = sweep(surface, Schedule::kLocal, 4, 5);
   ASSERT_EQ(full.report.triangles, full.report.triangles_extracted);
   ASSERT_EQ(full.report.vertices, full.report.vertices_extracted);
   const MeshCheck before = check_mesh(full.mesh);
@@ -117,7 +120,7 @@ std::string case_name(const ::testing::TestParamInfo<Conformance::ParamType>& in
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Conformance,
                          ::testing::Combine(::testing::Values("sphere", "torus", "gyroid", "box", "shells", "smooth",
-                                                              "noise", "white"),
+                                                              "noise", "white", "specks"),
                                             ::testing::Bool(), ::testing::Bool()),
                          case_name);
 

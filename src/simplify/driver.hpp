@@ -1,0 +1,27 @@
+// What every schedule is to the simplifier: it decides all edges of a zone that can be decided.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "simplify/decide.hpp"
+
+namespace isoweave {
+
+class Driver {
+ public:
+  Driver() = default;
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+  virtual ~Driver() = default;
+
+  // To be called after every append to the zone. Stops early when *stop becomes true; the zone is of no use then.
+  virtual void run(const std::atomic<bool>* stop) = 0;
+
+  virtual DecisionCounts counts() const = 0;
+
+  // Passes over lists of vertices or edges so far.
+  virtual std::uint64_t rounds() const = 0;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,254 @@
+#include "simplify/local_minima.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "simplify/turns.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr double kPlaceSide = 24;  // mean voxels: what a worker has in hand at a time stays in its cache
+
+}  // namespace
+
+// Serves vertices. While it works on one, it holds every vertex that it reads or writes: both ends of the edge and
+// their neighbours. It never waits for another worker with anything in hand.
+class LocalMinima::Worker {
+ public:
+  Worker(Zone& zone, Quality quality, std::uint16_t number) : zone_(zone), decider_(zone, quality), number_(number) {}
+
+  const DecisionCounts& counts() const { return decider_.counts(); }
+
+  // owners: nullptr when this is the only worker.
+  void begin(std::vector<std::uint16_t>* owners) { owners_ = owners; }
+
+  void wake_waiters(Index v) {
+    Turn& turn = zone_.turns[v];
+    for (Index w = turn.first_waiter; w != kNone;) {
+      const Index after = zone_.turns[w].next_waiter;
+      waits_for(w).store(kNone, std::memory_order_release);
+      todo_.push_back(w);
+      w = after;
+    }
+    turn.first_waiter = kNone;
+  }
+
+  // Serves the vertex and everything that follows from it.
+  void serve(Index v, const std::atomic<bool>* stop) {
+    todo_.push_back(v);
+    while (!todo_.empty() || !later_.empty()) {
+      if (todo_.empty()) {
+        todo_.swap(later_);
+        std::this_thread::yield();
+      }
+      const Index top = todo_.back();
+      todo_.pop_back();
+      if (!visit(top)) later_.push_back(top);
+      release();
+      if (stop != nullptr && stop->load(std::memory_order_relaxed)) {
+        todo_.clear();
+        later_.clear();
+        return;
+      }
+    }
+  }
+
+ private:
+  bool hold(Index v) {
+    if (owners_ == nullptr) return true;
+    const std::atomic_ref<std::uint16_t> owner((*owners_)[v]);
+    std::uint16_t found = 0;
+    if (owner.compare_exchange_strong(found, number_, std::memory_order_acquire, std::memory_order_relaxed)) {
+      held_.push_back(v);
+      return true;
+    }
+    return found == number_;
+  }
+
+  bool holds(Index v) const {
+    return owners_ == nullptr ||
+           std::atomic_ref<std::uint16_t>((*owners_)[v]).load(std::memory_order_relaxed) == number_;
+  }
+
+  void release() {
+    for (const Index v : held_) {
+      std::atomic_ref<std::uint16_t>((*owners_)[v]).store(0, std::memory_order_release);
+    }
+    held_.clear();
+  }
+
+  std::atomic_ref<Index> waits_for(Index v) { return std::atomic_ref<Index>(zone_.turns[v].waits_for); }
+
+  // Decides the least edge of v if it is a local minimum, else lets v wait for the vertex that comes first. False when
+  // another worker holds something: nothing has been done.
+  bool visit(Index v) {
+    if (!hold(v)) return false;
+    const Turn& turn = zone_.turns[v];
+    if (!has_turn(zone_, v)) return true;
+    if (waits_for(v).load(std::memory_order_acquire) != kNone) return true;
+    const Index edge = turn.edge;
+    const Index other = other_end(zone_, edge, v);
+    if (!hold(other)) return false;
+    if (zone_.turns[other].cost == kUnknownCost || !same_edge(zone_, turn, zone_.turns[other])) {
+      wait(v, other);
+      return true;
+    }
+    decider_.look_at(edge);
+    Index first = v;
+    for (const Star* star : {&decider_.first(), &decider_.second()}) {
+      const bool all_held = star->each_neighbour(zone_, [&](Index x) {
+        if (!hold(x)) return false;
+        if (earlier(zone_, zone_.turns[x], zone_.turns[first])) first = x;
+        return true;
+      });
+      if (!all_held) return false;
+    }
+    if (first != v) {
+      wait(v, first);
+      if (waits_for(other).load(std::memory_order_acquire) == kNone) enlist(other, v);
+      return true;
+    }
+    decider_.decide();
+    settle(v, other);
+    return true;
+  }
+
+  void enlist(Index v, Index first) {
+    Turn& turn = zone_.turns[v];
+    turn.next_waiter = zone_.turns[first].first_waiter;
+    zone_.turns[first].first_waiter = v;
+    waits_for(v).store(first, std::memory_order_release);
+  }
+
+  void wait(Index v, Index first) {
+    enlist(v, first);
+    const Turn& turn = zone_.turns[first];
+    if (turn.cost != kUnknownCost && waits_for(first).load(std::memory_order_acquire) == kNone) {
+      todo_.push_back(first);
+    }
+  }
+
+  // New turns for the vertices whose least edge has changed, all of them held.
+  void settle(Index u, Index v) {
+    if (!decider_.collapsed()) {
+      renew(u);
+      renew(v);
+      return;
+    }
+    const Star& merged = decider_.first();
+    const Index gone = merged.vertex == u ? v : u;
+    wake_waiters(gone);
+    zone_.turns[gone].cost = kRetiredCost;
+    zone_.turns[gone].edge = kNone;
+    renew(merged.vertex);
+    for (int n = 0; n < merged.neighbours; ++n) {
+      const Index w = merged.neighbour[static_cast<std::size_t>(n)];
+      if (!has_turn(zone_, w)) continue;
+      const Index edge = zone_.turns[w].edge;
+      const bool touched =
+          !zone_.alive(edge) || zone_.origin(edge) == merged.vertex || zone_.destination(edge) == merged.vertex;
+      if (touched) renew(w);
+    }
+  }
+
+  void renew(Index v) {
+    renew_turn(zone_, v);
+    wake_waiters(v);
+    stop_waiting(v);
+    todo_.push_back(v);
+  }
+
+  // Takes v out of the list that it waits in, unless another worker holds that: then what v waits for lies beside v
+  // itself and blocks its new least edge as well.
+  void stop_waiting(Index v) {
+    const Index first = waits_for(v).load(std::memory_order_acquire);
+    if (first == kNone || !holds(first)) return;
+    Index* link = &zone_.turns[first].first_waiter;
+    while (*link != v) link = &zone_.turns[*link].next_waiter;
+    *link = zone_.turns[v].next_waiter;
+    waits_for(v).store(kNone, std::memory_order_release);
+  }
+
+  Zone& zone_;
+  Decider decider_;
+  std::uint16_t number_;
+  std::vector<std::uint16_t>* owners_ = nullptr;
+  std::vector<Index> todo_;   // a stack: what was woken last lies nearest
+  std::vector<Index> later_;  // met another worker
+  std::vector<Index> held_;
+};
+
+LocalMinima::LocalMinima(Zone& zone, Quality quality, const Executor& executor) : zone_(zone), executor_(executor) {
+  for (int n = 0; n < executor.threads(); ++n) {
+    workers_.push_back(std::make_unique<Worker>(zone, quality, static_cast<std::uint16_t>(n + 1)));
+  }
+}
+
+LocalMinima::~LocalMinima() = default;
+
+DecisionCounts LocalMinima::counts() const {
+  DecisionCounts sum;
+  for (const auto& worker : workers_) sum += worker->counts();
+  return sum;
+}
+
+void LocalMinima::run(const std::atomic<bool>* stop) {
+  give_turns(zone_, executor_);
+  wake_neighbourhood();
+  group_by_place();
+  const bool alone = workers_.size() == 1;
+  if (!alone) owners_.assign(zone_.vertices.size(), 0);
+  std::atomic<std::size_t> next_place{0};
+  const std::size_t places = places_.start.size() - 1;
+  executor_.for_each(executor_.threads(), 1, [&](std::int64_t n) {
+    Worker& worker = *workers_[static_cast<std::size_t>(n)];
+    worker.begin(alone ? nullptr : &owners_);
+    for (std::size_t place = next_place++; place < places; place = next_place++) {
+      for (std::size_t m = places_.start[place]; m < places_.start[place + 1]; ++m) {
+        worker.serve(awake_[places_.items[m]], stop);
+      }
+    }
+  });
+  ++rounds_;
+}
+
+// The vertices that have settled, and whoever waited for them.
+void LocalMinima::wake_neighbourhood() {
+  awake_ = zone_.settled;
+  for (const Index v : zone_.settled) {
+    Turn& turn = zone_.turns[v];
+    if (turn.cost == kUnknownCost) continue;
+    for (Index w = turn.first_waiter; w != kNone; w = zone_.turns[w].next_waiter) {
+      zone_.turns[w].waits_for = kNone;
+      awake_.push_back(w);
+    }
+    turn.first_waiter = kNone;
+  }
+}
+
+// Groups the vertices to serve by columns of the volume.
+void LocalMinima::group_by_place() {
+  if (awake_.empty()) return places_.start.assign(1, 0);
+  const double side = kPlaceSide * std::sqrt(zone_.options().a0);
+  Vec3 low = zone_.vertices[awake_.front()].position;
+  Vec3 high = low;
+  for (const Index v : awake_) {
+    const Vec3 p = zone_.vertices[v].position;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), 0};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), 0};
+  }
+  const auto column = [&](double p, double from) { return static_cast<std::size_t>((p - from) / side); };
+  const std::size_t nx = column(high.x, low.x) + 1;
+  const std::size_t ny = column(high.y, low.y) + 1;
+  fill_buckets(
+      executor_, static_cast<std::uint32_t>(awake_.size()), nx * ny,
+      [&](std::uint32_t n) {
+        const Vec3 p = zone_.vertices[awake_[n]].position;
+        return column(p.x, low.x) + nx * column(p.y, low.y);
+      },
+      places_);
+}
+
+}  // namespace isoweave
