@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "isoweave/error.hpp"
+#include "parallel/collect.hpp"
 
 namespace isoweave {
 namespace {
@@ -35,6 +36,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   }
   const auto first_vertex = static_cast<Index>(vertices.size());
   const Index first_triangle = triangle_count();
+  list_settled(first_vertex + static_cast<Index>(piece.positions.size()));
   grow(vertices, vertices.size() + piece.positions.size());
   grow(states, vertices.size(), VertexState::kIncomplete);
   grow(turns, vertices.size());
@@ -45,117 +47,168 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     vertex.position = piece.positions[static_cast<std::size_t>(n)];
     vertex.id = piece.ids[static_cast<std::size_t>(n)];
   });
-  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t t) {
-    Triangle& triangle = triangles[first_triangle + static_cast<Index>(t)];
+  const auto vertex_of = [&](Index n) {
+    return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
+  };
+  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
+    const Index t = first_triangle + static_cast<Index>(n);
     for (Index c = 0; c < 3; ++c) {
-      triangle.vertex[c] = piece_vertex(piece, first_vertex, piece.triangles[static_cast<std::size_t>(t)][c]);
+      const Index v = vertex_of(piece.triangles[static_cast<std::size_t>(n)][c]);
+      triangles[t].vertex[c] = v;
+      start_at(v, half_edge(t, c));
     }
   });
-  for (const Index n : piece.locked) states[piece_vertex(piece, first_vertex, n)] = VertexState::kLocked;
+  for (const Index n : piece.locked) states[vertex_of(n)] = VertexState::kLocked;
   link(piece, first_triangle, executor);
-  settle_front(piece, first_vertex, executor);
-  key_edges(first_triangle, executor);
+  std::vector<Index> front(piece.incomplete.size());
+  for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
+  front_ = std::move(front);
+  settle_vertices(first_triangle, executor);
+  settle_edges(first_triangle, executor);
 }
 
-// Finds twins among the new half-edges and the open ones: lists the half-edges that start at each vertex and
-// looks for (b, a) in the list of b.
-void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
-  std::vector<Index> candidates = std::move(open_half_edges_);
-  const std::size_t open = candidates.size();
-  candidates.reserve(open + 3 * std::size_t{triangle_count() - first_triangle});
-  for (Index t = first_triangle; t < triangle_count(); ++t) {
-    for (Index c = 0; c < 3; ++c) candidates.push_back(half_edge(t, c));
+// The vertices that were incomplete, those beside them, and the new ones up to `end`.
+void Zone::list_settled(Index end) {
+  settled = front_;
+  for (const Index h : unkeyed_edges_) {
+    settled.push_back(origin(h));
+    settled.push_back(destination(h));
   }
+  std::sort(settled.begin(), settled.end());
+  settled.erase(std::unique(settled.begin(), settled.end()), settled.end());
+  for (auto v = static_cast<Index>(vertices.size()); v < end; ++v) settled.push_back(v);
+}
 
-  // Only front and new vertices have candidates: number them densely, the front first.
-  const auto new_vertices = static_cast<Index>(piece.positions.size());
-  const Index first_new = static_cast<Index>(vertices.size()) - new_vertices;
-  std::vector<std::pair<Index, Index>> old_vertices;  // (vertex, dense number), sorted
-  for (std::size_t n = 0; n < open; ++n) old_vertices.emplace_back(origin(candidates[n]), 0);
-  for (const Index v : front_) old_vertices.emplace_back(v, 0);
-  std::sort(old_vertices.begin(), old_vertices.end());
-  old_vertices.erase(std::unique(old_vertices.begin(), old_vertices.end()), old_vertices.end());
-  for (std::size_t n = 0; n < old_vertices.size(); ++n) old_vertices[n].second = static_cast<Index>(n);
-  const auto old_count = static_cast<Index>(old_vertices.size());
-  const auto dense = [&](Index v) {
-    if (v >= first_new) return old_count + (v - first_new);
-    return std::lower_bound(old_vertices.begin(), old_vertices.end(), std::pair<Index, Index>(v, 0))->second;
+// Walks around v may start at h: keeps the smallest that is offered.
+void Zone::start_at(Index v, Index h) {
+  const std::atomic_ref<Index> start(vertices[v].half_edge);
+  Index found = start.load(std::memory_order_relaxed);
+  while (h < found && !start.compare_exchange_weak(found, h, std::memory_order_relaxed)) {
+  }
+}
+
+// Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides in each
+// list that run in opposite directions between the same ends. Edges between locked vertices may have any number of
+// sides and stay unlinked: nobody walks around their ends.
+void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
+  struct Side {
+    Index other;  // end with the larger number
+    Index half_edge;
   };
-
-  const auto count = static_cast<std::int64_t>(candidates.size());
-  std::vector<Index> start(old_count + std::size_t{new_vertices} + 1, 0);
-  executor.for_each(count, kBlock, [&](std::int64_t n) {
-    const Index slot = dense(origin(candidates[static_cast<std::size_t>(n)])) + 1;
-    std::atomic_ref(start[slot]).fetch_add(1, std::memory_order_relaxed);
-  });
-  for (std::size_t n = 1; n < start.size(); ++n) start[n] += start[n - 1];
-  std::vector<Index> fill(start.begin(), start.end() - 1);
-  std::vector<Index> outgoing(candidates.size());
-  executor.for_each(count, kBlock, [&](std::int64_t n) {
-    const Index h = candidates[static_cast<std::size_t>(n)];
-    outgoing[std::atomic_ref(fill[dense(origin(h))]).fetch_add(1, std::memory_order_relaxed)] = h;
-  });
-
-  // Each pair is written once, from its half-edge that starts at the smaller vertex. Edges between locked vertices may
-  // have any number of triangles and stay unlinked: nobody walks around their ends.
-  executor.for_each(count, kBlock, [&](std::int64_t n) {
-    const Index h = candidates[static_cast<std::size_t>(n)];
-    const Index a = origin(h);
-    const Index b = destination(h);
-    if (a > b || (states[a] == VertexState::kLocked && states[b] == VertexState::kLocked)) return;
-    const bool listed =
-        b >= first_new || std::binary_search(old_vertices.begin(), old_vertices.end(), std::pair<Index, Index>(b, 0),
-                                             [](const auto& p, const auto& q) { return p.first < q.first; });
-    if (!listed) return;
-    const Index bucket = dense(b);
-    for (Index m = start[bucket]; m < start[bucket + 1]; ++m) {
-      const Index back = outgoing[m];
-      if (destination(back) != a) continue;
-      set_twin(h, back);
-      set_twin(back, h);
+  constexpr Index kBackwards = Index{1} << 31;  // in `other`: runs from the larger to the smaller number
+  const auto open_sides = open_sides_of(piece);
+  const auto open = static_cast<std::int64_t>(open_sides.size());
+  const auto count = open + static_cast<std::int64_t>(piece.triangles.size());
+  const auto each_side = [&](std::int64_t n, const auto& visit) {
+    if (n < open) {
+      const auto& [a, b, h] = open_sides[static_cast<std::size_t>(n)];
+      visit(a, b, h);
       return;
     }
-  });
+    const auto& corners = piece.triangles[static_cast<std::size_t>(n - open)];
+    for (Index c = 0; c < 3; ++c) {
+      const Index h = half_edge(first_triangle + static_cast<Index>(n - open), c);
+      visit(corners[c], corners[(c + 1) % 3], h);
+    }
+  };
 
-  // A vertex starts its walks at the border if it has one, else at its first half-edge.
-  executor.for_each(static_cast<std::int64_t>(old_count) + new_vertices, kBlock, [&](std::int64_t n) {
-    const auto slot = static_cast<Index>(n);
-    const Index v = slot < old_count ? old_vertices[slot].first : first_new + (slot - old_count);
-    Index& first = vertices[v].half_edge;
-    for (Index m = start[slot]; m < start[slot + 1]; ++m) first = std::min(first, outgoing[m]);
-    for (Index m = start[slot]; m < start[slot + 1]; ++m) {
-      if (twin(outgoing[m]) == kNone) first = outgoing[m];
+  const std::size_t ends = piece.inherited + piece.positions.size();
+  std::vector<Index> start(ends + 1, 0);
+  executor.for_each(count, kBlock, [&](std::int64_t n) {
+    each_side(n, [&](Index a, Index b, Index) {
+      std::atomic_ref(start[std::min(a, b) + 1]).fetch_add(1, std::memory_order_relaxed);
+    });
+  });
+  for (std::size_t n = 0; n < ends; ++n) start[n + 1] += start[n];
+  std::vector<Index> fill(start.begin(), start.end() - 1);
+  std::vector<Side> sides(start.back());
+  executor.for_each(count, kBlock, [&](std::int64_t n) {
+    each_side(n, [&](Index a, Index b, Index h) {
+      const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
+      sides[place] = {a < b ? b : a | kBackwards, h};
+    });
+  });
+  executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
+    const auto end = static_cast<std::size_t>(n);
+    for (Index m = start[end]; m < start[end + 1]; ++m) {
+      for (Index k = m + 1; k < start[end + 1]; ++k) {
+        if ((sides[m].other ^ sides[k].other) != kBackwards) continue;
+        const Index h = sides[m].half_edge;
+        if (states[origin(h)] == VertexState::kLocked && states[destination(h)] == VertexState::kLocked) break;
+        set_twin(h, sides[k].half_edge);
+        set_twin(sides[k].half_edge, h);
+        break;
+      }
     }
   });
-  open_half_edges_ = std::move(candidates);
 }
 
-// Vertices that the piece does not name as incomplete are complete now and get their quadrics.
-void Zone::settle_front(const SurfacePiece& piece, Index first_vertex, const Executor& executor) {
-  settled = front_;
-  std::vector<Index> front(piece.incomplete.size());
-  for (std::size_t n = 0; n < front.size(); ++n) front[n] = piece_vertex(piece, first_vertex, piece.incomplete[n]);
-  for (Index v = first_vertex; v < vertices.size(); ++v) settled.push_back(v);
+// The open half-edges that a piece can close, with the numbers that it gives to their ends.
+std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece) const {
+  std::vector<std::pair<Index, Index>> numbers;  // of the front, by vertex
+  for (Index n = 0; n < piece.inherited; ++n) numbers.emplace_back(front_[n], n);
+  std::sort(numbers.begin(), numbers.end());
+  const auto number = [&](Index v) {
+    return std::lower_bound(numbers.begin(), numbers.end(), std::pair<Index, Index>(v, 0))->second;
+  };
+  std::vector<std::array<Index, 3>> sides;
+  for (const Index h : open_half_edges_) sides.push_back({number(origin(h)), number(destination(h)), h});
+  return sides;
+}
+
+// Vertices that later pieces do not add to are complete now: they get their quadrics.
+void Zone::settle_vertices(Index first_triangle, const Executor& executor) {
+  std::vector<Index> complete;
   for (const Index v : settled) {
-    if (states[v] != VertexState::kLocked) states[v] = VertexState::kComplete;
+    if (states[v] != VertexState::kIncomplete) continue;
+    states[v] = VertexState::kComplete;
+    complete.push_back(v);
   }
-  for (const Index v : front) states[v] = VertexState::kIncomplete;
-  executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
-    const Index v = settled[static_cast<std::size_t>(n)];
-    if (states[v] == VertexState::kComplete && exists(vertices[v].half_edge)) initial_quadric(v);
+  for (const Index v : front_) states[v] = VertexState::kIncomplete;
+  executor.for_blocks(static_cast<std::int64_t>(complete.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Index> faces;
+    for (std::int64_t n = begin; n < end; ++n) {
+      const Index v = complete[static_cast<std::size_t>(n)];
+      if (states[v] != VertexState::kComplete || !exists(vertices[v].half_edge)) continue;
+      start_at_border(v);
+      initial_quadric(v, faces);
+    }
   });
-  front_ = std::move(front);
-  std::erase_if(open_half_edges_, [&](Index h) {
-    const bool incomplete =
-        states[origin(h)] == VertexState::kIncomplete || states[destination(h)] == VertexState::kIncomplete;
-    return twin(h) != kNone || !incomplete;
-  });
+
+  // Only a triangle between incomplete vertices can close a half-edge.
+  const auto closed = [&](Index h) {
+    return twin(h) != kNone || states[origin(h)] != VertexState::kIncomplete ||
+           states[destination(h)] != VertexState::kIncomplete;
+  };
+  std::erase_if(open_half_edges_, closed);
+  std::vector<Index> open;
+  collect(
+      executor, triangle_count() - first_triangle, kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
+          for (Index c = 0; c < 3; ++c) {
+            if (!closed(half_edge(t, c))) list.push_back(half_edge(t, c));
+          }
+        }
+      },
+      open);
+  open_half_edges_.insert(open_half_edges_.end(), open.begin(), open.end());
+}
+
+// Turns v's start back to the half-edge without a twin, if v lies on a border.
+void Zone::start_at_border(Index v) {
+  const Index first = vertices[v].half_edge;
+  for (Index h = first; exists(twin(h));) {
+    h = next(twin(h));
+    vertices[v].half_edge = h;
+    if (h == first) return;
+  }
 }
 
 // Planes of the faces around v in the order of the faces, weighted by area / 3; then, on an open border, planes
 // through the two border edges perpendicular to their faces, weighted by squared length.
-void Zone::initial_quadric(Index v) {
-  std::vector<Index> faces;
+void Zone::initial_quadric(Index v, std::vector<Index>& faces) {
+  faces.clear();
   const Index first = vertices[v].half_edge;
   Index last = first;
   for (Index h = first; exists(h); h = rotate(h)) {
@@ -187,18 +240,19 @@ void Zone::initial_quadric(Index v) {
 }
 
 // Keys of the edges whose two ends are complete now.
-void Zone::key_edges(Index first_triangle, const Executor& executor) {
-  std::vector<Index> edges = std::move(unkeyed_edges_);
-  for (const Index h : edges) {
-    for (const Index v : {origin(h), destination(h)}) settled.push_back(v);
-  }
-  std::sort(settled.begin(), settled.end());
-  settled.erase(std::unique(settled.begin(), settled.end()), settled.end());
-  for (Index t = first_triangle; t < triangle_count(); ++t) {
-    for (Index c = 0; c < 3; ++c) {
-      if (represents_edge(half_edge(t, c))) edges.push_back(half_edge(t, c));
-    }
-  }
+void Zone::settle_edges(Index first_triangle, const Executor& executor) {
+  std::vector<Index> edges;
+  collect(
+      executor, triangle_count() - first_triangle, kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
+          for (Index c = 0; c < 3; ++c) {
+            if (represents_edge(half_edge(t, c))) list.push_back(half_edge(t, c));
+          }
+        }
+      },
+      edges);
+  edges.insert(edges.end(), unkeyed_edges_.begin(), unkeyed_edges_.end());
   executor.for_each(static_cast<std::int64_t>(edges.size()), kBlock, [&](std::int64_t n) {
     const Index h = edges[static_cast<std::size_t>(n)];
     const Vertex& u = vertices[origin(h)];
@@ -213,7 +267,7 @@ void Zone::key_edges(Index first_triangle, const Executor& executor) {
       if (exists(side)) triangles[side >> 2].tie[side & 3] = mixed;
     }
   });
-  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost || !represents_edge(h); });
+  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost; });
   unkeyed_edges_ = std::move(edges);
 }
 

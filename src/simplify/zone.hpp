@@ -123,17 +123,18 @@ class Zone {
   std::uint64_t bytes() const;
 
  private:
+  void list_settled(Index end);
+  void start_at(Index v, Index h);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
-  void settle_front(const SurfacePiece& piece, Index first_vertex, const Executor& executor);
-  void key_edges(Index first_triangle, const Executor& executor);
-  void initial_quadric(Index v);
-  Index piece_vertex(const SurfacePiece& piece, Index first_vertex, Index n) const {
-    return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
-  }
+  std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
+  void settle_vertices(Index first_triangle, const Executor& executor);
+  void start_at_border(Index v);
+  void initial_quadric(Index v, std::vector<Index>& faces);
+  void settle_edges(Index first_triangle, const Executor& executor);
 
   ZoneOptions options_;
   std::vector<Index> front_;            // incomplete vertices, in the order of the piece that named them
-  std::vector<Index> open_half_edges_;  // without twin, an end incomplete: the next piece may bring it
+  std::vector<Index> open_half_edges_;  // without twin, between incomplete vertices: the next piece may bring it
   std::vector<Index> unkeyed_edges_;    // an end incomplete
   Index dead_triangles_ = 0;
 };
