@@ -1,6 +1,7 @@
 // Connected components of a surface that is seen piece by piece.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,9 @@ class ComponentCounter {
 
   // Components so far.
   std::uint64_t count() const { return added_ - joined_; }
+
+  // Labels held.
+  std::size_t labels() const { return parent_.size(); }
 
   // Renumbers the labels of the vertices still held, in place; all other labels become invalid.
   void compact(std::span<std::uint32_t*> labels);

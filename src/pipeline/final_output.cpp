@@ -15,8 +15,8 @@ void FinalOutput::take(Simplifier& simplifier) {
   }
   sink_.append(points_, normals_, triangles_);
   triangles_written_ += triangles_.size();
-  zone.compact();
-  forget_components(zone);
+  simplifier.compact();
+  if (components_.labels() > zone.vertices.size()) forget_components(zone);
 }
 
 std::array<std::uint64_t, 3> FinalOutput::write_triangle(Zone& zone, Index t) {

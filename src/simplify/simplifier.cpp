@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "isoweave/error.hpp"
+#include "parallel/collect.hpp"
 #include "simplify/local_minima.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/rounds.hpp"
@@ -10,6 +11,8 @@
 namespace isoweave {
 
 namespace {
+
+constexpr std::int64_t kBlock = 8192;
 
 std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, Quality quality, const Executor& executor) {
   switch (schedule) {
@@ -37,48 +40,96 @@ void Simplifier::decide() {
 }
 
 std::vector<Index> Simplifier::final_triangles() {
-  const CostBits retire = zone_.options().retire;
-  std::vector<std::uint8_t> undecided(zone_.vertices.size(), 0);
-  std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
-  for (Index v = 0; v < undecided.size(); ++v) undecided[v] = zone_.states[v] == VertexState::kIncomplete;
-  for (const Triangle& triangle : zone_.triangles) {
-    if (triangle.vertex[0] == kNone) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      ++corners[triangle.vertex[c]];
-      if (triangle.cost[c] > retire) continue;
-      undecided[triangle.vertex[c]] = 1;
-      undecided[triangle.vertex[(c + 1) % 3]] = 1;
-    }
-  }
-  for (Index v = 0; v < undecided.size(); ++v) {
-    if (undecided[v] || corners[v] == 0 || zone_.states[v] == VertexState::kFinal) continue;
-    if (zone_.states[v] == VertexState::kComplete) inspect_final_vertex(v, corners[v]);
-    zone_.states[v] = VertexState::kFinal;
-  }
+  mark_undecided();
+  inspect(name_final_vertices());
   std::vector<Index> triangles;
-  for (Index t = 0; t < zone_.triangle_count(); ++t) {
-    const auto& [a, b, c] = zone_.triangles[t].vertex;
-    if (a != kNone && !undecided[a] && !undecided[b] && !undecided[c]) triangles.push_back(t);
-  }
+  collect(
+      executor_, zone_.triangle_count(), kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
+          const auto& [a, b, c] = zone_.triangles[t].vertex;
+          if (a != kNone && !undecided_[a] && !undecided_[b] && !undecided_[c]) list.push_back(t);
+        }
+      },
+      triangles);
   return triangles;
 }
 
-// The faces that name v must be the one fan that is found by walking around it, and its neighbours must differ.
-void Simplifier::inspect_final_vertex(Index v, std::uint32_t corners) {
-  std::vector<Index> neighbours;
+void Simplifier::mark_undecided() {
+  const CostBits retire = zone_.options().retire;
+  undecided_.assign(zone_.vertices.size(), 0);
+  const auto mark = [&](Index v) {
+    const std::atomic_ref flag(undecided_[v]);
+    if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
+  };
+  executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
+    const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
+    if (triangle.vertex[0] == kNone) return;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (zone_.states[triangle.vertex[c]] == VertexState::kIncomplete) mark(triangle.vertex[c]);
+      if (triangle.cost[c] > retire) continue;
+      mark(triangle.vertex[c]);
+      mark(triangle.vertex[(c + 1) % 3]);
+    }
+  });
+}
+
+// Vertices that have become final; those of them whose star can be walked.
+std::vector<Index> Simplifier::name_final_vertices() {
+  std::vector<Index> walkable;
+  collect(
+      executor_, static_cast<std::int64_t>(zone_.vertices.size()), kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+          VertexState& state = zone_.states[v];
+          if (undecided_[v] || state == VertexState::kIncomplete || state == VertexState::kFinal) continue;
+          if (zone_.walkable(v)) list.push_back(v);
+          state = VertexState::kFinal;
+        }
+      },
+      walkable);
+  return walkable;
+}
+
+// The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must differ.
+void Simplifier::inspect(const std::vector<Index>& vertices) {
+  std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
+  executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
+    const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
+    if (triangle.vertex[0] == kNone) return;
+    for (const Index v : triangle.vertex) {
+      if (!undecided_[v]) std::atomic_ref(corners[v]).fetch_add(1, std::memory_order_relaxed);
+    }
+  });
+  std::atomic<std::uint64_t> bad_vertices{0};
+  std::atomic<std::uint64_t> bad_edges{0};
+  executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Index> neighbours;
+    for (std::int64_t n = begin; n < end; ++n) {
+      const Index v = vertices[static_cast<std::size_t>(n)];
+      if (list_neighbours(v, corners[v], neighbours) != corners[v]) ++bad_vertices;
+      std::sort(neighbours.begin(), neighbours.end());
+      for (std::size_t m = 1; m < neighbours.size(); ++m) {
+        if (neighbours[m] == neighbours[m - 1] && v < neighbours[m]) ++bad_edges;
+      }
+    }
+  });
+  defects_.nonmanifold_vertices += bad_vertices;
+  defects_.nonmanifold_edges += bad_edges;
+}
+
+// Walks around v over at most `most` + 1 faces, and tells how many there are.
+std::uint32_t Simplifier::list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const {
+  neighbours.clear();
   const Index first = zone_.vertices[v].half_edge;
   std::uint32_t faces = 0;
   for (Index h = first; exists(h); h = zone_.rotate(h)) {
     neighbours.push_back(zone_.destination(h));
     const Index back = zone_.rotate(h);
     if (!exists(back)) neighbours.push_back(zone_.origin(previous(h)));
-    if (++faces > corners || back == first) break;
+    if (++faces > most || back == first) break;
   }
-  if (faces != corners) ++defects_.nonmanifold_vertices;
-  std::sort(neighbours.begin(), neighbours.end());
-  for (std::size_t n = 1; n < neighbours.size(); ++n) {
-    if (neighbours[n] == neighbours[n - 1] && v < neighbours[n]) ++defects_.nonmanifold_edges;
-  }
+  return faces;
 }
 
 }  // namespace isoweave

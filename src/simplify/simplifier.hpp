@@ -38,8 +38,10 @@ class Simplifier {
   void decide();
 
   // Triangles all of whose vertices are final, in memory order. Marks vertices final. The caller takes them out with
-  // Zone::remove_triangle and then calls Zone::compact.
+  // Zone::remove_triangle and then calls compact().
   std::vector<Index> final_triangles();
+
+  void compact() { zone_.compact(executor_); }
 
   DecisionCounts counts() const { return driver_->counts(); }
   Schedule schedule() const { return schedule_; }  // never automatic
@@ -47,13 +49,17 @@ class Simplifier {
   const SurfaceDefects& defects() const { return defects_; }
 
  private:
-  void inspect_final_vertex(Index v, std::uint32_t corners);
+  void mark_undecided();
+  std::vector<Index> name_final_vertices();
+  void inspect(const std::vector<Index>& vertices);
+  std::uint32_t list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const;
 
   Zone zone_;
   const Executor& executor_;
   const std::atomic<bool>* stop_;
   Schedule schedule_;
   std::unique_ptr<Driver> driver_;
+  std::vector<std::uint8_t> undecided_;  // per vertex
   SurfaceDefects defects_;
 };
 

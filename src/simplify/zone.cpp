@@ -6,6 +6,7 @@
 
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
+#include "parallel/compact.hpp"
 
 namespace isoweave {
 namespace {
@@ -273,61 +274,50 @@ void Zone::settle_edges(Index first_triangle, const Executor& executor) {
 
 void Zone::remove_triangle(Index t) { triangles[t].vertex = {kNone, kNone, kNone}; }
 
-void Zone::compact() {
-  Index dead = 0;
-  for (const Triangle& triangle : triangles) dead += triangle.vertex[0] == kNone;
+void Zone::compact(const Executor& executor) {
+  std::atomic<Index> dead{0};
+  executor.for_blocks(triangle_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    Index own = 0;
+    for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) own += !alive(half_edge(t, 0));
+    dead += own;
+  });
   dead_triangles_ = dead;
-  if (8 * std::uint64_t{dead} < triangles.size()) return;
+  if (8 * std::uint64_t{dead_triangles_} < triangles.size()) return;
 
   // A vertex is held as long as a triangle uses it, or will.
-  std::vector<Index> new_vertex(vertices.size(), kNone);
-  std::vector<Index> new_triangle(triangles.size(), kNone);
-  Index kept = 0;
-  for (Index t = 0; t < triangle_count(); ++t) {
-    if (!alive(half_edge(t, 0))) continue;
-    new_triangle[t] = kept++;
-    for (const Index v : triangles[t].vertex) new_vertex[v] = 0;
-  }
-  for (const Index v : front_) new_vertex[v] = 0;
-  const auto moved_half_edge = [&](Index h) {
-    if (!exists(h)) return h;
-    return new_triangle[h >> 2] == kNone ? kNone : half_edge(new_triangle[h >> 2], h & 3);
+  std::vector<std::uint8_t> used(vertices.size(), 0);
+  const auto use = [&](Index v) { std::atomic_ref(used[v]).store(1, std::memory_order_relaxed); };
+  for (const Index v : front_) use(v);
+  executor.for_each(triangle_count(), kBlock, [&](std::int64_t t) {
+    const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
+    if (triangle.vertex[0] == kNone) return;
+    for (const Index v : triangle.vertex) use(v);
+  });
+  const Compaction new_triangle(executor, triangles.size(),
+                                [&](std::size_t t) { return triangles[t].vertex[0] != kNone; });
+  const Compaction new_vertex(executor, vertices.size(), [&](std::size_t v) { return used[v] != 0; });
+  const auto move_half_edge = [&](Index& h) {
+    if (!exists(h)) return;
+    const Index t = new_triangle[h >> 2];
+    h = t == kNone ? kNone : half_edge(t, h & 3);
   };
-
-  Index count = 0;
-  for (Index v = 0; v < vertices.size(); ++v) {
-    if (new_vertex[v] == kNone) continue;
-    vertices[count] = vertices[v];
-    vertices[count].half_edge = moved_half_edge(vertices[v].half_edge);
-    states[count] = states[v];
-    turns[count] = turns[v];
-    if (!normals.empty()) normals[count] = normals[v];
-    new_vertex[v] = count++;
-  }
-  vertices.resize(count);
-  states.resize(count);
-  turns.resize(count);
-  if (!normals.empty()) normals.resize(count);
-  for (Turn& turn : turns) {
-    turn.edge = moved_half_edge(turn.edge);
-    for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) {
-      if (*v != kNone) *v = new_vertex[*v];
-    }
-  }
-
-  for (Index t = 0; t < new_triangle.size(); ++t) {
-    if (new_triangle[t] == kNone) continue;
-    Triangle moved = triangles[t];
-    for (Index c = 0; c < 3; ++c) {
-      moved.vertex[c] = new_vertex[moved.vertex[c]];
-      moved.twin[c] = moved_half_edge(moved.twin[c]);
-    }
-    triangles[new_triangle[t]] = moved;
-  }
-  triangles.resize(kept);
-  for (Index& v : front_) v = new_vertex[v];
-  for (Index& h : open_half_edges_) h = moved_half_edge(h);
-  for (Index& h : unkeyed_edges_) h = moved_half_edge(h);
+  const auto move_vertex = [&](Index& v) {
+    if (v != kNone) v = new_vertex[v];
+  };
+  new_triangle.apply(triangles, [&](Triangle& triangle) {
+    for (Index& v : triangle.vertex) move_vertex(v);
+    for (Index& h : triangle.twin) move_half_edge(h);
+  });
+  new_vertex.apply(vertices, [&](Vertex& vertex) { move_half_edge(vertex.half_edge); });
+  new_vertex.apply(turns, [&](Turn& turn) {
+    move_half_edge(turn.edge);
+    for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) move_vertex(*v);
+  });
+  new_vertex.apply(states);
+  if (!normals.empty()) new_vertex.apply(normals);
+  for (Index& v : front_) move_vertex(v);
+  for (Index& h : open_half_edges_) move_half_edge(h);
+  for (Index& h : unkeyed_edges_) move_half_edge(h);
   settled.clear();
   dead_triangles_ = 0;
 }

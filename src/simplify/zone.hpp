@@ -118,7 +118,7 @@ class Zone {
   void remove_triangle(Index t);
 
   // Drops what is gone once it is at least an eighth of what is held. Keeps the order of triangles.
-  void compact();
+  void compact(const Executor& executor);
 
   std::uint64_t bytes() const;
 
