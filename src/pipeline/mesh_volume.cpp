@@ -14,7 +14,7 @@ namespace isoweave {
 namespace {
 
 // A slab of this many triangles keeps all threads busy and stays small beside what a scan needs elsewhere.
-constexpr double kSlabTriangles = 400000;
+constexpr double kSlabTriangles = 160000;
 constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
 
 // The surface in stored sample units; a negative slope turns inside and outside around.
