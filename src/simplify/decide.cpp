@@ -15,34 +15,33 @@ constexpr float refinement_limit(Quality quality) { return quality == Quality::k
 
 void Star::gather(const Zone& zone, Index v) {
   vertex = v;
-  faces = 0;
   overflow = false;
   const Index first = zone.vertices[v].half_edge;
   Index h = first;
+  std::size_t n = 0;
   do {
-    if (faces == kCapacity) {
+    if (n == kCapacity) {
+      faces = neighbours = kCapacity;
       overflow = true;
-      neighbours = faces;
       return;
     }
-    const auto n = static_cast<std::size_t>(faces++);
+    const Triangle& triangle = zone.triangles[h >> 2];
     out[n] = h;
-    neighbour[n] = zone.destination(h);
-    h = zone.rotate(h);
+    neighbour[n++] = triangle.vertex[next(h) & 3];
+    h = triangle.twin[previous(h) & 3];
   } while (h != first && exists(h));
+  faces = static_cast<int>(n);
   border = h != first;
   neighbours = faces + (border ? 1 : 0);
-  if (border)
-    neighbour[static_cast<std::size_t>(faces)] = zone.origin(previous(out[static_cast<std::size_t>(faces - 1)]));
+  if (border) neighbour[n] = zone.origin(previous(out[n - 1]));
 }
 
-void Decider::look_at(Index half_edge) {
-  edge_ = half_edge;
-  Index a = zone_.origin(half_edge);
-  Index b = zone_.destination(half_edge);
-  if (zone_.vertices[b].id < zone_.vertices[a].id) std::swap(a, b);
-  u_.gather(zone_, a);
-  v_.gather(zone_, b);
+void Fan::measure(const Zone& zone, const Star& star) {
+  const Vec3 from = zone.vertices[star.vertex].position;
+  const auto neighbours = static_cast<std::size_t>(star.neighbours);
+  for (std::size_t n = 0; n < neighbours; ++n) to[n] = zone.vertices[star.neighbour[n]].position - from;
+  for (std::size_t n = 0; n + 1 < neighbours; ++n) normals[n] = cross(to[n], to[n + 1]);
+  if (!star.border) normals[neighbours - 1] = cross(to[neighbours - 1], to[0]);
 }
 
 void Decider::decide() {
@@ -56,22 +55,21 @@ void Decider::decide() {
   }
   const Vertex& u = zone_.vertices[u_.vertex];
   const Vertex& v = zone_.vertices[v_.vertex];
-  const Vec3 origin = midpoint(u.position, v.position);
-  const Quadric sum = moved(u.quadric, origin - u.position) + moved(v.quadric, origin - v.position);
-  Quadric full = sum;
+  edge_vector_ = v.position - u.position;
+  u_fan_.measure(zone_, u_);
+  v_fan_.measure(zone_, v_);
+  Quadric full;
   Vec3 best;
   CostBits limit = key;
   if (quality_ == Quality::kFast) {
-    best = solve(factorise(sum), -sum.b);
+    full = u.quadric + moved(v.quadric, -edge_vector_);
+    best = minimiser(full, factorise(full), 0.5 * edge_vector_);
   } else {
-    Vec3 gradient;
-    double offset = 0;
-    full = sum + current_faces(origin, gradient, offset);
-    const Factors factors = factorise(full);
-    best = solve(factors, -full.b);
-    const Vec3 response = solve(factors, gradient);
-    const double strength = dot(gradient, response);
-    if (strength > 0) best = best + ((offset - dot(gradient, best)) / strength) * response;
+    Vec3 u_normals;
+    Vec3 v_normals;
+    full = u.quadric + current_faces(u_, u_fan_, nullptr, u_normals) +
+           moved(v.quadric + current_faces(v_, v_fan_, &u_, v_normals), -edge_vector_);
+    best = best_place(full, u_normals + v_normals, dot(v_normals, edge_vector_));
     limit = cost_bits(refinement_limit(quality_) * cost_value(key));
     const CostBits cost = to_cost(evaluate(full, best));
     if (cost > limit) {
@@ -81,14 +79,14 @@ void Decider::decide() {
     }
   }
   Vec3 x;
-  if (!place(origin, full, best, limit, x)) {
+  if (!place(full, best, limit, x)) {
     ++counts_.postponed;
     raise_key(postponed_cost(key));
     return;
   }
   ++counts_.collapses;
   collapsed_ = true;
-  collapse(origin + x, moved(sum, x));
+  collapse(x);
   update_keys(key);
 }
 
@@ -109,69 +107,69 @@ bool Decider::topology_allows() const {
   return !(u_.neighbours == opposite + 1 && v_.neighbours == opposite + 1 && u_.border == v_.border);
 }
 
-bool Decider::star_keeps_sides(const Star& star, const Star& other, Vec3 x) const {
-  const Vec3 from = zone_.vertices[star.vertex].position;
-  for (int n = 0; n < star.faces; ++n) {
-    const Index b = star.neighbour[static_cast<std::size_t>(n)];
-    const Index c = star.neighbour[static_cast<std::size_t>((n + 1) % star.neighbours)];
-    if (b == other.vertex || c == other.vertex) continue;
-    if (!keeps_side(from, x, zone_.vertices[b].position, zone_.vertices[c].position)) return false;
-  }
-  return true;
+bool Decider::keeps_sides(Vec3 x) const {
+  const auto star_keeps = [](const Star& star, const Fan& fan, Index other, Vec3 move) {
+    const auto faces = static_cast<std::size_t>(star.faces);
+    const auto neighbours = static_cast<std::size_t>(star.neighbours);
+    for (std::size_t n = 0; n < faces; ++n) {
+      const std::size_t following = n + 1 < neighbours ? n + 1 : 0;
+      if (star.neighbour[n] == other || star.neighbour[following] == other) continue;
+      if (!keeps_side(fan.normals[n], cross(fan.to[n] - move, fan.to[following] - move))) return false;
+    }
+    return true;
+  };
+  return star_keeps(u_, u_fan_, v_.vertex, x) && star_keeps(v_, v_fan_, u_.vertex, x - edge_vector_);
 }
 
-bool Decider::keeps_sides(Vec3 x) const { return star_keeps_sides(u_, v_, x) && star_keeps_sides(v_, u_, x); }
-
-// Adds the faces of a star from the neighbour with the smallest id on, leaving out those that hold skip's vertex.
-void Decider::add_current_faces(const Star& star, const Star* skip, Vec3 origin, Quadric& q, Vec3& gradient,
-                                double& offset) const {
-  int start = 0;
+// Planes of the faces of a star as they are now, weighted by area, measured from its vertex, and the sum of their
+// normals. Leaves out the faces that hold skip's vertex. Goes around from the neighbour with the smallest id.
+Quadric Decider::current_faces(const Star& star, const Fan& fan, const Star* skip, Vec3& normal_sum) const {
+  const auto faces = static_cast<std::size_t>(star.faces);
+  const auto neighbours = static_cast<std::size_t>(star.neighbours);
+  std::size_t start = 0;
   if (!star.border) {
-    for (int n = 1; n < star.faces; ++n) {
-      if (zone_.vertices[star.neighbour[static_cast<std::size_t>(n)]].id <
-          zone_.vertices[star.neighbour[static_cast<std::size_t>(start)]].id) {
-        start = n;
-      }
+    for (std::size_t n = 1; n < faces; ++n) {
+      if (zone_.vertices[star.neighbour[n]].id < zone_.vertices[star.neighbour[start]].id) start = n;
     }
   }
   const double a0 = zone_.options().a0;
-  const Vec3 p = zone_.vertices[star.vertex].position - origin;
-  for (int n = 0; n < star.faces; ++n) {
-    const int face = (start + n) % star.faces;
-    const Index b = star.neighbour[static_cast<std::size_t>(face)];
-    const Index c = star.neighbour[static_cast<std::size_t>((face + 1) % star.neighbours)];
-    if (skip != nullptr && (b == skip->vertex || c == skip->vertex)) continue;
-    const Vec3 normal = cross(zone_.vertices[b].position - origin - p, zone_.vertices[c].position - origin - p);
+  const double weight = 1 / (2 * a0 * a0);
+  Quadric q;
+  std::size_t face = start;
+  for (std::size_t n = 0; n < faces; ++n, face = face + 1 < faces ? face + 1 : 0) {
+    const std::size_t following = face + 1 < neighbours ? face + 1 : 0;
+    if (skip != nullptr && (star.neighbour[face] == skip->vertex || star.neighbour[following] == skip->vertex))
+      continue;
+    const Vec3 normal = fan.normals[face];
     const double size = std::sqrt(dot(normal, normal));  // twice the area
     if (!(size > 0)) continue;
-    add_plane(q, normal, p, size / (2 * a0 * a0));
-    gradient = gradient + normal;
-    offset += dot(normal, p);
+    add_plane_here(q, normal, weight / size);
+    normal_sum = normal_sum + normal;
   }
+  return q;
 }
 
-// Planes of the faces around both ends as they are now, weighted by area, and the plane of points x (gradient . x =
-// offset) that keep the enclosed volume when the edge shrinks to x (Lindstrom and Turk, 1998).
-Quadric Decider::current_faces(Vec3 origin, Vec3& gradient, double& offset) const {
-  Quadric q;
-  add_current_faces(u_, nullptr, origin, q, gradient, offset);
-  add_current_faces(v_, &u_, origin, q, gradient, offset);
-  return q;
+// Where the full cost is least among the points x (gradient . x = offset) that keep the enclosed volume when the edge
+// shrinks to x (Lindstrom and Turk, 1998).
+Vec3 Decider::best_place(const Quadric& full, Vec3 gradient, double offset) const {
+  const Factors factors = factorise(full);
+  const Vec3 best = minimiser(full, factors, 0.5 * edge_vector_);
+  const Vec3 response = solve(factors, gradient);
+  const double strength = dot(gradient, response);
+  return strength > 0 ? best + ((offset - dot(gradient, best)) / strength) * response : best;
 }
 
 // The first position that keeps every face on its side: the best one, then the two ends and the midpoint, cheapest
 // first, as long as they cost no more than the limit.
-bool Decider::place(Vec3 origin, const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
+bool Decider::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
   x = best;
-  if (keeps_sides(origin + x)) return true;
+  if (keeps_sides(x)) return true;
   struct Candidate {
     CostBits cost;
     int rank;
     Vec3 at;
   };
-  std::array<Candidate, 3> candidates{{{0, 0, zone_.vertices[u_.vertex].position - origin},
-                                       {0, 1, zone_.vertices[v_.vertex].position - origin},
-                                       {0, 2, Vec3{}}}};
+  std::array<Candidate, 3> candidates{{{0, 0, Vec3{}}, {0, 1, edge_vector_}, {0, 2, 0.5 * edge_vector_}}};
   for (Candidate& candidate : candidates) candidate.cost = to_cost(evaluate(q, candidate.at));
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.rank < b.rank;
@@ -179,7 +177,7 @@ bool Decider::place(Vec3 origin, const Quadric& q, Vec3 best, CostBits limit, Ve
   for (const Candidate& candidate : candidates) {
     if (candidate.cost > limit) return false;
     x = candidate.at;
-    if (keeps_sides(origin + x)) return true;
+    if (keeps_sides(x)) return true;
   }
   return false;
 }
@@ -214,8 +212,8 @@ void Decider::merge_sides(Index h) {
   zone_.remove_triangle(h >> 2);
 }
 
-// Merges the two ends into the vertex of u_ at `position`.
-void Decider::collapse(Vec3 position, const Quadric& quadric) {
+// Merges the two ends into the vertex of u_, x away from where that was.
+void Decider::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
   for (int n = 0; n < v_.faces; ++n) {
     const Index h = v_.out[static_cast<std::size_t>(n)];
@@ -226,8 +224,8 @@ void Decider::collapse(Vec3 position, const Quadric& quadric) {
 
   Vertex& merged = zone_.vertices[u_.vertex];
   Vertex& gone = zone_.vertices[v_.vertex];
-  merged.position = position;
-  merged.quadric = quadric;
+  merged.quadric = moved(merged.quadric, x) + moved(gone.quadric, x - edge_vector_);
+  merged.position = merged.position + x;
   gone.half_edge = kNone;
   if (!zone_.normals.empty()) {
     Point& normal = zone_.normals[u_.vertex];

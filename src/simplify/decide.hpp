@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "isoweave/simplify_options.hpp"
 #include "simplify/zone.hpp"
@@ -43,6 +44,14 @@ struct Star {
   }
 };
 
+// Where the faces of a star lie, measured from its vertex.
+struct Fan {
+  std::array<Vec3, Star::kCapacity + 1> to;   // the neighbours
+  std::array<Vec3, Star::kCapacity> normals;  // of the faces, twice as long as their area
+
+  void measure(const Zone& zone, const Star& star);
+};
+
 struct DecisionCounts {
   std::uint64_t collapses = 0;
   std::uint64_t postponed = 0;  // decided, and illegal at the time
@@ -61,8 +70,24 @@ class Decider {
  public:
   Decider(Zone& zone, Quality quality) : zone_(zone), quality_(quality) {}
 
-  // Gathers the stars of the edge's ends; they stay for decide().
-  void look_at(Index half_edge);
+  // Gathers the stars of the edge's ends, one after the other, and shows them to see(star) until that answers false.
+  // Tells whether it never did; then the stars stay for decide().
+  template <class See>
+  bool look_at(Index half_edge, const See& see) {
+    edge_ = half_edge;
+    Index a = zone_.origin(half_edge);
+    Index b = zone_.destination(half_edge);
+    if (zone_.vertices[b].id < zone_.vertices[a].id) std::swap(a, b);
+    u_.gather(zone_, a);
+    if (!see(u_)) return false;
+    v_.gather(zone_, b);
+    return see(v_);
+  }
+
+  void look_at(Index half_edge) {
+    look_at(half_edge, [](const Star&) { return true; });
+  }
+
   const Star& first() const { return u_; }
   const Star& second() const { return v_; }
 
@@ -78,13 +103,11 @@ class Decider {
  private:
   bool topology_allows() const;
   bool keeps_sides(Vec3 x) const;
-  bool star_keeps_sides(const Star& star, const Star& other, Vec3 x) const;
-  Quadric current_faces(Vec3 origin, Vec3& gradient, double& offset) const;
-  void add_current_faces(const Star& star, const Star* skip, Vec3 origin, Quadric& q, Vec3& gradient,
-                         double& offset) const;
-  bool place(Vec3 origin, const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  Quadric current_faces(const Star& star, const Fan& fan, const Star* skip, Vec3& normal_sum) const;
+  Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
+  bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
   void raise_key(CostBits cost);
-  void collapse(Vec3 position, const Quadric& quadric);
+  void collapse(Vec3 x);
   void merge_sides(Index h);
   void update_keys(CostBits collapse_cost);
 
@@ -92,6 +115,8 @@ class Decider {
   Quality quality_;
   Index edge_ = kNone;
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
+  Fan u_fan_, v_fan_;
+  Vec3 edge_vector_;  // from u to v; places are measured from u
   std::array<Index, 2 * Star::kCapacity> changed_;
   int changed_count_ = 0;
   bool collapsed_ = false;

@@ -95,17 +95,18 @@ class LocalMinima::Worker {
       wait(v, other);
       return true;
     }
-    decider_.look_at(edge);
+    bool all_held = true;
     Index first = v;
-    for (const Star* star : {&decider_.first(), &decider_.second()}) {
-      const bool all_held = star->each_neighbour(zone_, [&](Index x) {
+    const bool least = decider_.look_at(edge, [&](const Star& star) {
+      all_held = star.each_neighbour(zone_, [&](Index x) {
         if (!hold(x)) return false;
         if (earlier(zone_, zone_.turns[x], zone_.turns[first])) first = x;
         return true;
       });
-      if (!all_held) return false;
-    }
-    if (first != v) {
+      return all_held && first == v;
+    });
+    if (!all_held) return false;
+    if (!least) {
       wait(v, first);
       if (waits_for(other).load(std::memory_order_acquire) == kNone) enlist(other, v);
       return true;

@@ -51,10 +51,21 @@ ISOWEAVE_HD inline void add_plane(Quadric& q, Vec3 normal, Vec3 point, double we
   q.c += f * d * d;
 }
 
-// Factors of A + pull * I = L D L^T. The pull, a small part of the trace, draws the minimiser to the origin in the
+// Adds a plane through the quadric's origin: scale * (normal . x)^2.
+ISOWEAVE_HD inline void add_plane_here(Quadric& q, Vec3 normal, double scale) {
+  const Vec3 n = scale * normal;
+  q.xx += n.x * normal.x;
+  q.xy += n.x * normal.y;
+  q.xz += n.x * normal.z;
+  q.yy += n.y * normal.y;
+  q.yz += n.y * normal.z;
+  q.zz += n.z * normal.z;
+}
+
+// Factors of A + pull * I = L D L^T. The pull, a small part of the trace, draws the minimiser to a point given in the
 // directions in which the quadric is flat, so that the solve is always well posed.
 struct Factors {
-  double l10, l20, l21, i0, i1, i2;
+  double l10, l20, l21, i0, i1, i2, pull;
 };
 
 inline constexpr double kPull = 1e-5;
@@ -62,6 +73,7 @@ inline constexpr double kPull = 1e-5;
 ISOWEAVE_HD inline Factors factorise(const Quadric& q) {
   const double pull = kPull * (q.xx + q.yy + q.zz) + 1e-300;
   Factors f{};
+  f.pull = pull;
   f.i0 = 1 / (q.xx + pull);
   f.l10 = q.xy * f.i0;
   f.l20 = q.xz * f.i0;
@@ -79,6 +91,11 @@ ISOWEAVE_HD inline Vec3 solve(const Factors& f, Vec3 r) {
   const double y = y1 * f.i1 - f.l21 * z;
   const double x = r.x * f.i0 - f.l10 * y - f.l20 * z;
   return {x, y, z};
+}
+
+// Where q is least; `towards` is what the pull draws to.
+ISOWEAVE_HD inline Vec3 minimiser(const Quadric& q, const Factors& f, Vec3 towards) {
+  return solve(f, f.pull * towards - q.b);
 }
 
 }  // namespace isoweave

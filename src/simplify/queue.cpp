@@ -38,10 +38,9 @@ void Queue::decide_group() {
   }
   for (const auto [cost, h] : group_) {
     if (!zone_.alive(h) || zone_.cost(h) != cost || !zone_.represents_edge(h)) continue;
-    decider_.look_at(h);
-    if (flagged(decider_.first()) || flagged(decider_.second())) {
-      flags_[decider_.first().vertex] = 1;
-      flags_[decider_.second().vertex] = 1;
+    if (!decider_.look_at(h, [&](const Star& star) { return !flagged(star); })) {
+      flags_[zone_.origin(h)] = 1;
+      flags_[zone_.destination(h)] = 1;
       continue;
     }
     decider_.decide();

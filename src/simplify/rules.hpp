@@ -72,13 +72,11 @@ struct EdgeNumbering {
   }
 };
 
-// The face (a, b, c) after a move to (x, b, c) keeps its side and stays a face. A face without area imposes nothing.
-ISOWEAVE_HD inline bool keeps_side(Vec3 a, Vec3 x, Vec3 b, Vec3 c) {
-  const Vec3 side = c - b;
-  const Vec3 before = cross(b - a, side);
+// A face keeps its side and stays a face when its normal, of any length, changes so. A face without area imposes
+// nothing.
+ISOWEAVE_HD inline bool keeps_side(Vec3 before, Vec3 after) {
   const double size_before = dot(before, before);
   if (!(size_before > 0)) return true;
-  const Vec3 after = cross(b - x, side);
   const double cosine = dot(before, after);
   return cosine > 0 && cosine * cosine > kSideCosine * kSideCosine * size_before * dot(after, after);
 }

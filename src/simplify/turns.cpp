@@ -5,19 +5,19 @@ namespace isoweave {
 void renew_turn(Zone& zone, Index v) {
   CostBits least = kRetiredCost;
   Index edge = kNone;
-  const auto offer = [&](Index h) {
-    const CostBits cost = zone.cost(h);
-    if (edge != kNone && (cost > least || (cost == least && zone.tie(h) >= zone.tie(edge)))) return;
+  const auto offer = [&](CostBits cost, Index h) {
+    if (cost > least || (cost == least && edge != kNone && zone.tie(h) >= zone.tie(edge))) return;
     least = cost;
     edge = h;
   };
   const Index first = zone.vertices[v].half_edge;
   Index h = first;
   do {
-    offer(h);
+    const Triangle& triangle = zone.triangles[h >> 2];
     const Index incoming = previous(h);
-    h = zone.twin(incoming);
-    if (!exists(h)) offer(incoming);
+    offer(triangle.cost[h & 3], h);
+    h = triangle.twin[incoming & 3];
+    if (!exists(h)) offer(triangle.cost[incoming & 3], incoming);
   } while (h != first && exists(h));
   zone.turns[v].cost = least;
   zone.turns[v].edge = edge;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <span>
 
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
@@ -20,13 +21,25 @@ void grow(std::vector<T>& vector, std::size_t size, const T& value = T()) {
   vector.resize(size, value);
 }
 
+// Insertion sort: the faces around a vertex are half a dozen, and nearly in order.
+template <class T, class Less>
+void sort_few(std::span<T> items, const Less& less) {
+  for (std::size_t n = 1; n < items.size(); ++n) {
+    const T item = items[n];
+    std::size_t at = n;
+    for (; at > 0 && less(item, items[at - 1]); --at) items[at] = items[at - 1];
+    items[at] = item;
+  }
+}
+
 }  // namespace
 
-CostBits edge_cost(const Vertex& u, const Vertex& v) {
-  const Vec3 middle = midpoint(u.position, v.position);
-  const Quadric q = moved(u.quadric, middle - u.position) + moved(v.quadric, middle - v.position);
-  const Vec3 x = solve(factorise(q), -q.b);
-  return to_cost(evaluate(q, x));
+CostBits edge_cost(const Vertex& a, const Vertex& b) {
+  const Vertex& u = a.id < b.id ? a : b;
+  const Vertex& v = a.id < b.id ? b : a;
+  const Vec3 edge = v.position - u.position;
+  const Quadric q = u.quadric + moved(v.quadric, -edge);
+  return to_cost(evaluate(q, minimiser(q, factorise(q), 0.5 * edge)));
 }
 
 void Zone::append(const SurfacePiece& piece, const Executor& executor) {
@@ -166,14 +179,11 @@ void Zone::settle_vertices(Index first_triangle, const Executor& executor) {
     complete.push_back(v);
   }
   for (const Index v : front_) states[v] = VertexState::kIncomplete;
-  executor.for_blocks(static_cast<std::int64_t>(complete.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Index> faces;
-    for (std::int64_t n = begin; n < end; ++n) {
-      const Index v = complete[static_cast<std::size_t>(n)];
-      if (states[v] != VertexState::kComplete || !exists(vertices[v].half_edge)) continue;
-      start_at_border(v);
-      initial_quadric(v, faces);
-    }
+  executor.for_each(static_cast<std::int64_t>(complete.size()), kBlock, [&](std::int64_t n) {
+    const Index v = complete[static_cast<std::size_t>(n)];
+    if (states[v] != VertexState::kComplete || !exists(vertices[v].half_edge)) return;
+    start_at_border(v);
+    initial_quadric(v);
   });
 
   // Only a triangle between incomplete vertices can close a half-edge.
@@ -208,34 +218,53 @@ void Zone::start_at_border(Index v) {
 
 // Planes of the faces around v in the order of the faces, weighted by area / 3; then, on an open border, planes
 // through the two border edges perpendicular to their faces, weighted by squared length.
-void Zone::initial_quadric(Index v, std::vector<Index>& faces) {
-  faces.clear();
-  const Index first = vertices[v].half_edge;
-  Index last = first;
-  for (Index h = first; exists(h); h = rotate(h)) {
-    faces.push_back(h);
-    last = h;
-    if (rotate(h) == first) break;
-  }
-  std::sort(faces.begin(), faces.end());
-  const Vec3 p = vertices[v].position;
-  const auto face_normal = [&](Index h) {
-    return cross(vertices[destination(h)].position - p, vertices[origin(previous(h))].position - p);
+void Zone::initial_quadric(Index v) {
+  struct Face {
+    Index half_edge;
+    Vec3 normal;
   };
+  constexpr std::size_t kFew = 32;
+  std::array<Face, kFew> few;
+  std::vector<Face> many;
+  const Vec3 p = vertices[v].position;
+  const Index first = vertices[v].half_edge;
+  const Vec3 first_side = vertices[destination(first)].position - p;
+  Vec3 side = first_side;
+  std::size_t count = 0;
+  for (Index h = first; exists(h);) {
+    const Vec3 following = vertices[origin(previous(h))].position - p;
+    const Face face{h, cross(side, following)};
+    if (count < kFew) {
+      few[count] = face;
+    } else {
+      if (count == kFew) many.assign(few.begin(), few.end());
+      many.push_back(face);
+    }
+    ++count;
+    side = following;
+    h = rotate(h);
+    if (h == first) break;
+  }
+  const std::span<Face> faces = count > kFew ? std::span<Face>(many) : std::span<Face>(few).first(count);
+  const Vec3 first_normal = faces.front().normal;
+  const Vec3 last_normal = faces.back().normal;
+  sort_few(faces, [](const Face& a, const Face& b) { return a.half_edge < b.half_edge; });
+
   const double a0 = options_.a0;
+  const double weight = 1 / (6 * a0 * a0);
   Quadric q;
-  for (const Index h : faces) {
-    const Vec3 normal = face_normal(h);
-    const double size = std::sqrt(dot(normal, normal));  // twice the area
-    if (size > 0) add_plane(q, normal, {}, size / (6 * a0 * a0));
+  for (const Face& face : faces) {
+    const double size = std::sqrt(dot(face.normal, face.normal));  // twice the area
+    if (size > 0) add_plane_here(q, face.normal, weight / size);
   }
   const auto add_border = [&](Vec3 edge, Vec3 normal) {
-    const Vec3 side = cross(edge, normal);
-    if (dot(side, side) > 0) add_plane(q, side, {}, dot(edge, edge) / (a0 * a0));
+    const Vec3 across = cross(edge, normal);
+    const double size = dot(across, across);
+    if (size > 0) add_plane_here(q, across, dot(edge, edge) / (a0 * a0 * size));
   };
   if (twin(first) == kNone) {
-    add_border(vertices[destination(first)].position - p, face_normal(first));
-    add_border(p - vertices[origin(previous(last))].position, face_normal(last));
+    add_border(first_side, first_normal);
+    add_border(side, last_normal);
   }
   vertices[v].quadric = q;
 }

@@ -129,7 +129,7 @@ class Zone {
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(Index first_triangle, const Executor& executor);
   void start_at_border(Index v);
-  void initial_quadric(Index v, std::vector<Index>& faces);
+  void initial_quadric(Index v);
   void settle_edges(Index first_triangle, const Executor& executor);
 
   ZoneOptions options_;
@@ -140,6 +140,6 @@ class Zone {
 };
 
 // Cost of collapsing the edge (u, v): least value of the sum of the two quadrics.
-CostBits edge_cost(const Vertex& u, const Vertex& v);
+CostBits edge_cost(const Vertex& a, const Vertex& b);
 
 }  // namespace isoweave

@@ -39,13 +39,13 @@ TEST(Quadric, MinimiserFindsTheCornerOfThreePlanes) {
   EXPECT_NEAR(x.z, 3, 1e-3);
 }
 
-// Where the quadric is flat, the pull keeps the minimiser at the origin: the midpoint of the edge.
-TEST(Quadric, FlatDirectionsStayAtTheOrigin) {
+// Where the quadric is flat, the minimiser is where the pull draws it: the midpoint of the edge.
+TEST(Quadric, FlatDirectionsFollowThePull) {
   Quadric q;
   add_plane(q, {0, 0, 1}, {0, 0, 2}, 1);
-  const Vec3 x = solve(factorise(q), -q.b);
-  EXPECT_EQ(x.x, 0);
-  EXPECT_EQ(x.y, 0);
+  const Vec3 x = minimiser(q, factorise(q), {3, -1, 5});
+  EXPECT_NEAR(x.x, 3, 1e-9);
+  EXPECT_NEAR(x.y, -1, 1e-9);
   EXPECT_NEAR(x.z, 2, 1e-3);
   EXPECT_EQ(solve(factorise(Quadric{}), Vec3{}).x, 0);
 }
@@ -101,12 +101,14 @@ TEST(Lattice, KnowsWhenIdsDoNotFit) {
 }
 
 TEST(SideTest, RefusesTurnedAndEmptyFacesOnly) {
-  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
-  EXPECT_TRUE(keeps_side(a, {-0.5, -0.5, 0.1}, b, c));
-  EXPECT_FALSE(keeps_side(a, {1, 1, 0}, b, c));                 // turned over
-  EXPECT_FALSE(keeps_side(a, {0.5, 0.5, 0}, b, c));             // no area left
-  EXPECT_FALSE(keeps_side(a, {0.5, 0.5, 5}, b, c));             // upright
-  EXPECT_TRUE(keeps_side({2, 0, 0}, {1, 1, 0}, b, {3, 0, 0}));  // had no area: imposes nothing
+  const Vec3 b{1, 0, 0}, c{0, 1, 0};
+  const auto normal = [&](Vec3 a, Vec3 d) { return cross(b - a, d - a); };
+  const Vec3 before = normal({0, 0, 0}, c);
+  EXPECT_TRUE(keeps_side(before, normal({-0.5, -0.5, 0.1}, c)));
+  EXPECT_FALSE(keeps_side(before, normal({1, 1, 0}, c)));                               // turned over
+  EXPECT_FALSE(keeps_side(before, normal({0.5, 0.5, 0}, c)));                           // no area left
+  EXPECT_FALSE(keeps_side(before, normal({0.5, 0.5, 5}, c)));                           // upright
+  EXPECT_TRUE(keeps_side(normal({2, 0, 0}, {3, 0, 0}), normal({1, 1, 0}, {3, 0, 0})));  // had no area: imposes nothing
 }
 
 TEST(RadixHeap, GivesGroupsInOrder) {
