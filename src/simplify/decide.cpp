@@ -143,7 +143,7 @@ Quadric Decider::current_faces(const Star& star, const Fan& fan, const Star* ski
     const Vec3 normal = fan.normals[face];
     const double size = std::sqrt(dot(normal, normal));  // twice the area
     if (!(size > 0)) continue;
-    add_plane_here(q, normal, weight / size);
+    add_plane(q, normal, weight / size);
     normal_sum = normal_sum + normal;
   }
   return q;

@@ -36,23 +36,8 @@ ISOWEAVE_HD inline Quadric operator+(const Quadric& p, const Quadric& q) {
   return {p.xx + q.xx, p.xy + q.xy, p.xz + q.xz, p.yy + q.yy, p.yz + q.yz, p.zz + q.zz, p.b + q.b, p.c + q.c};
 }
 
-// Adds weight * (distance to the plane)^2, the plane through `point` perpendicular to `normal` (any length but 0).
-ISOWEAVE_HD inline void add_plane(Quadric& q, Vec3 normal, Vec3 point, double weight) {
-  const double f = weight / dot(normal, normal);
-  const Vec3 n = f * normal;
-  const double d = dot(normal, point);
-  q.xx += n.x * normal.x;
-  q.xy += n.x * normal.y;
-  q.xz += n.x * normal.z;
-  q.yy += n.y * normal.y;
-  q.yz += n.y * normal.z;
-  q.zz += n.z * normal.z;
-  q.b = q.b - d * n;
-  q.c += f * d * d;
-}
-
-// Adds a plane through the quadric's origin: scale * (normal . x)^2.
-ISOWEAVE_HD inline void add_plane_here(Quadric& q, Vec3 normal, double scale) {
+// Adds a plane through the quadric's origin: scale * (normal . x)^2. Planes elsewhere: move the quadric.
+ISOWEAVE_HD inline void add_plane(Quadric& q, Vec3 normal, double scale) {
   const Vec3 n = scale * normal;
   q.xx += n.x * normal.x;
   q.xy += n.x * normal.y;

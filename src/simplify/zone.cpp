@@ -255,12 +255,12 @@ void Zone::initial_quadric(Index v) {
   Quadric q;
   for (const Face& face : faces) {
     const double size = std::sqrt(dot(face.normal, face.normal));  // twice the area
-    if (size > 0) add_plane_here(q, face.normal, weight / size);
+    if (size > 0) add_plane(q, face.normal, weight / size);
   }
   const auto add_border = [&](Vec3 edge, Vec3 normal) {
     const Vec3 across = cross(edge, normal);
     const double size = dot(across, across);
-    if (size > 0) add_plane_here(q, across, dot(edge, edge) / (a0 * a0 * size));
+    if (size > 0) add_plane(q, across, dot(edge, edge) / (a0 * a0 * size));
   };
   if (twin(first) == kNone) {
     add_border(first_side, first_normal);

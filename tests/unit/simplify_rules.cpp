@@ -12,28 +12,29 @@
 namespace isoweave {
 namespace {
 
-TEST(Quadric, IsTheWeightedSquaredDistanceToThePlane) {
+// weight * (distance to the plane through `point`)^2
+Quadric plane(Vec3 normal, Vec3 point, double weight) {
   Quadric q;
-  add_plane(q, {0, 0, 5}, {7, 8, 2}, 3);
+  add_plane(q, normal, weight / dot(normal, normal));
+  return moved(q, -point);
+}
+
+TEST(Quadric, IsTheWeightedSquaredDistanceToThePlane) {
+  const Quadric q = plane({0, 0, 5}, {7, 8, 2}, 3);
   EXPECT_DOUBLE_EQ(evaluate(q, {100, -50, 6}), 3 * 16);
   EXPECT_DOUBLE_EQ(evaluate(q, {1, 1, 2}), 0);
 }
 
 TEST(Quadric, MovedOriginMeasuresTheSame) {
-  Quadric q;
-  add_plane(q, {1, 2, 3}, {0.5, 0.25, 4}, 2);
-  add_plane(q, {-1, 0.5, 1}, {2, 1, 0}, 0.7);
+  const Quadric q = plane({1, 2, 3}, {0.5, 0.25, 4}, 2) + plane({-1, 0.5, 1}, {2, 1, 0}, 0.7);
   const Vec3 d{3, -2, 0.5};
   const Vec3 x{0.1, 0.7, -4};
   EXPECT_NEAR(evaluate(moved(q, d), x - d), evaluate(q, x), 1e-9);
 }
 
 TEST(Quadric, MinimiserFindsTheCornerOfThreePlanes) {
-  Quadric q;
-  add_plane(q, {1, 0, 0}, {1, 0, 0}, 1);
-  add_plane(q, {0, 1, 0}, {0, 2, 0}, 1);
-  add_plane(q, {0, 0, 1}, {0, 0, 3}, 1);
-  const Vec3 x = solve(factorise(q), -q.b);
+  const Quadric q = plane({1, 0, 0}, {1, 0, 0}, 1) + plane({0, 1, 0}, {0, 2, 0}, 1) + plane({0, 0, 1}, {0, 0, 3}, 1);
+  const Vec3 x = minimiser(q, factorise(q), {});
   EXPECT_NEAR(x.x, 1, 1e-3);
   EXPECT_NEAR(x.y, 2, 1e-3);
   EXPECT_NEAR(x.z, 3, 1e-3);
@@ -41,8 +42,7 @@ TEST(Quadric, MinimiserFindsTheCornerOfThreePlanes) {
 
 // Where the quadric is flat, the minimiser is where the pull draws it: the midpoint of the edge.
 TEST(Quadric, FlatDirectionsFollowThePull) {
-  Quadric q;
-  add_plane(q, {0, 0, 1}, {0, 0, 2}, 1);
+  const Quadric q = plane({0, 0, 1}, {0, 0, 2}, 1);
   const Vec3 x = minimiser(q, factorise(q), {3, -1, 5});
   EXPECT_NEAR(x.x, 3, 1e-9);
   EXPECT_NEAR(x.y, -1, 1e-9);
