@@ -97,10 +97,15 @@ class LocalMinima::Worker {
     }
     bool all_held = true;
     Index first = v;
+    CostBits least_cost = turn.cost;
     const bool least = decider_.look_at(edge, [&](const Star& star) {
       all_held = star.each_neighbour(zone_, [&](Index x) {
         if (!hold(x)) return false;
-        if (earlier(zone_, zone_.turns[x], zone_.turns[first])) first = x;
+        const Turn& other_turn = zone_.turns[x];
+        if (other_turn.cost <= least_cost && earlier(zone_, other_turn, zone_.turns[first])) {
+          first = x;
+          least_cost = other_turn.cost;
+        }
         return true;
       });
       return all_held && first == v;
