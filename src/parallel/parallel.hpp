@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <type_traits>
 
 namespace isoweave {
@@ -37,7 +38,10 @@ class Executor {
   using BlockFunction = void (*)(void*, std::int64_t, std::int64_t);
   void run(std::int64_t count, std::int64_t grain, void* body, BlockFunction call) const;
 
+  struct Arena;
+
   int threads_;
+  std::shared_ptr<Arena> arena_;  // of worker threads; shared by copies
 };
 
 }  // namespace isoweave

@@ -29,7 +29,15 @@ void tsan_release(void*) {}
 
 }  // namespace
 
-Executor::Executor(int threads) : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {}
+// Made once: making one costs as much as a small loop, and a slab runs dozens of loops.
+struct Executor::Arena {
+  explicit Arena(int threads) : tasks(threads) {}
+  tbb::task_arena tasks;
+};
+
+Executor::Executor(int threads)
+    : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()),
+      arena_(threads_ > 1 ? std::make_shared<Arena>(threads_) : nullptr) {}
 
 void Executor::run(std::int64_t count, std::int64_t grain, void* body, BlockFunction call) const {
   if (count <= 0) return;
@@ -42,8 +50,7 @@ void Executor::run(std::int64_t count, std::int64_t grain, void* body, BlockFunc
   char started = 0;
   char finished = 0;
   tsan_release(&started);
-  tbb::task_arena arena(threads_);
-  arena.execute([&] {
+  arena_->tasks.execute([&] {
     tbb::parallel_for(
         std::int64_t{0}, blocks,
         [&](std::int64_t block) {
