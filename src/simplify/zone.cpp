@@ -13,6 +13,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 2048;
+constexpr Index kBackwards = Index{1} << 31;  // in EdgeSide::other: runs from the larger to the smaller number
 
 // Grows by a quarter where std::vector would double: the zone is what bounds the memory of a run.
 template <class T>
@@ -47,6 +48,11 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   if (triangle_total >= kWritten / 4) {
     throw OverMemory("the undecided zone would hold " + std::to_string(triangle_total) +
                      " triangles, expected fewer than 2^30: choose thinner slabs or a smaller error");
+  }
+  const std::uint64_t vertex_total = vertices.size() + piece.inherited + piece.positions.size();
+  if (vertex_total >= kBackwards) {
+    throw OverMemory("the undecided zone would hold " + std::to_string(vertex_total) +
+                     " vertices, expected fewer than 2^31: choose thinner slabs or a smaller error");
   }
   const auto first_vertex = static_cast<Index>(vertices.size());
   const Index first_triangle = triangle_count();
@@ -101,15 +107,9 @@ void Zone::start_at(Index v, Index h) {
   }
 }
 
-// Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides in each
-// list that run in opposite directions between the same ends. Edges between locked vertices may have any number of
-// sides and stay unlinked: nobody walks around their ends.
+// Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides of each
+// list.
 void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
-  struct Side {
-    Index other;  // end with the larger number
-    Index half_edge;
-  };
-  constexpr Index kBackwards = Index{1} << 31;  // in `other`: runs from the larger to the smaller number
   const auto open_sides = open_sides_of(piece);
   const auto open = static_cast<std::int64_t>(open_sides.size());
   const auto count = open + static_cast<std::int64_t>(piece.triangles.size());
@@ -135,7 +135,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
   for (std::size_t n = 0; n < ends; ++n) start[n + 1] += start[n];
   std::vector<Index> fill(start.begin(), start.end() - 1);
-  std::vector<Side> sides(start.back());
+  std::vector<EdgeSide> sides(start.back());
   executor.for_each(count, kBlock, [&](std::int64_t n) {
     each_side(n, [&](Index a, Index b, Index h) {
       const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
@@ -144,17 +144,31 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
   executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
     const auto end = static_cast<std::size_t>(n);
-    for (Index m = start[end]; m < start[end + 1]; ++m) {
-      for (Index k = m + 1; k < start[end + 1]; ++k) {
-        if ((sides[m].other ^ sides[k].other) != kBackwards) continue;
-        const Index h = sides[m].half_edge;
-        if (states[origin(h)] == VertexState::kLocked && states[destination(h)] == VertexState::kLocked) break;
-        set_twin(h, sides[k].half_edge);
-        set_twin(sides[k].half_edge, h);
-        break;
-      }
-    }
+    pair_sides(std::span(sides).subspan(start[end], start[end + 1] - start[end]));
   });
+}
+
+// Pairs sides that run in opposite directions between the same ends. Edges between locked vertices may have any number
+// of sides and stay unlinked: nobody walks around their ends.
+void Zone::pair_sides(std::span<EdgeSide> sides) {
+  constexpr std::size_t kFewSides = 32;
+  const auto other_end = [](const EdgeSide& side) { return side.other & ~kBackwards; };
+  const bool sorted = sides.size() > kFewSides;  // the hub of a large fan
+  if (sorted) {
+    std::sort(sides.begin(), sides.end(),
+              [&](const EdgeSide& a, const EdgeSide& b) { return other_end(a) < other_end(b); });
+  }
+  for (std::size_t m = 0; m < sides.size(); ++m) {
+    for (std::size_t k = m + 1; k < sides.size(); ++k) {
+      if (sorted && other_end(sides[k]) != other_end(sides[m])) break;
+      if ((sides[m].other ^ sides[k].other) != kBackwards) continue;
+      const Index h = sides[m].half_edge;
+      if (states[origin(h)] == VertexState::kLocked && states[destination(h)] == VertexState::kLocked) break;
+      set_twin(h, sides[k].half_edge);
+      set_twin(sides[k].half_edge, h);
+      break;
+    }
+  }
 }
 
 // The open half-edges that a piece can close, with the numbers that it gives to their ends.

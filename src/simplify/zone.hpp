@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "extract/surface_piece.hpp"
@@ -123,9 +124,16 @@ class Zone {
   std::uint64_t bytes() const;
 
  private:
+  // One side of an edge, in the list of the end with the smaller number.
+  struct EdgeSide {
+    Index other;  // number of the other end, and the direction
+    Index half_edge;
+  };
+
   void list_settled(Index end);
   void start_at(Index v, Index h);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
+  void pair_sides(std::span<EdgeSide> sides);
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(Index first_triangle, const Executor& executor);
   void start_at_border(Index v);
