@@ -11,38 +11,14 @@ namespace {
 // An edge goes back when its full cost exceeds its key by this factor.
 constexpr float refinement_limit(Quality quality) { return quality == Quality::kFine ? 1.0F : 4.0F; }
 
+// Faces that hold both ends of the edge: they go when it collapses.
+void drop_shared_faces(const Star& star, Index other, Fan& fan) {
+  const std::size_t place = star.place_of(other);
+  fan.drop(place);
+  fan.drop(place > 0 ? place - 1 : star.count() - 1);
+}
+
 }  // namespace
-
-void Star::gather(const Zone& zone, Index v) {
-  vertex = v;
-  overflow = false;
-  const Index first = zone.vertices[v].half_edge;
-  Index h = first;
-  std::size_t n = 0;
-  do {
-    if (n == kCapacity) {
-      faces = neighbours = kCapacity;
-      overflow = true;
-      return;
-    }
-    const Triangle& triangle = zone.triangles[h >> 2];
-    out[n] = h;
-    neighbour[n++] = triangle.vertex[next(h) & 3];
-    h = triangle.twin[previous(h) & 3];
-  } while (h != first && exists(h));
-  faces = static_cast<int>(n);
-  border = h != first;
-  neighbours = faces + (border ? 1 : 0);
-  if (border) neighbour[n] = zone.origin(previous(out[n - 1]));
-}
-
-void Fan::measure(const Zone& zone, const Star& star) {
-  const Vec3 from = zone.vertices[star.vertex].position;
-  const auto neighbours = static_cast<std::size_t>(star.neighbours);
-  for (std::size_t n = 0; n < neighbours; ++n) to[n] = zone.vertices[star.neighbour[n]].position - from;
-  for (std::size_t n = 0; n + 1 < neighbours; ++n) normals[n] = cross(to[n], to[n + 1]);
-  if (!star.border) normals[neighbours - 1] = cross(to[neighbours - 1], to[0]);
-}
 
 void Decider::decide() {
   changed_count_ = 0;
@@ -56,8 +32,9 @@ void Decider::decide() {
   const Vertex& u = zone_.vertices[u_.vertex];
   const Vertex& v = zone_.vertices[v_.vertex];
   edge_vector_ = v.position - u.position;
-  u_fan_.measure(zone_, u_);
-  v_fan_.measure(zone_, v_);
+  measure(u_, u_fan_);
+  measure(v_, v_fan_);
+  drop_shared_faces(v_, u_.vertex, v_fan_);
   Quadric full;
   Vec3 best;
   CostBits limit = key;
@@ -65,11 +42,14 @@ void Decider::decide() {
     full = u.quadric + moved(v.quadric, -edge_vector_);
     best = minimiser(full, factorise(full), 0.5 * edge_vector_);
   } else {
-    Vec3 u_normals;
-    Vec3 v_normals;
-    full = u.quadric + current_faces(u_, u_fan_, nullptr, u_normals) +
-           moved(v.quadric + current_faces(v_, v_fan_, &u_, v_normals), -edge_vector_);
-    best = best_place(full, u_normals + v_normals, dot(v_normals, edge_vector_));
+    const double a0 = zone_.options().a0;
+    const double weight = 1 / (2 * a0 * a0);
+    FaceSums u_sums;
+    FaceSums v_sums;
+    kernels_.sum_faces(u_fan_, u_.count(), weight, u_sums);
+    kernels_.sum_faces(v_fan_, v_.count(), weight, v_sums);
+    full = u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_);
+    best = best_place(full, u_sums.normal + v_sums.normal, dot(v_sums.normal, edge_vector_));
     limit = cost_bits(refinement_limit(quality_) * cost_value(key));
     const CostBits cost = to_cost(evaluate(full, best));
     if (cost > limit) {
@@ -78,6 +58,7 @@ void Decider::decide() {
       return;
     }
   }
+  drop_shared_faces(u_, v_.vertex, u_fan_);
   Vec3 x;
   if (!place(full, best, limit, x)) {
     ++counts_.postponed;
@@ -91,68 +72,36 @@ void Decider::decide() {
 }
 
 // Link condition (Dey, Edelsbrunner, Guha and Nekhayev, 1999), border and valence rules.
-bool Decider::topology_allows() const {
+bool Decider::topology_allows() {
   const bool border_edge = !exists(zone_.twin(edge_));
   if (u_.border && v_.border && !border_edge) return false;
   const int opposite = border_edge ? 1 : 2;
   if (u_.neighbours + v_.neighbours - 2 - opposite > kMaxValence) return false;
-  int common = 0;
-  for (int i = 0; i < u_.neighbours; ++i) {
-    const Index w = u_.neighbour[static_cast<std::size_t>(i)];
-    for (int j = 0; j < v_.neighbours; ++j) common += w == v_.neighbour[static_cast<std::size_t>(j)];
-  }
-  if (common != opposite) return false;
+  std::fill(v_.neighbour.begin() + v_.neighbours, v_.neighbour.end(), kNone);
+  const std::span of_u(u_.neighbour.data(), u_.count());
+  if (kernels_.count_common(of_u, v_.neighbour.data(), v_.count()) != opposite) return false;
   // What is left to exclude: both ends only see each other and the opposite vertices. Then the surface is a tetrahedron
   // (both stars hold the face over the opposite vertices), or, on a border, a single triangle.
   return !(u_.neighbours == opposite + 1 && v_.neighbours == opposite + 1 && u_.border == v_.border);
 }
 
-bool Decider::keeps_sides(Vec3 x) const {
-  const auto star_keeps = [](const Star& star, const Fan& fan, Index other, Vec3 move) {
-    const auto faces = static_cast<std::size_t>(star.faces);
-    const auto neighbours = static_cast<std::size_t>(star.neighbours);
-    for (std::size_t n = 0; n < faces; ++n) {
-      const std::size_t following = n + 1 < neighbours ? n + 1 : 0;
-      if (star.neighbour[n] == other || star.neighbour[following] == other) continue;
-      if (!keeps_side(fan.normals[n], cross(fan.to[n] - move, fan.to[following] - move))) return false;
-    }
-    return true;
-  };
-  return star_keeps(u_, u_fan_, v_.vertex, x) && star_keeps(v_, v_fan_, u_.vertex, x - edge_vector_);
+void Decider::measure(const Star& star, Fan& fan) const {
+  std::array<const Vertex*, Star::kRoom> ring;
+  const std::size_t count = star.count();
+  for (std::size_t n = 0; n < count; ++n) ring[n] = &zone_.vertices[star.neighbour[n]];
+  kernels_.measure(zone_.vertices[star.vertex].position, std::span(ring).first(count), star.border, fan);
 }
 
-// Planes of the faces of a star as they are now, weighted by area, measured from its vertex, and the sum of their
-// normals. Leaves out the faces that hold skip's vertex. Goes around from the neighbour with the smallest id.
-Quadric Decider::current_faces(const Star& star, const Fan& fan, const Star* skip, Vec3& normal_sum) const {
-  const auto faces = static_cast<std::size_t>(star.faces);
-  const auto neighbours = static_cast<std::size_t>(star.neighbours);
-  std::size_t start = 0;
-  if (!star.border) {
-    for (std::size_t n = 1; n < faces; ++n) {
-      if (zone_.vertices[star.neighbour[n]].id < zone_.vertices[star.neighbour[start]].id) start = n;
-    }
-  }
-  const double a0 = zone_.options().a0;
-  const double weight = 1 / (2 * a0 * a0);
-  Quadric q;
-  std::size_t face = start;
-  for (std::size_t n = 0; n < faces; ++n, face = face + 1 < faces ? face + 1 : 0) {
-    const std::size_t following = face + 1 < neighbours ? face + 1 : 0;
-    if (skip != nullptr && (star.neighbour[face] == skip->vertex || star.neighbour[following] == skip->vertex))
-      continue;
-    const Vec3 normal = fan.normals[face];
-    const double size = std::sqrt(dot(normal, normal));  // twice the area
-    if (!(size > 0)) continue;
-    add_plane(q, normal, weight / size);
-    normal_sum = normal_sum + normal;
-  }
-  return q;
+// Of the faces that are left.
+bool Decider::keeps_sides(Vec3 x) const {
+  return kernels_.keeps_sides(u_fan_, u_.count(), x) &&
+         kernels_.keeps_sides(v_fan_, v_.count(), x - edge_vector_);
 }
 
 // Where the full cost is least among the points x (gradient . x = offset) that keep the enclosed volume when the edge
 // shrinks to x (Lindstrom and Turk, 1998).
 Vec3 Decider::best_place(const Quadric& full, Vec3 gradient, double offset) const {
-  const Factors factors = factorise(full);
+  const Factors<double> factors = factorise(full);
   const Vec3 best = minimiser(full, factors, 0.5 * edge_vector_);
   const Vec3 response = solve(factors, gradient);
   const double strength = dot(gradient, response);
@@ -212,7 +161,7 @@ void Decider::merge_sides(Index h) {
   zone_.remove_triangle(h >> 2);
 }
 
-// Merges the two ends into the vertex of u_, x away from where that was.
+// Merges the two ends into the vertex of u_, x away from where that was. Afterwards u_ is the star of the merged vertex.
 void Decider::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
   for (int n = 0; n < v_.faces; ++n) {
@@ -231,30 +180,56 @@ void Decider::collapse(Vec3 x) {
     Point& normal = zone_.normals[u_.vertex];
     for (std::size_t c = 0; c < 3; ++c) normal[c] += zone_.normals[v_.vertex][c];
   }
-  merged.half_edge = kNone;
+  join_rings();
+}
+
+// The star of the merged vertex: around u_ from the first opposite vertex to the second, and around v_ back to the
+// first.
+void Decider::join_rings() {
+  Index& start = zone_.vertices[u_.vertex].half_edge;
+  if (u_.border || v_.border) {
+    start = kNone;
+    for (const Star* star : {&u_, &v_}) {
+      for (int n = 0; n < star->faces; ++n) {
+        const Index h = star->out[static_cast<std::size_t>(n)];
+        if (!zone_.alive(h)) continue;
+        if (start == kNone || !exists(zone_.twin(h))) start = h;
+      }
+    }
+    u_.gather(zone_, u_.vertex);
+    return;
+  }
+  std::size_t count = 0;
   for (const Star* star : {&u_, &v_}) {
-    for (int n = 0; n < star->faces; ++n) {
-      const Index h = star->out[static_cast<std::size_t>(n)];
-      if (!zone_.alive(h)) continue;
-      if (merged.half_edge == kNone || !exists(zone_.twin(h))) merged.half_edge = h;
+    for (std::size_t n = 1; n + 1 < static_cast<std::size_t>(star->faces); ++n, ++count) {
+      u_.out[count] = star->out[n];
+      u_.neighbour[count] = star->neighbour[n];
     }
   }
+  u_.faces = u_.neighbours = static_cast<int>(count);
+  start = u_.out[0];
 }
 
 // Keys of the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key it
 // replaces, and lies behind the collapse that made it.
 void Decider::update_keys(CostBits collapse_cost) {
-  const Index merged = u_.vertex;
-  u_.gather(zone_, merged);
+  const Vertex& merged = zone_.vertices[u_.vertex];
+  std::array<EdgeEnds, Star::kRoom> ends;
+  std::array<CostBits, Star::kRoom> costs;
   for (int n = 0; n < u_.neighbours; ++n) {
-    const bool last_on_border = n == u_.faces;
-    const Index h =
-        last_on_border ? previous(u_.out[static_cast<std::size_t>(n - 1)]) : u_.out[static_cast<std::size_t>(n)];
-    const CostBits before = zone_.cost(h);
-    if (before > zone_.options().retire) continue;
-    const CostBits own = edge_cost(zone_.vertices[merged], zone_.vertices[u_.neighbour[static_cast<std::size_t>(n)]]);
-    zone_.set_cost(h, std::max({own, collapse_cost + 1, before}));
-    changed_[static_cast<std::size_t>(changed_count_++)] = h;
+    const auto place = static_cast<std::size_t>(n);
+    const Index h = n == u_.faces ? previous(u_.out[place - 1]) : u_.out[place];
+    if (zone_.cost(h) > zone_.options().retire) continue;
+    const Vertex& other = zone_.vertices[u_.neighbour[place]];
+    const auto next_changed = static_cast<std::size_t>(changed_count_++);
+    changed_[next_changed] = h;
+    ends[next_changed] = merged.id < other.id ? EdgeEnds{&merged, &other} : EdgeEnds{&other, &merged};
+  }
+  const auto count = static_cast<std::size_t>(changed_count_);
+  kernels_.edge_costs(std::span(ends).first(count), costs.data());
+  for (std::size_t n = 0; n < count; ++n) {
+    const Index h = changed_[n];
+    zone_.set_cost(h, std::max({costs[n], collapse_cost + 1, zone_.cost(h)}));
   }
 }
 

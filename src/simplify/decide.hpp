@@ -6,51 +6,10 @@
 #include <utility>
 
 #include "isoweave/simplify_options.hpp"
-#include "simplify/zone.hpp"
+#include "simplify/kernels.hpp"
+#include "simplify/star.hpp"
 
 namespace isoweave {
-
-// The faces around a vertex, counter-clockwise: face n lies between neighbours n and n + 1 (modulo the number of
-// neighbours in a closed star; an open star has one neighbour more than faces).
-struct Star {
-  // Stars with more neighbours cannot merge within kMaxValence and are gathered up to here only.
-  static constexpr int kCapacity = 28;
-
-  Index vertex = kNone;
-  int faces = 0;
-  int neighbours = 0;
-  bool border = false;
-  bool overflow = false;
-  std::array<Index, kCapacity + 1> out;  // half-edge of face n that starts at the vertex
-  std::array<Index, kCapacity + 1> neighbour;
-
-  void gather(const Zone& zone, Index v);
-
-  // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
-  // never did.
-  template <class Visit>
-  bool each_neighbour(const Zone& zone, const Visit& visit) const {
-    for (int n = 0; n < neighbours; ++n) {
-      if (!visit(neighbour[static_cast<std::size_t>(n)])) return false;
-    }
-    if (!overflow) return true;
-    const Index first = zone.vertices[vertex].half_edge;
-    Index h = first;
-    do {
-      if (!visit(zone.destination(h)) || !visit(zone.origin(previous(h)))) return false;
-      h = zone.rotate(h);
-    } while (h != first && exists(h));
-    return true;
-  }
-};
-
-// Where the faces of a star lie, measured from its vertex.
-struct Fan {
-  std::array<Vec3, Star::kCapacity + 1> to;   // the neighbours
-  std::array<Vec3, Star::kCapacity> normals;  // of the faces, twice as long as their area
-
-  void measure(const Zone& zone, const Star& star);
-};
 
 struct DecisionCounts {
   std::uint64_t collapses = 0;
@@ -75,12 +34,18 @@ class Decider {
   template <class See>
   bool look_at(Index half_edge, const See& see) {
     edge_ = half_edge;
-    Index a = zone_.origin(half_edge);
-    Index b = zone_.destination(half_edge);
-    if (zone_.vertices[b].id < zone_.vertices[a].id) std::swap(a, b);
-    u_.gather(zone_, a);
+    Index to_v = half_edge;
+    Index to_u = zone_.twin(half_edge);
+    Index u = zone_.origin(half_edge);
+    Index v = zone_.destination(half_edge);
+    if (!exists(to_u)) to_u = zone_.vertices[v].half_edge;
+    if (zone_.vertices[v].id < zone_.vertices[u].id) {
+      std::swap(u, v);
+      std::swap(to_u, to_v);
+    }
+    u_.gather(zone_, u, to_v);
     if (!see(u_)) return false;
-    v_.gather(zone_, b);
+    v_.gather(zone_, v, to_u);
     return see(v_);
   }
 
@@ -101,18 +66,20 @@ class Decider {
   const DecisionCounts& counts() const { return counts_; }
 
  private:
-  bool topology_allows() const;
+  bool topology_allows();
+  void measure(const Star& star, Fan& fan) const;
   bool keeps_sides(Vec3 x) const;
-  Quadric current_faces(const Star& star, const Fan& fan, const Star* skip, Vec3& normal_sum) const;
   Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
   bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
   void raise_key(CostBits cost);
   void collapse(Vec3 x);
+  void join_rings();
   void merge_sides(Index h);
   void update_keys(CostBits collapse_cost);
 
   Zone& zone_;
   Quality quality_;
+  const Kernels& kernels_ = kernels();
   Index edge_ = kNone;
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
   Fan u_fan_, v_fan_;

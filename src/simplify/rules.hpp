@@ -74,11 +74,12 @@ struct EdgeNumbering {
 
 // A face keeps its side and stays a face when its normal, of any length, changes so. A face without area imposes
 // nothing.
-ISOWEAVE_HD inline bool keeps_side(Vec3 before, Vec3 after) {
-  const double size_before = dot(before, before);
-  if (!(size_before > 0)) return true;
-  const double cosine = dot(before, after);
-  return cosine > 0 && cosine * cosine > kSideCosine * kSideCosine * size_before * dot(after, after);
+template <class Real>
+ISOWEAVE_HD inline auto keeps_side(const BasicVec3<Real>& before, const BasicVec3<Real>& after) {
+  const Real size_before = dot(before, before);
+  const Real cosine = dot(before, after);
+  return (!(size_before > 0)) |
+         ((cosine > 0) & (cosine * cosine > kSideCosine * kSideCosine * size_before * dot(after, after)));
 }
 
 }  // namespace isoweave

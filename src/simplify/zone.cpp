@@ -8,11 +8,14 @@
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
 #include "parallel/compact.hpp"
+#include "simplify/kernels.hpp"
+#include "simplify/star.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 2048;
+constexpr std::int64_t kEdges = 256;  // that get their keys together
 constexpr Index kBackwards = Index{1} << 31;  // in EdgeSide::other: runs from the larger to the smaller number
 
 // Grows by a quarter where std::vector would double: the zone is what bounds the memory of a run.
@@ -22,26 +25,7 @@ void grow(std::vector<T>& vector, std::size_t size, const T& value = T()) {
   vector.resize(size, value);
 }
 
-// Insertion sort: the faces around a vertex are half a dozen, and nearly in order.
-template <class T, class Less>
-void sort_few(std::span<T> items, const Less& less) {
-  for (std::size_t n = 1; n < items.size(); ++n) {
-    const T item = items[n];
-    std::size_t at = n;
-    for (; at > 0 && less(item, items[at - 1]); --at) items[at] = items[at - 1];
-    items[at] = item;
-  }
-}
-
 }  // namespace
-
-CostBits edge_cost(const Vertex& a, const Vertex& b) {
-  const Vertex& u = a.id < b.id ? a : b;
-  const Vertex& v = a.id < b.id ? b : a;
-  const Vec3 edge = v.position - u.position;
-  const Quadric q = u.quadric + moved(v.quadric, -edge);
-  return to_cost(evaluate(q, minimiser(q, factorise(q), 0.5 * edge)));
-}
 
 void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   const std::uint64_t triangle_total = triangles.size() + piece.triangles.size();
@@ -230,57 +214,58 @@ void Zone::start_at_border(Index v) {
   }
 }
 
-// Planes of the faces around v in the order of the faces, weighted by area / 3; then, on an open border, planes
-// through the two border edges perpendicular to their faces, weighted by squared length.
+// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
+// border, planes through the two border edges perpendicular to their faces, weighted by squared length.
 void Zone::initial_quadric(Index v) {
-  struct Face {
-    Index half_edge;
-    Vec3 normal;
-  };
-  constexpr std::size_t kFew = 32;
-  std::array<Face, kFew> few;
-  std::vector<Face> many;
-  const Vec3 p = vertices[v].position;
+  Quadric q = face_planes(v);
   const Index first = vertices[v].half_edge;
-  const Vec3 first_side = vertices[destination(first)].position - p;
-  Vec3 side = first_side;
-  std::size_t count = 0;
-  for (Index h = first; exists(h);) {
-    const Vec3 following = vertices[origin(previous(h))].position - p;
-    const Face face{h, cross(side, following)};
-    if (count < kFew) {
-      few[count] = face;
-    } else {
-      if (count == kFew) many.assign(few.begin(), few.end());
-      many.push_back(face);
-    }
-    ++count;
-    side = following;
-    h = rotate(h);
-    if (h == first) break;
-  }
-  const std::span<Face> faces = count > kFew ? std::span<Face>(many) : std::span<Face>(few).first(count);
-  const Vec3 first_normal = faces.front().normal;
-  const Vec3 last_normal = faces.back().normal;
-  sort_few(faces, [](const Face& a, const Face& b) { return a.half_edge < b.half_edge; });
-
-  const double a0 = options_.a0;
-  const double weight = 1 / (6 * a0 * a0);
-  Quadric q;
-  for (const Face& face : faces) {
-    const double size = std::sqrt(dot(face.normal, face.normal));  // twice the area
-    if (size > 0) add_plane(q, face.normal, weight / size);
-  }
-  const auto add_border = [&](Vec3 edge, Vec3 normal) {
-    const Vec3 across = cross(edge, normal);
-    const double size = dot(across, across);
-    if (size > 0) add_plane(q, across, dot(edge, edge) / (a0 * a0 * size));
-  };
   if (twin(first) == kNone) {
-    add_border(first_side, first_normal);
-    add_border(side, last_normal);
+    Index last = first;
+    while (exists(rotate(last))) last = rotate(last);
+    q = q + border_plane(v, destination(first), first) + border_plane(v, origin(previous(last)), last);
   }
   vertices[v].quadric = q;
+}
+
+Quadric Zone::face_planes(Index v) const {
+  const double weight = 1 / (6 * options_.a0 * options_.a0);
+  Star star;
+  star.gather(*this, v);
+  if (star.overflow) return face_planes_one_by_one(v, weight);
+  std::array<const Vertex*, Star::kRoom> ring;
+  const std::size_t count = star.count();
+  for (std::size_t n = 0; n < count; ++n) ring[n] = &vertices[star.neighbour[n]];
+  Fan fan;
+  FaceSums sums;
+  kernels().measure(vertices[v].position, std::span(ring).first(count), star.border, fan);
+  kernels().sum_faces(fan, count, weight, sums);
+  return sums.planes;
+}
+
+Quadric Zone::face_planes_one_by_one(Index v, double weight) const {
+  const Index first = vertices[v].half_edge;
+  Quadric sum;
+  Index h = first;
+  do {
+    const Vec3 normal = face_normal(h);
+    const double size = std::sqrt(dot(normal, normal));  // twice the area
+    if (size > 0) sum = sum + plane_quadric(normal, weight / size);
+    h = rotate(h);
+  } while (h != first && exists(h));
+  return sum;
+}
+
+// Of the face of h, twice as long as its area, as seen from the origin of h.
+Vec3 Zone::face_normal(Index h) const {
+  const Vec3 from = vertices[origin(h)].position;
+  return cross(vertices[destination(h)].position - from, vertices[origin(previous(h))].position - from);
+}
+
+Quadric Zone::border_plane(Index v, Index other, Index face) const {
+  const Vec3 side = vertices[other].position - vertices[v].position;
+  const Vec3 across = cross(side, face_normal(face));
+  const double size = dot(across, across);
+  return size > 0 ? plane_quadric(across, dot(side, side) / (options_.a0 * options_.a0 * size)) : Quadric();
 }
 
 // Keys of the edges whose two ends are complete now.
@@ -297,22 +282,38 @@ void Zone::settle_edges(Index first_triangle, const Executor& executor) {
       },
       edges);
   edges.insert(edges.end(), unkeyed_edges_.begin(), unkeyed_edges_.end());
-  executor.for_each(static_cast<std::int64_t>(edges.size()), kBlock, [&](std::int64_t n) {
-    const Index h = edges[static_cast<std::size_t>(n)];
-    const Vertex& u = vertices[origin(h)];
-    const Vertex& v = vertices[destination(h)];
-    const VertexState u_state = states[origin(h)];
-    const VertexState v_state = states[destination(h)];
-    if (u_state == VertexState::kIncomplete || v_state == VertexState::kIncomplete) return;
-    const bool locked = u_state == VertexState::kLocked || v_state == VertexState::kLocked;
-    set_cost(h, locked ? kRetiredCost : edge_cost(u, v));
+  executor.for_blocks(static_cast<std::int64_t>(edges.size()), kEdges, [&](std::int64_t begin, std::int64_t end) {
+    give_keys(std::span(edges).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)));
+  });
+  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost; });
+  unkeyed_edges_ = std::move(edges);
+}
+
+// Keys of those edges both of whose ends are complete.
+void Zone::give_keys(std::span<const Index> edges) {
+  std::array<EdgeEnds, kEdges> ends;
+  std::array<Index, kEdges> known;
+  std::size_t count = 0;
+  for (const Index h : edges) {
+    const Index a = origin(h);
+    const Index b = destination(h);
+    if (states[a] == VertexState::kIncomplete || states[b] == VertexState::kIncomplete) continue;
+    const Vertex& u = vertices[a].id < vertices[b].id ? vertices[a] : vertices[b];
+    const Vertex& v = vertices[a].id < vertices[b].id ? vertices[b] : vertices[a];
     const std::uint64_t mixed = mix_bits(options_.numbering.edge_id(u.id, v.id));
     for (const Index side : {h, twin(h)}) {
       if (exists(side)) triangles[side >> 2].tie[side & 3] = mixed;
     }
-  });
-  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost; });
-  unkeyed_edges_ = std::move(edges);
+    if (states[a] == VertexState::kLocked || states[b] == VertexState::kLocked) {
+      set_cost(h, kRetiredCost);
+    } else {
+      ends[count] = {&u, &v};
+      known[count++] = h;
+    }
+  }
+  std::array<CostBits, kEdges> costs;
+  kernels().edge_costs(std::span(ends).first(count), costs.data());
+  for (std::size_t n = 0; n < count; ++n) set_cost(known[n], costs[n]);
 }
 
 void Zone::remove_triangle(Index t) { triangles[t].vertex = {kNone, kNone, kNone}; }

@@ -138,7 +138,12 @@ class Zone {
   void settle_vertices(Index first_triangle, const Executor& executor);
   void start_at_border(Index v);
   void initial_quadric(Index v);
+  Quadric face_planes(Index v) const;
+  Quadric face_planes_one_by_one(Index v, double weight) const;
+  Vec3 face_normal(Index h) const;
+  Quadric border_plane(Index v, Index other, Index face) const;
   void settle_edges(Index first_triangle, const Executor& executor);
+  void give_keys(std::span<const Index> edges);
 
   ZoneOptions options_;
   std::vector<Index> front_;            // incomplete vertices, in the order of the piece that named them
@@ -146,8 +151,5 @@ class Zone {
   std::vector<Index> unkeyed_edges_;    // an end incomplete
   Index dead_triangles_ = 0;
 };
-
-// Cost of collapsing the edge (u, v): least value of the sum of the two quadrics.
-CostBits edge_cost(const Vertex& a, const Vertex& b);
 
 }  // namespace isoweave

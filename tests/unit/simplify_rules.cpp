@@ -14,9 +14,7 @@ namespace {
 
 // weight * (distance to the plane through `point`)^2
 Quadric plane(Vec3 normal, Vec3 point, double weight) {
-  Quadric q;
-  add_plane(q, normal, weight / dot(normal, normal));
-  return moved(q, -point);
+  return moved(plane_quadric(normal, weight / dot(normal, normal)), -point);
 }
 
 TEST(Quadric, IsTheWeightedSquaredDistanceToThePlane) {

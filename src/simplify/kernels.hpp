@@ -1,0 +1,62 @@
+// The arithmetic of simplification over several edges or faces at once, for the instruction set of this processor.
+// Every set gives the same bits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "simplify/zone.hpp"
+
+namespace isoweave {
+
+// The ends of an edge, the one with the smaller id first.
+struct EdgeEnds {
+  const Vertex* first;
+  const Vertex* second;
+};
+
+// Where the faces around a vertex lie, measured from it. Slot n is the face between neighbours n and n + 1, and the
+// last one closes the circle; where there is no face the normal is zero.
+struct alignas(64) Fan {
+  static constexpr std::size_t kRoom = 40;  // 29 neighbours, rounded up to whole vectors, and one vector beyond
+
+  double x[kRoom], y[kRoom], z[kRoom];                          // of the neighbours
+  double normal_x[kRoom], normal_y[kRoom], normal_z[kRoom];     // of the faces, twice as long as their area
+
+  // Leaves a face out of what is computed from now on.
+  void drop(std::size_t slot) { normal_x[slot] = normal_y[slot] = normal_z[slot] = 0; }
+};
+
+// Sums over the faces of a fan, in the order of the slots.
+struct FaceSums {
+  Quadric planes;  // weighted by size, relative to the fan's vertex
+  Vec3 normal;
+};
+
+struct Kernels {
+  const char* name;
+
+  // Costs of collapsing edges.
+  void (*edge_costs)(std::span<const EdgeEnds> edges, CostBits* costs);
+
+  // Fills a fan. An open one has no face between its last neighbour and its first.
+  void (*measure)(Vec3 centre, std::span<const Vertex* const> neighbours, bool open, Fan& fan);
+
+  // Planes of the faces in slots below `slots`, with a weight of `weight` per twice the area.
+  void (*sum_faces)(const Fan& fan, std::size_t slots, double weight, FaceSums& sums);
+
+  // Whether all faces keep their side when the vertex moves.
+  bool (*keeps_sides)(const Fan& fan, std::size_t slots, Vec3 move);
+
+  // How many pairs of equal numbers two lists have. b has `count` numbers and is filled up to a multiple of 16 with
+  // numbers that a does not have.
+  int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
+};
+
+// The best for this processor.
+const Kernels& kernels();
+
+// All that this processor can run, the best last.
+std::span<const Kernels* const> all_kernels();
+
+}  // namespace isoweave

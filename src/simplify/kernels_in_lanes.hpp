@@ -1,0 +1,152 @@
+// The kernels in lanes of N doubles. Each instruction set instantiates them for an N of its own, in a source file of
+// its own: code for one set can never stand in for that of another.
+#pragma once
+
+#include <algorithm>
+
+#include "simplify/kernels.hpp"
+#include "simplify/lanes.hpp"
+
+namespace isoweave {
+
+template <std::size_t N>
+class KernelsInLanes {
+ public:
+  static constexpr Kernels table(const char* name) { return {name, edge_costs, measure, sum_faces, keeps_sides, count_common}; }
+
+ private:
+  using Real = Lanes<N>;
+  using Vec = BasicVec3<Real>;
+
+  // Position and quadric of N vertices.
+  struct Ends {
+    Vec position;
+    BasicQuadric<Real> quadric;
+  };
+
+  // The first kColumns doubles of every vertex, by columns.
+  template <std::size_t kColumns, class VertexOf>
+  [[gnu::always_inline]] static void load_columns(const VertexOf& vertex_of, Real* columns) {
+    static_assert(offsetof(Vertex, position) == 0 && offsetof(Vertex, quadric) == sizeof(Vec3));
+    const double* from[N];
+    unrolled<N>([&](auto n) { from[n] = reinterpret_cast<const double*>(vertex_of(n)); });
+    unrolled<(kColumns + N - 1) / N>([&](auto block) {
+      Real rows[N];
+      unrolled<N>([&](auto n) { rows[n] = Real::load(from[n] + block * N); });
+      transpose<N>(rows);
+      unrolled<N>([&](auto n) {
+        if constexpr (block * N + n < kColumns) columns[block * N + n] = rows[n];
+      });
+    });
+  }
+
+  template <class VertexOf>
+  [[gnu::always_inline]] static Ends load_ends(const VertexOf& vertex_of) {
+    Real c[13];
+    load_columns<13>(vertex_of, c);
+    return {{c[0], c[1], c[2]}, {c[3], c[4], c[5], c[6], c[7], c[8], {c[9], c[10], c[11]}, c[12]}};
+  }
+
+  static void edge_costs(std::span<const EdgeEnds> edges, CostBits* costs) {
+    const std::size_t count = edges.size();
+    for (std::size_t begin = 0; begin < count; begin += N) {
+      const auto edge = [&](std::size_t n) { return edges[std::min(begin + n, count - 1)]; };
+      const Ends u = load_ends([&](std::size_t n) { return edge(n).first; });
+      const Ends v = load_ends([&](std::size_t n) { return edge(n).second; });
+      const Real cost = collapse_cost(u.quadric, v.quadric, v.position - u.position);
+      double out[N];
+      cost.store(out);
+      for (std::size_t n = 0; n < std::min(N, count - begin); ++n) costs[begin + n] = to_cost(out[n]);
+    }
+  }
+
+  // Beyond the last neighbour of an open fan that neighbour is repeated, else the first: so the slots there are zero,
+  // and the one between the last and the first is the face that closes the circle or zero.
+  static void measure(Vec3 centre, std::span<const Vertex* const> neighbours, bool open, Fan& fan) {
+    const std::size_t count = neighbours.size();
+    const Vertex* const beyond = open ? neighbours.back() : neighbours.front();
+    const Vec from{centre.x, centre.y, centre.z};
+    std::size_t end = 0;
+    for (; end < count; end += N) {
+      Real c[3];
+      load_columns<3>([&](std::size_t n) { return end + n < count ? neighbours[end + n] : beyond; },
+                      c);
+      const Vec to = Vec{c[0], c[1], c[2]} - from;
+      to.x.store(fan.x + end);
+      to.y.store(fan.y + end);
+      to.z.store(fan.z + end);
+    }
+    const Vec3 to = beyond->position - centre;
+    fan.x[end] = to.x;
+    fan.y[end] = to.y;
+    fan.z[end] = to.z;
+    for (std::size_t n = 0; n < count; n += N) {
+      const Vec normal = cross(neighbour(fan, n), neighbour(fan, n + 1));
+      normal.x.store(fan.normal_x + n);
+      normal.y.store(fan.normal_y + n);
+      normal.z.store(fan.normal_z + n);
+    }
+  }
+
+  static Vec neighbour(const Fan& fan, std::size_t n) { return {Real::load(fan.x + n), Real::load(fan.y + n), Real::load(fan.z + n)}; }
+
+  static Vec normal(const Fan& fan, std::size_t n) {
+    return {Real::load(fan.normal_x + n), Real::load(fan.normal_y + n), Real::load(fan.normal_z + n)};
+  }
+
+  static void sum_faces(const Fan& fan, std::size_t slots, double weight, FaceSums& sums) {
+    sums = {};
+    for (std::size_t begin = 0; begin < slots; begin += N) {
+      const Vec along = normal(fan, begin);
+      const Real size = square_root(dot(along, along));  // twice the area
+      const BasicQuadric<Real> plane = plane_quadric(along, select<N>(size > 0, weight / size, 0));
+      double rows[9][N];
+      plane.xx.store(rows[0]);
+      plane.xy.store(rows[1]);
+      plane.xz.store(rows[2]);
+      plane.yy.store(rows[3]);
+      plane.yz.store(rows[4]);
+      plane.zz.store(rows[5]);
+      along.x.store(rows[6]);
+      along.y.store(rows[7]);
+      along.z.store(rows[8]);
+      Quadric& q = sums.planes;
+      for (std::size_t n = 0; n < std::min(N, slots - begin); ++n) {
+        q.xx += rows[0][n];
+        q.xy += rows[1][n];
+        q.xz += rows[2][n];
+        q.yy += rows[3][n];
+        q.yz += rows[4][n];
+        q.zz += rows[5][n];
+        sums.normal.x += rows[6][n];
+        sums.normal.y += rows[7][n];
+        sums.normal.z += rows[8][n];
+      }
+    }
+  }
+
+  static bool keeps_sides(const Fan& fan, std::size_t slots, Vec3 move) {
+    const Vec by{move.x, move.y, move.z};
+    for (std::size_t n = 0; n < slots; n += N) {
+      const Vec before = normal(fan, n);
+      const Vec after = cross(neighbour(fan, n) - by, neighbour(fan, n + 1) - by);
+      if (!all<N>(keeps_side(before, after))) return false;
+    }
+    return true;
+  }
+
+  static int count_common(std::span<const Index> a, const Index* b, std::size_t count) {
+    constexpr std::size_t kWidth = 16;
+    std::int32_t equal[kWidth] = {};
+    for (std::size_t first = 0; first < count; first += kWidth) {
+      for (const Index x : a) {
+        for (std::size_t n = 0; n < kWidth; ++n) equal[n] += b[first + n] == x;
+      }
+    }
+    std::int32_t common = 0;
+    for (const std::int32_t n : equal) common += n;
+    return common;
+  }
+};
+
+}  // namespace isoweave

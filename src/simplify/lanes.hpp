@@ -1,0 +1,108 @@
+// N doubles that go through the same arithmetic. Every lane gets the bits that a double would get: nothing is
+// contracted, reordered or approximated, so results do not depend on N.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+namespace isoweave {
+
+// Compilers ignore the attributes where they depend on a template's argument.
+template <std::size_t N>
+struct LaneTypes;
+
+template <>
+struct LaneTypes<2> {
+  using Vector [[gnu::vector_size(16)]] = double;
+  using Mask [[gnu::vector_size(16)]] = std::int64_t;
+  using InMemory [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+};
+
+template <>
+struct LaneTypes<4> {
+  using Vector [[gnu::vector_size(32)]] = double;
+  using Mask [[gnu::vector_size(32)]] = std::int64_t;
+  using InMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+};
+
+template <>
+struct LaneTypes<8> {
+  using Vector [[gnu::vector_size(64)]] = double;
+  using Mask [[gnu::vector_size(64)]] = std::int64_t;
+  using InMemory [[gnu::vector_size(64), gnu::aligned(8), gnu::may_alias]] = double;
+};
+
+template <std::size_t N>
+struct Lanes {
+  using Vector = typename LaneTypes<N>::Vector;
+  using Mask = typename LaneTypes<N>::Mask;
+  using InMemory = typename LaneTypes<N>::InMemory;
+
+  Vector v;
+
+  Lanes() = default;
+  Lanes(Vector vector) : v(vector) {}
+  Lanes(double value) : v(value - Vector{}) {}
+
+  static Lanes load(const double* from) { return {*reinterpret_cast<const InMemory*>(from)}; }
+  void store(double* to) const { *reinterpret_cast<InMemory*>(to) = v; }
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) { return a.v * b.v; }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) { return a.v / b.v; }
+  friend Lanes operator-(const Lanes& a) { return -a.v; }
+  friend Mask operator>(const Lanes& a, const Lanes& b) { return a.v > b.v; }
+};
+
+// Calls body(n) with the constants n = 0...N - 1.
+template <std::size_t N, class Body>
+[[gnu::always_inline]] inline void unrolled(const Body& body) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (body(std::integral_constant<std::size_t, I>()), ...);
+  }(std::make_index_sequence<N>());
+}
+
+template <std::size_t N>
+Lanes<N> square_root(const Lanes<N>& a) {
+  double values[N];
+  a.store(values);
+  for (double& value : values) value = std::sqrt(value);
+  return Lanes<N>::load(values);
+}
+
+template <std::size_t N>
+Lanes<N> select(typename Lanes<N>::Mask mask, const Lanes<N>& a, const Lanes<N>& b) {
+  return {mask ? a.v : b.v};
+}
+
+template <std::size_t N>
+bool all(typename Lanes<N>::Mask mask) {
+  std::int64_t both = -1;
+  unrolled<N>([&](auto n) { both &= mask[n.value]; });
+  return both != 0;
+}
+
+// Rows become columns: in steps, blocks of half the size change places across the diagonal.
+template <std::size_t N>
+[[gnu::always_inline]] inline void transpose(Lanes<N> (&rows)[N]) {
+  const auto exchange = [&]<std::size_t... Lane>(auto half, std::index_sequence<Lane...>) {
+    unrolled<N>([&](auto n) {
+      if constexpr ((n & half) == 0) {
+        const auto a = rows[n].v;
+        const auto b = rows[n + half].v;
+        rows[n].v = __builtin_shufflevector(a, b, ((Lane & half) == 0 ? Lane : N + Lane - half)...);
+        rows[n + half].v = __builtin_shufflevector(a, b, ((Lane & half) == 0 ? Lane + half : N + Lane)...);
+      }
+    });
+  };
+  constexpr auto kAll = std::make_index_sequence<N>();
+  if constexpr (N > 4) exchange(std::integral_constant<std::size_t, 4>(), kAll);
+  if constexpr (N > 2) exchange(std::integral_constant<std::size_t, 2>(), kAll);
+  exchange(std::integral_constant<std::size_t, 1>(), kAll);
+}
+
+}  // namespace isoweave

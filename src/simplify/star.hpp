@@ -1,0 +1,78 @@
+// The faces around a vertex.
+#pragma once
+
+#include <array>
+
+#include "simplify/zone.hpp"
+
+namespace isoweave {
+
+// Counter-clockwise: face n lies between neighbours n and n + 1 (modulo the number of neighbours in a closed star; an
+// open star has one neighbour more than faces).
+struct Star {
+  // Stars with more faces cannot merge within kMaxValence and are gathered up to here only.
+  static constexpr int kCapacity = 28;
+  static constexpr int kRoom = 32;
+
+  Index vertex = kNone;
+  int faces = 0;
+  int neighbours = 0;
+  bool border = false;
+  bool overflow = false;
+  std::array<Index, kRoom> out;  // half-edge of face n that starts at the vertex
+  std::array<Index, kRoom> neighbour;
+
+  // A closed star starts with half-edge `start`, an open one at its border.
+  void gather(const Zone& zone, Index v, Index start) {
+    vertex = v;
+    walk(zone, start);
+    if (border && start != zone.vertices[v].half_edge) walk(zone, zone.vertices[v].half_edge);
+    if (border) neighbour[static_cast<std::size_t>(faces)] = zone.origin(previous(out[static_cast<std::size_t>(faces - 1)]));
+  }
+
+  void gather(const Zone& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }
+
+  // The neighbour's place in the list.
+  std::size_t place_of(Index w) const {
+    std::size_t n = 0;
+    while (neighbour[n] != w) ++n;
+    return n;
+  }
+
+  std::size_t count() const { return static_cast<std::size_t>(neighbours); }
+
+  // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
+  // never did.
+  template <class Visit>
+  bool each_neighbour(const Zone& zone, const Visit& visit) const {
+    for (int n = 0; n < neighbours; ++n) {
+      if (!visit(neighbour[static_cast<std::size_t>(n)])) return false;
+    }
+    if (!overflow) return true;
+    const Index first = zone.vertices[vertex].half_edge;
+    Index h = first;
+    do {
+      if (!visit(zone.destination(h)) || !visit(zone.origin(previous(h)))) return false;
+      h = zone.rotate(h);
+    } while (h != first && exists(h));
+    return true;
+  }
+
+ private:
+  void walk(const Zone& zone, Index start) {
+    Index h = start;
+    std::size_t n = 0;
+    do {
+      const Triangle& triangle = zone.triangles[h >> 2];
+      out[n] = h;
+      neighbour[n++] = triangle.vertex[next(h) & 3];
+      h = triangle.twin[previous(h) & 3];
+    } while (h != start && exists(h) && n < kCapacity);
+    faces = static_cast<int>(n);
+    overflow = h != start && exists(h);
+    border = !exists(h);
+    neighbours = faces + (border ? 1 : 0);
+  }
+};
+
+}  // namespace isoweave
