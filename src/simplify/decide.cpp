@@ -32,8 +32,8 @@ void Decider::decide() {
   const Vertex& u = zone_.vertices[u_.vertex];
   const Vertex& v = zone_.vertices[v_.vertex];
   edge_vector_ = v.position - u.position;
-  measure(u_, u_fan_);
-  measure(v_, v_fan_);
+  measure(zone_, u_, u_fan_);
+  measure(zone_, v_, v_fan_);
   drop_shared_faces(v_, u_.vertex, v_fan_);
   Quadric full;
   Vec3 best;
@@ -77,19 +77,12 @@ bool Decider::topology_allows() {
   if (u_.border && v_.border && !border_edge) return false;
   const int opposite = border_edge ? 1 : 2;
   if (u_.neighbours + v_.neighbours - 2 - opposite > kMaxValence) return false;
-  std::fill(v_.neighbour.begin() + v_.neighbours, v_.neighbour.end(), kNone);
+  v_.pad(kNone);
   const std::span of_u(u_.neighbour.data(), u_.count());
   if (kernels_.count_common(of_u, v_.neighbour.data(), v_.count()) != opposite) return false;
   // What is left to exclude: both ends only see each other and the opposite vertices. Then the surface is a tetrahedron
   // (both stars hold the face over the opposite vertices), or, on a border, a single triangle.
   return !(u_.neighbours == opposite + 1 && v_.neighbours == opposite + 1 && u_.border == v_.border);
-}
-
-void Decider::measure(const Star& star, Fan& fan) const {
-  std::array<const Vertex*, Star::kRoom> ring;
-  const std::size_t count = star.count();
-  for (std::size_t n = 0; n < count; ++n) ring[n] = &zone_.vertices[star.neighbour[n]];
-  kernels_.measure(zone_.vertices[star.vertex].position, std::span(ring).first(count), star.border, fan);
 }
 
 // Of the faces that are left.
@@ -143,17 +136,14 @@ void Decider::merge_sides(Index h) {
   const Index b = previous(h);
   const Index outer_a = zone_.twin(a);
   const Index outer_b = zone_.twin(b);
-  const CostBits cost_a = zone_.cost(a);
-  const CostBits cost_b = zone_.cost(b);
-  const bool a_first = cost_a != cost_b ? cost_a < cost_b : zone_.tie(a) < zone_.tie(b);
-  const CostBits cost = a_first ? cost_a : cost_b;
-  const std::uint64_t tie = zone_.tie(a_first ? a : b);
+  const Index least = zone_.comes_before(a, b) ? a : b;
+  const Key key = zone_.key(least);
+  const std::uint32_t tie_low = zone_.tie_low(least);
   for (const Index outer : {outer_a, outer_b}) {
     if (!exists(outer)) continue;
-    Triangle& triangle = zone_.triangles[outer >> 2];
-    triangle.twin[outer & 3] = outer == outer_a ? outer_b : outer_a;
-    triangle.cost[outer & 3] = cost;
-    triangle.tie[outer & 3] = tie;
+    zone_.half(outer).twin = outer == outer_a ? outer_b : outer_a;
+    zone_.half(outer).key = key;
+    zone_.triangles[outer >> 2].tie_low[outer & 3] = tie_low;
   }
   // The opposite vertex may have started its walks here. Another collapse may look at the same vertex from its side.
   const std::atomic_ref<Index> start(zone_.vertices[zone_.origin(b)].half_edge);
@@ -165,8 +155,7 @@ void Decider::merge_sides(Index h) {
 void Decider::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
   for (int n = 0; n < v_.faces; ++n) {
-    const Index h = v_.out[static_cast<std::size_t>(n)];
-    zone_.triangles[h >> 2].vertex[h & 3] = u_.vertex;
+    zone_.half(v_.out[static_cast<std::size_t>(n)]).vertex = u_.vertex;
   }
   merge_sides(edge_);
   if (exists(back)) merge_sides(back);
@@ -216,20 +205,22 @@ void Decider::update_keys(CostBits collapse_cost) {
   const Vertex& merged = zone_.vertices[u_.vertex];
   std::array<EdgeEnds, Star::kRoom> ends;
   std::array<CostBits, Star::kRoom> costs;
-  for (int n = 0; n < u_.neighbours; ++n) {
-    const auto place = static_cast<std::size_t>(n);
-    const Index h = n == u_.faces ? previous(u_.out[place - 1]) : u_.out[place];
-    if (zone_.cost(h) > zone_.options().retire) continue;
-    const Vertex& other = zone_.vertices[u_.neighbour[place]];
+  for (std::size_t n = 0; n < u_.count(); ++n) {
+    const Index h = n == static_cast<std::size_t>(u_.faces) ? previous(u_.out[n - 1]) : u_.out[n];
+    const Key before = zone_.key(h);
+    if (cost_of(before) > zone_.options().retire) continue;
+    const Vertex* const other = &zone_.vertices[u_.neighbour[n]];
+    const bool merged_first = merged.id < other->id;
     const auto next_changed = static_cast<std::size_t>(changed_count_++);
     changed_[next_changed] = h;
-    ends[next_changed] = merged.id < other.id ? EdgeEnds{&merged, &other} : EdgeEnds{&other, &merged};
+    before_[next_changed] = before;
+    ends[next_changed] = {merged_first ? &merged : other, merged_first ? other : &merged};
   }
   const auto count = static_cast<std::size_t>(changed_count_);
   kernels_.edge_costs(std::span(ends).first(count), costs.data());
   for (std::size_t n = 0; n < count; ++n) {
     const Index h = changed_[n];
-    zone_.set_cost(h, std::max({costs[n], collapse_cost + 1, zone_.cost(h)}));
+    zone_.set_cost(h, std::max({costs[n], collapse_cost + 1, cost_of(before_[n])}));
   }
 }
 

@@ -60,14 +60,17 @@ class Decider {
   // changed() lists the edges whose keys changed.
   void decide();
 
-  const std::array<Index, 2 * Star::kCapacity>& changed() const { return changed_; }
+  const std::array<Index, Star::kRoom>& changed() const { return changed_; }
   int changed_count() const { return changed_count_; }
+
+  // After a collapse: the key that the n-th of them had, the smaller one where two edges have become one.
+  Key key_before(std::size_t n) const { return before_[n]; }
+
   bool collapsed() const { return collapsed_; }  // first() is the star of the merged vertex then
   const DecisionCounts& counts() const { return counts_; }
 
  private:
   bool topology_allows();
-  void measure(const Star& star, Fan& fan) const;
   bool keeps_sides(Vec3 x) const;
   Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
   bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
@@ -84,7 +87,8 @@ class Decider {
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
   Fan u_fan_, v_fan_;
   Vec3 edge_vector_;  // from u to v; places are measured from u
-  std::array<Index, 2 * Star::kCapacity> changed_;
+  std::array<Index, Star::kRoom> changed_;
+  std::array<Key, Star::kRoom> before_;
   int changed_count_ = 0;
   bool collapsed_ = false;
   DecisionCounts counts_;

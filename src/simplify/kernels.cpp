@@ -1,12 +1,18 @@
 #include "simplify/kernels.hpp"
 
 #include <vector>
+#include <cstdlib>
 
 namespace isoweave {
 
 extern const Kernels kPortableKernels;
 extern const Kernels kAvx2Kernels;
 extern const Kernels kAvx512Kernels;
+
+void measure(const Zone& zone, Star& star, Fan& fan) {
+  star.pad(star.neighbour[star.border ? star.count() - 1 : 0]);
+  kernels().measure(zone.vertices.data(), zone.vertices[star.vertex].position, star.neighbour.data(), star.count(), fan);
+}
 
 std::span<const Kernels* const> all_kernels() {
   static const std::vector<const Kernels*> all = [] {
@@ -21,7 +27,7 @@ std::span<const Kernels* const> all_kernels() {
 }
 
 const Kernels& kernels() {
-  static const Kernels& best = *all_kernels().back();
+  static const Kernels& best = *all_kernels()[getenv("ISOK") ? static_cast<std::size_t>(atoi(getenv("ISOK"))) : all_kernels().size() - 1];
   return best;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "simplify/star.hpp"
 #include "simplify/zone.hpp"
 
 namespace isoweave {
@@ -39,8 +40,9 @@ struct Kernels {
   // Costs of collapsing edges.
   void (*edge_costs)(std::span<const EdgeEnds> edges, CostBits* costs);
 
-  // Fills a fan. An open one has no face between its last neighbour and its first.
-  void (*measure)(Vec3 centre, std::span<const Vertex* const> neighbours, bool open, Fan& fan);
+  // Fills a fan. After the neighbours come 8 or more numbers that repeat the first of them, for a closed fan, or the
+  // last: an open one has no face between its last neighbour and its first.
+  void (*measure)(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan);
 
   // Planes of the faces in slots below `slots`, with a weight of `weight` per twice the area.
   void (*sum_faces)(const Fan& fan, std::size_t slots, double weight, FaceSums& sums);
@@ -52,6 +54,9 @@ struct Kernels {
   // numbers that a does not have.
   int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
 };
+
+// Fills the fan of a star that is not too large.
+void measure(const Zone& zone, Star& star, Fan& fan);
 
 // The best for this processor.
 const Kernels& kernels();

@@ -60,23 +60,19 @@ class KernelsInLanes {
     }
   }
 
-  // Beyond the last neighbour of an open fan that neighbour is repeated, else the first: so the slots there are zero,
-  // and the one between the last and the first is the face that closes the circle or zero.
-  static void measure(Vec3 centre, std::span<const Vertex* const> neighbours, bool open, Fan& fan) {
-    const std::size_t count = neighbours.size();
-    const Vertex* const beyond = open ? neighbours.back() : neighbours.front();
+  // The repeated neighbour makes the slots past the last one zero.
+  static void measure(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan) {
     const Vec from{centre.x, centre.y, centre.z};
     std::size_t end = 0;
     for (; end < count; end += N) {
       Real c[3];
-      load_columns<3>([&](std::size_t n) { return end + n < count ? neighbours[end + n] : beyond; },
-                      c);
+      load_columns<3>([&](std::size_t n) { return vertices + neighbours[end + n]; }, c);
       const Vec to = Vec{c[0], c[1], c[2]} - from;
       to.x.store(fan.x + end);
       to.y.store(fan.y + end);
       to.z.store(fan.z + end);
     }
-    const Vec3 to = beyond->position - centre;
+    const Vec3 to = vertices[neighbours[count]].position - centre;
     fan.x[end] = to.x;
     fan.y[end] = to.y;
     fan.z[end] = to.z;
@@ -94,35 +90,29 @@ class KernelsInLanes {
     return {Real::load(fan.normal_x + n), Real::load(fan.normal_y + n), Real::load(fan.normal_z + n)};
   }
 
+  // All lanes are added, also those beyond the last slot, which are zero: the number of turns stays the same.
   static void sum_faces(const Fan& fan, std::size_t slots, double weight, FaceSums& sums) {
-    sums = {};
+    constexpr std::size_t kColumns = 8;
+    Real total[kColumns / N];
+    for (Real& t : total) t = 0;
+    double normal_z = 0;
     for (std::size_t begin = 0; begin < slots; begin += N) {
       const Vec along = normal(fan, begin);
       const Real size = square_root(dot(along, along));  // twice the area
       const BasicQuadric<Real> plane = plane_quadric(along, select<N>(size > 0, weight / size, 0));
-      double rows[9][N];
-      plane.xx.store(rows[0]);
-      plane.xy.store(rows[1]);
-      plane.xz.store(rows[2]);
-      plane.yy.store(rows[3]);
-      plane.yz.store(rows[4]);
-      plane.zz.store(rows[5]);
-      along.x.store(rows[6]);
-      along.y.store(rows[7]);
-      along.z.store(rows[8]);
-      Quadric& q = sums.planes;
-      for (std::size_t n = 0; n < std::min(N, slots - begin); ++n) {
-        q.xx += rows[0][n];
-        q.xy += rows[1][n];
-        q.xz += rows[2][n];
-        q.yy += rows[3][n];
-        q.yz += rows[4][n];
-        q.zz += rows[5][n];
-        sums.normal.x += rows[6][n];
-        sums.normal.y += rows[7][n];
-        sums.normal.z += rows[8][n];
-      }
+      Real columns[kColumns] = {plane.xx, plane.xy, plane.xz, plane.yy, plane.yz, plane.zz, along.x, along.y};
+      unrolled<kColumns / N>([&](auto block) {
+        Real rows[N];
+        unrolled<N>([&](auto n) { rows[n] = columns[block * N + n]; });
+        transpose<N>(rows);
+        unrolled<N>([&](auto n) { total[block] = total[block] + rows[n]; });
+      });
+      unrolled<N>([&](auto n) { normal_z += fan.normal_z[begin + n]; });
     }
+    double out[kColumns];
+    unrolled<kColumns / N>([&](auto block) { total[block].store(out + block * N); });
+    sums.planes = {out[0], out[1], out[2], out[3], out[4], out[5], {}, 0};
+    sums.normal = {out[6], out[7], normal_z};
   }
 
   static bool keeps_sides(const Fan& fan, std::size_t slots, Vec3 move) {

@@ -85,33 +85,24 @@ class LocalMinima::Worker {
   // another worker holds something: nothing has been done.
   bool visit(Index v) {
     if (!hold(v)) return false;
-    const Turn& turn = zone_.turns[v];
     if (!has_turn(zone_, v)) return true;
     if (waits_for(v).load(std::memory_order_acquire) != kNone) return true;
-    const Index edge = turn.edge;
+    const Index edge = zone_.turns[v].edge;
     const Index other = other_end(zone_, edge, v);
     if (!hold(other)) return false;
-    if (zone_.turns[other].cost == kUnknownCost || !same_edge(zone_, turn, zone_.turns[other])) {
+    if (!same_turn(zone_, v, other)) {
       wait(v, other);
       return true;
     }
     bool all_held = true;
     Index first = v;
-    CostBits least_cost = turn.cost;
-    const bool least = decider_.look_at(edge, [&](const Star& star) {
-      all_held = star.each_neighbour(zone_, [&](Index x) {
-        if (!hold(x)) return false;
-        const Turn& other_turn = zone_.turns[x];
-        if (other_turn.cost <= least_cost && earlier(zone_, other_turn, zone_.turns[first])) {
-          first = x;
-          least_cost = other_turn.cost;
-        }
-        return true;
-      });
+    decider_.look_at(edge, [&](Star& star) {
+      all_held = hold_neighbours(star);
+      if (all_held) first = earliest(star, v, other);
       return all_held && first == v;
     });
     if (!all_held) return false;
-    if (!least) {
+    if (first != v) {
       wait(v, first);
       if (waits_for(other).load(std::memory_order_acquire) == kNone) enlist(other, v);
       return true;
@@ -119,6 +110,37 @@ class LocalMinima::Worker {
     decider_.decide();
     settle(v, other);
     return true;
+  }
+
+  bool hold_neighbours(const Star& star) {
+    return owners_ == nullptr || star.each_neighbour(zone_, [&](Index x) { return hold(x); });
+  }
+
+  // The neighbour whose turn comes first of all, if it comes before that of v and other, which is the same; else v.
+  Index earliest(const Star& star, Index v, Index other) const {
+    const Key own = zone_.turn_keys[v];
+    Key least = own;
+    Index first = v;
+    bool equals = star.overflow;
+    for (std::size_t n = 0; n < star.count(); ++n) {
+      const Index x = star.neighbour[n];
+      const Key key = zone_.turn_keys[x];
+      const bool less = key < least;
+      first = less ? x : first;
+      least = less ? key : least;
+      equals |= (key == own) & (x != v) & (x != other);
+    }
+    return equals ? earliest_in_full(star, v) : first;
+  }
+
+  // Compares whole ties.
+  Index earliest_in_full(const Star& star, Index v) const {
+    Index first = v;
+    star.each_neighbour(zone_, [&](Index x) {
+      if (earlier(zone_, x, first)) first = x;
+      return true;
+    });
+    return first;
   }
 
   void enlist(Index v, Index first) {
@@ -130,8 +152,7 @@ class LocalMinima::Worker {
 
   void wait(Index v, Index first) {
     enlist(v, first);
-    const Turn& turn = zone_.turns[first];
-    if (turn.cost != kUnknownCost && waits_for(first).load(std::memory_order_acquire) == kNone) {
+    if (!is_unknown(zone_.turn_keys[first]) && waits_for(first).load(std::memory_order_acquire) == kNone) {
       todo_.push_back(first);
     }
   }
@@ -146,16 +167,14 @@ class LocalMinima::Worker {
     const Star& merged = decider_.first();
     const Index gone = merged.vertex == u ? v : u;
     wake_waiters(gone);
-    zone_.turns[gone].cost = kRetiredCost;
+    zone_.turn_keys[gone] = kNoTurn;
     zone_.turns[gone].edge = kNone;
     renew(merged.vertex);
-    for (int n = 0; n < merged.neighbours; ++n) {
-      const Index w = merged.neighbour[static_cast<std::size_t>(n)];
-      if (!has_turn(zone_, w)) continue;
-      const Index edge = zone_.turns[w].edge;
-      const bool touched =
-          !zone_.alive(edge) || zone_.origin(edge) == merged.vertex || zone_.destination(edge) == merged.vertex;
-      if (touched) renew(w);
+    // Edges that were the turn of their other end have another key now.
+    for (int n = 0; n < decider_.changed_count(); ++n) {
+      const auto place = static_cast<std::size_t>(n);
+      const Index w = other_end(zone_, decider_.changed()[place], merged.vertex);
+      if (has_turn(zone_, w) && zone_.turn_keys[w] == decider_.key_before(place)) renew(w);
     }
   }
 
@@ -225,7 +244,7 @@ void LocalMinima::wake_neighbourhood() {
   awake_ = zone_.settled;
   for (const Index v : zone_.settled) {
     Turn& turn = zone_.turns[v];
-    if (turn.cost == kUnknownCost) continue;
+    if (is_unknown(zone_.turn_keys[v])) continue;
     for (Index w = turn.first_waiter; w != kNone; w = zone_.turns[w].next_waiter) {
       zone_.turns[w].waits_for = kNone;
       awake_.push_back(w);

@@ -41,7 +41,7 @@ void Rounds::list_candidates() {
         for (std::int64_t n = begin; n < end; ++n) {
           const Index v = changed_[static_cast<std::size_t>(n)];
           add(v, list);
-          if (zone_.turns[v].cost == kUnknownCost || !zone_.walkable(v)) continue;
+          if (is_unknown(zone_.turn_keys[v]) || !zone_.walkable(v)) continue;
           star.gather(zone_, v);
           star.each_neighbour(zone_, [&](Index w) {
             add(w, list);
@@ -61,16 +61,16 @@ void Rounds::pick_minima() {
         Star star;
         for (std::int64_t n = begin; n < end; ++n) {
           const Index v = candidates_[static_cast<std::size_t>(n)];
-          const Turn& turn = zone_.turns[v];
-          const Index other = other_end(zone_, turn.edge, v);
-          if (zone_.turns[other].cost == kUnknownCost || !same_edge(zone_, turn, zone_.turns[other])) continue;
+          const Index edge = zone_.turns[v].edge;
+          const Index other = other_end(zone_, edge, v);
+          if (!same_turn(zone_, v, other)) continue;
           if (marks_[other] != 0 && other < v) continue;
           bool least = true;
           for (const Index end_vertex : {v, other}) {
             star.gather(zone_, end_vertex);
-            least = least && star.each_neighbour(zone_, [&](Index w) { return !earlier(zone_, zone_.turns[w], turn); });
+            least = least && star.each_neighbour(zone_, [&](Index w) { return !earlier(zone_, w, v); });
           }
-          if (least) list.push_back(turn.edge);
+          if (least) list.push_back(edge);
         }
       },
       minima_);
@@ -110,7 +110,7 @@ void Rounds::renew_turns() {
     const Index v = changed_[static_cast<std::size_t>(n)];
     marks_[v] = 0;
     if (!exists(zone_.vertices[v].half_edge)) {
-      zone_.turns[v].cost = kRetiredCost;
+      zone_.turn_keys[v] = kNoTurn;
     } else if (has_turn(zone_, v)) {
       renew_turn(zone_, v);
     }

@@ -47,8 +47,9 @@ std::vector<Index> Simplifier::final_triangles() {
       executor_, zone_.triangle_count(), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
-          const auto& [a, b, c] = zone_.triangles[t].vertex;
-          if (a != kNone && !undecided_[a] && !undecided_[b] && !undecided_[c]) list.push_back(t);
+          const auto& [a, b, c] = zone_.triangles[t].sides;
+          if (a.vertex == kNone) continue;
+          if (!undecided_[a.vertex] && !undecided_[b.vertex] && !undecided_[c.vertex]) list.push_back(t);
         }
       },
       triangles);
@@ -64,12 +65,13 @@ void Simplifier::mark_undecided() {
   };
   executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
     const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
-    if (triangle.vertex[0] == kNone) return;
+    if (triangle.sides[0].vertex == kNone) return;
     for (std::size_t c = 0; c < 3; ++c) {
-      if (zone_.states[triangle.vertex[c]] == VertexState::kIncomplete) mark(triangle.vertex[c]);
-      if (triangle.cost[c] > retire) continue;
-      mark(triangle.vertex[c]);
-      mark(triangle.vertex[(c + 1) % 3]);
+      const auto& [v, twin, key] = triangle.sides[c];
+      if (zone_.states[v] == VertexState::kIncomplete) mark(v);
+      if (cost_of(key) > retire) continue;
+      mark(v);
+      mark(triangle.sides[(c + 1) % 3].vertex);
     }
   });
 }
@@ -96,8 +98,9 @@ void Simplifier::inspect(const std::vector<Index>& vertices) {
   std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
   executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
     const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
-    if (triangle.vertex[0] == kNone) return;
-    for (const Index v : triangle.vertex) {
+    if (triangle.sides[0].vertex == kNone) return;
+    for (const HalfEdge& side : triangle.sides) {
+      const Index v = side.vertex;
       if (!undecided_[v]) std::atomic_ref(corners[v]).fetch_add(1, std::memory_order_relaxed);
     }
   });

@@ -12,7 +12,8 @@ namespace isoweave {
 struct Star {
   // Stars with more faces cannot merge within kMaxValence and are gathered up to here only.
   static constexpr int kCapacity = 28;
-  static constexpr int kRoom = 32;
+  static constexpr int kPadding = 16;
+  static constexpr int kRoom = 48;
 
   Index vertex = kNone;
   int faces = 0;
@@ -39,6 +40,11 @@ struct Star {
     return n;
   }
 
+  // What lies past the last neighbour, so that loops can take whole vectors.
+  void pad(Index with) {
+    for (std::size_t n = 0; n < kPadding; ++n) neighbour[count() + n] = with;
+  }
+
   std::size_t count() const { return static_cast<std::size_t>(neighbours); }
 
   // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
@@ -60,13 +66,13 @@ struct Star {
 
  private:
   void walk(const Zone& zone, Index start) {
+    const HalfEdge* const halves = &zone.half(0);
     Index h = start;
     std::size_t n = 0;
     do {
-      const Triangle& triangle = zone.triangles[h >> 2];
       out[n] = h;
-      neighbour[n++] = triangle.vertex[next(h) & 3];
-      h = triangle.twin[previous(h) & 3];
+      neighbour[n++] = halves[next(h)].vertex;
+      h = halves[previous(h)].twin;
     } while (h != start && exists(h) && n < kCapacity);
     faces = static_cast<int>(n);
     overflow = h != start && exists(h);

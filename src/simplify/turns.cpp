@@ -3,23 +3,27 @@
 namespace isoweave {
 
 void renew_turn(Zone& zone, Index v) {
-  CostBits least = kRetiredCost;
-  Index edge = kNone;
-  const auto offer = [&](CostBits cost, Index h) {
-    if (cost > least || (cost == least && edge != kNone && zone.tie(h) >= zone.tie(edge))) return;
-    least = cost;
-    edge = h;
-  };
+  const HalfEdge* const halves = &zone.half(0);
   const Index first = zone.vertices[v].half_edge;
-  Index h = first;
-  do {
-    const Triangle& triangle = zone.triangles[h >> 2];
-    const Index incoming = previous(h);
-    offer(triangle.cost[h & 3], h);
-    h = triangle.twin[incoming & 3];
-    if (!exists(h)) offer(triangle.cost[incoming & 3], incoming);
-  } while (h != first && exists(h));
-  zone.turns[v].cost = least;
+  Index edge = first;
+  Key least = halves[first].key;
+  const auto offer = [&](Index h) {
+    const Key key = halves[h].key;
+    const bool first_of_equals = key == least && zone.tie_low(h) < zone.tie_low(edge);
+    const bool less = key < least || first_of_equals;
+    least = less ? key : least;
+    edge = less ? h : edge;
+  };
+  for (Index h = halves[previous(first)].twin, before = first; h != first;) {
+    if (!exists(h)) {
+      offer(previous(before));
+      break;
+    }
+    offer(h);
+    before = h;
+    h = halves[previous(h)].twin;
+  }
+  zone.turn_keys[v] = least;
   zone.turns[v].edge = edge;
 }
 
@@ -28,10 +32,10 @@ void give_turns(Zone& zone, const Executor& executor) {
     const Index v = zone.settled[static_cast<std::size_t>(n)];
     switch (zone.states[v]) {
       case VertexState::kIncomplete:
-        zone.turns[v].cost = kUnknownCost;
+        zone.turn_keys[v] = kUnknownTurn;
         break;
       case VertexState::kLocked:
-        zone.turns[v].cost = kRetiredCost;
+        zone.turn_keys[v] = kNoTurn;
         break;
       default:
         if (exists(zone.vertices[v].half_edge)) renew_turn(zone, v);

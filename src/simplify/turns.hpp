@@ -7,15 +7,20 @@
 
 namespace isoweave {
 
-// Sets cost and edge of v's turn from its edges. v must be complete or final and still there.
+inline constexpr Key kUnknownTurn = 0;  // comes before all others
+inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
+
+// Sets v's turn from its edges. v must be complete or final and still there.
 void renew_turn(Zone& zone, Index v);
 
 // Turns of the vertices whose edges got keys with the last append.
 void give_turns(Zone& zone, const Executor& executor);
 
+inline bool is_unknown(Key turn) { return cost_of(turn) == kUnknownCost; }
+
 // There is an edge to decide at v, and its key is known.
 inline bool has_turn(const Zone& zone, Index v) {
-  const CostBits cost = zone.turns[v].cost;
+  const CostBits cost = cost_of(zone.turn_keys[v]);
   return cost != kUnknownCost && cost <= zone.options().retire;
 }
 
@@ -24,14 +29,19 @@ inline Index other_end(const Zone& zone, Index edge, Index v) {
   return origin == v ? zone.destination(edge) : origin;
 }
 
-inline bool same_edge(const Zone& zone, const Turn& a, const Turn& b) {
-  return a.cost == b.cost && zone.tie(a.edge) == zone.tie(b.edge);
+// v and w have the same least edge; v has a turn.
+inline bool same_turn(const Zone& zone, Index v, Index w) {
+  if (zone.turn_keys[v] != zone.turn_keys[w]) return false;
+  const Index edge = zone.turns[w].edge;
+  return edge != kNone && (edge == zone.turns[v].edge || edge == zone.twin(zone.turns[v].edge));
 }
 
-// a comes before b, whose cost is known. Unknown keys come before all others.
-inline bool earlier(const Zone& zone, const Turn& a, const Turn& b) {
-  if (a.cost != b.cost) return a.cost < b.cost;
-  return a.edge != kNone && b.edge != kNone && zone.tie(a.edge) < zone.tie(b.edge);
+// v's turn comes before w's, which is known.
+inline bool earlier(const Zone& zone, Index v, Index w) {
+  if (zone.turn_keys[v] != zone.turn_keys[w]) return zone.turn_keys[v] < zone.turn_keys[w];
+  const Index a = zone.turns[v].edge;
+  const Index b = zone.turns[w].edge;
+  return a != kNone && b != kNone && zone.tie_low(a) < zone.tie_low(b);
 }
 
 }  // namespace isoweave

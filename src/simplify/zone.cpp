@@ -43,6 +43,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   list_settled(first_vertex + static_cast<Index>(piece.positions.size()));
   grow(vertices, vertices.size() + piece.positions.size());
   grow(states, vertices.size(), VertexState::kIncomplete);
+  grow(turn_keys, vertices.size());
   grow(turns, vertices.size());
   grow(triangles, triangle_total);
   normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
@@ -58,7 +59,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     const Index t = first_triangle + static_cast<Index>(n);
     for (Index c = 0; c < 3; ++c) {
       const Index v = vertex_of(piece.triangles[static_cast<std::size_t>(n)][c]);
-      triangles[t].vertex[c] = v;
+      triangles[t].sides[c].vertex = v;
       start_at(v, half_edge(t, c));
     }
   });
@@ -232,13 +233,10 @@ Quadric Zone::face_planes(Index v) const {
   Star star;
   star.gather(*this, v);
   if (star.overflow) return face_planes_one_by_one(v, weight);
-  std::array<const Vertex*, Star::kRoom> ring;
-  const std::size_t count = star.count();
-  for (std::size_t n = 0; n < count; ++n) ring[n] = &vertices[star.neighbour[n]];
   Fan fan;
   FaceSums sums;
-  kernels().measure(vertices[v].position, std::span(ring).first(count), star.border, fan);
-  kernels().sum_faces(fan, count, weight, sums);
+  measure(*this, star, fan);
+  kernels().sum_faces(fan, star.count(), weight, sums);
   return sums.planes;
 }
 
@@ -300,23 +298,24 @@ void Zone::give_keys(std::span<const Index> edges) {
     if (states[a] == VertexState::kIncomplete || states[b] == VertexState::kIncomplete) continue;
     const Vertex& u = vertices[a].id < vertices[b].id ? vertices[a] : vertices[b];
     const Vertex& v = vertices[a].id < vertices[b].id ? vertices[b] : vertices[a];
-    const std::uint64_t mixed = mix_bits(options_.numbering.edge_id(u.id, v.id));
+    const std::uint64_t tie = mix_bits(options_.numbering.edge_id(u.id, v.id));
     for (const Index side : {h, twin(h)}) {
-      if (exists(side)) triangles[side >> 2].tie[side & 3] = mixed;
+      if (exists(side)) triangles[side >> 2].tie_low[side & 3] = static_cast<std::uint32_t>(tie);
     }
-    if (states[a] == VertexState::kLocked || states[b] == VertexState::kLocked) {
-      set_cost(h, kRetiredCost);
-    } else {
-      ends[count] = {&u, &v};
-      known[count++] = h;
-    }
+    const bool locked = states[a] == VertexState::kLocked || states[b] == VertexState::kLocked;
+    set_key(h, make_key(kRetiredCost, tie));
+    if (locked) continue;
+    ends[count] = {&u, &v};
+    known[count++] = h;
   }
   std::array<CostBits, kEdges> costs;
   kernels().edge_costs(std::span(ends).first(count), costs.data());
   for (std::size_t n = 0; n < count; ++n) set_cost(known[n], costs[n]);
 }
 
-void Zone::remove_triangle(Index t) { triangles[t].vertex = {kNone, kNone, kNone}; }
+void Zone::remove_triangle(Index t) {
+  for (HalfEdge& side : triangles[t].sides) side.vertex = kNone;
+}
 
 void Zone::compact(const Executor& executor) {
   std::atomic<Index> dead{0};
@@ -334,11 +333,11 @@ void Zone::compact(const Executor& executor) {
   for (const Index v : front_) use(v);
   executor.for_each(triangle_count(), kBlock, [&](std::int64_t t) {
     const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
-    if (triangle.vertex[0] == kNone) return;
-    for (const Index v : triangle.vertex) use(v);
+    if (triangle.sides[0].vertex == kNone) return;
+    for (const HalfEdge& side : triangle.sides) use(side.vertex);
   });
   const Compaction new_triangle(executor, triangles.size(),
-                                [&](std::size_t t) { return triangles[t].vertex[0] != kNone; });
+                                [&](std::size_t t) { return triangles[t].sides[0].vertex != kNone; });
   const Compaction new_vertex(executor, vertices.size(), [&](std::size_t v) { return used[v] != 0; });
   const auto move_half_edge = [&](Index& h) {
     if (!exists(h)) return;
@@ -349,10 +348,13 @@ void Zone::compact(const Executor& executor) {
     if (v != kNone) v = new_vertex[v];
   };
   new_triangle.apply(triangles, [&](Triangle& triangle) {
-    for (Index& v : triangle.vertex) move_vertex(v);
-    for (Index& h : triangle.twin) move_half_edge(h);
+    for (HalfEdge& side : triangle.sides) {
+      move_vertex(side.vertex);
+      move_half_edge(side.twin);
+    }
   });
   new_vertex.apply(vertices, [&](Vertex& vertex) { move_half_edge(vertex.half_edge); });
+  new_vertex.apply(turn_keys);
   new_vertex.apply(turns, [&](Turn& turn) {
     move_half_edge(turn.edge);
     for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) move_vertex(*v);
@@ -367,7 +369,8 @@ void Zone::compact(const Executor& executor) {
 }
 
 std::uint64_t Zone::bytes() const {
-  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) + turns.capacity() * sizeof(Turn) +
+  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
+         turns.capacity() * (sizeof(Turn) + sizeof(Key)) +
          normals.capacity() * sizeof(Point) + triangles.capacity() * sizeof(Triangle) +
          (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity() + settled.capacity()) *
              sizeof(Index);

@@ -23,8 +23,11 @@ inline constexpr Index kNone = 0xffffffffu;     // no half-edge: a border
 inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and gone
 
 inline Index half_edge(Index triangle, Index corner) { return 4 * triangle + corner; }
-inline Index next(Index h) { return (h & 3) == 2 ? h - 2 : h + 1; }
-inline Index previous(Index h) { return (h & 3) == 0 ? h + 2 : h - 1; }
+
+// Without branches: the corner that a walk comes by cannot be predicted.
+inline Index next(Index h) { return h + 1 - 3 * (h >> 1 & 1); }
+inline Index previous(Index h) { return h - 1 + 3 * (~(h | h >> 1) & 1); }
+
 inline bool exists(Index h) { return h < kWritten; }
 
 enum class VertexState : std::uint8_t {
@@ -47,19 +50,30 @@ struct alignas(64) Vertex {
 
 static_assert(sizeof(Vertex) == 128, "two cache lines");
 
-// A triangle's three half-edges: one cache line holds what a walk around a vertex reads.
-struct alignas(64) Triangle {
-  std::array<Index, 3> vertex{kNone, kNone, kNone};  // kNone: the triangle is gone
-  std::array<Index, 3> twin{kNone, kNone, kNone};
-  std::array<CostBits, 3> cost{kUnknownCost, kUnknownCost, kUnknownCost};  // of the edge, equal on both half-edges
-  std::array<std::uint64_t, 3> tie{};                                      // likewise
+// The key is what the safe rule compares: the bits of the cost above the upper half of the tie. It is equal on both
+// half-edges of an edge.
+using Key = std::uint64_t;
+
+inline Key make_key(CostBits cost, std::uint64_t tie) { return Key{cost} << 32 | tie >> 32; }
+inline CostBits cost_of(Key key) { return static_cast<CostBits>(key >> 32); }
+
+struct HalfEdge {
+  Index vertex = kNone;  // where it starts
+  Index twin = kNone;
+  Key key = 0;
 };
 
-static_assert(sizeof(Triangle) == 64, "one cache line");
+// One cache line holds what a walk around a vertex reads. Half-edge h is the h-th sixteen bytes.
+struct alignas(64) Triangle {
+  std::array<HalfEdge, 3> sides;
+  std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
+};
 
-// Whose turn it is at a vertex: the least key of its edges, and who waits for that to change.
+static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);
+
+// Whose turn it is at a vertex, and who waits for that to change. The key of its least edge is kept apart: it is what
+// neighbours look at.
 struct Turn {
-  CostBits cost = kUnknownCost;
   Index edge = kNone;  // half-edge of the least edge; kNone: unknown, or none
   Index first_waiter = kNone;
   Index next_waiter = kNone;  // in the list of the vertex waited for
@@ -79,19 +93,30 @@ class Zone {
   std::vector<Vertex> vertices;
   std::vector<VertexState> states;  // parallel to vertices
   std::vector<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
-  std::vector<Turn> turns;          // parallel to vertices; kept by the schedule that uses it
+  std::vector<Key> turn_keys;       // parallel to vertices; least key of the edges
+  std::vector<Turn> turns;          // parallel to vertices; both kept by the schedule that uses them
   std::vector<Triangle> triangles;
   std::vector<Index> settled;  // vertices that got keys with the last piece
 
   const ZoneOptions& options() const { return options_; }
   Index triangle_count() const { return static_cast<Index>(triangles.size()); }
   Index live_triangles() const { return triangle_count() - dead_triangles_; }
-  Index origin(Index h) const { return triangles[h >> 2].vertex[h & 3]; }
+
+  const HalfEdge& half(Index h) const { return reinterpret_cast<const HalfEdge*>(triangles.data())[h]; }
+  HalfEdge& half(Index h) { return reinterpret_cast<HalfEdge*>(triangles.data())[h]; }
+  Index origin(Index h) const { return half(h).vertex; }
   Index destination(Index h) const { return origin(next(h)); }
-  Index twin(Index h) const { return triangles[h >> 2].twin[h & 3]; }
-  CostBits cost(Index h) const { return triangles[h >> 2].cost[h & 3]; }
-  std::uint64_t tie(Index h) const { return triangles[h >> 2].tie[h & 3]; }
-  bool alive(Index h) const { return triangles[h >> 2].vertex[0] != kNone; }
+  Index twin(Index h) const { return half(h).twin; }
+  Key key(Index h) const { return half(h).key; }
+  CostBits cost(Index h) const { return cost_of(key(h)); }
+  std::uint32_t tie_low(Index h) const { return triangles[h >> 2].tie_low[h & 3]; }
+  std::uint64_t tie(Index h) const { return key(h) << 32 | tie_low(h); }
+  bool alive(Index h) const { return origin(h) != kNone; }  // the triangle of h is there
+
+  // The order in which edges are decided.
+  bool comes_before(Index a, Index b) const {
+    return key(a) != key(b) ? key(a) < key(b) : tie_low(a) < tie_low(b);
+  }
 
   // The star of v is one fan that can be walked around.
   bool walkable(Index v) const {
@@ -104,12 +129,12 @@ class Zone {
   // The next half-edge around the origin of h, counter-clockwise; kNone past a border.
   Index rotate(Index h) const { return twin(previous(h)); }
 
-  void set_twin(Index h, Index other) { triangles[h >> 2].twin[h & 3] = other; }
-  void set_cost(Index h, CostBits c) {
-    triangles[h >> 2].cost[h & 3] = c;
-    const Index other = twin(h);
-    if (exists(other)) triangles[other >> 2].cost[other & 3] = c;
+  void set_twin(Index h, Index other) { half(h).twin = other; }
+  void set_key(Index h, Key key) {
+    half(h).key = key;
+    if (exists(twin(h))) half(twin(h)).key = key;
   }
+  void set_cost(Index h, CostBits cost) { set_key(h, Key{cost} << 32 | static_cast<std::uint32_t>(key(h))); }
 
   // Takes a piece in: links it to the front, then gives quadrics to the vertices and keys to the edges that are
   // complete now. Throws OverMemory when the zone would hold 2^30 triangles.
