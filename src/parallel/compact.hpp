@@ -1,10 +1,12 @@
 // Closing the gaps in an array, in place: every block closes its own, then the blocks move together.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
+#include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave {
@@ -14,46 +16,49 @@ class Compaction {
  public:
   static constexpr std::uint32_t kDropped = 0xffffffffu;
 
+  // keep(n) is called once for every element, by any thread.
   template <class Keep>
   Compaction(const Executor& executor, std::size_t size, const Keep& keep)
-      : executor_(executor), start_(size / kBlock + 2, 0), to_(size) {
+      : executor_(executor), start_(size / kBlock + 2, 0) {
+    within_.resize(size);
     blocks(size, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) start_[block + 1] += std::size_t{keep(n)};
+      std::uint32_t kept = 0;
+      for (std::size_t n = begin; n < end; ++n) within_[n] = keep(n) ? kept++ : kDropped;
+      start_[block + 1] = kept;
     });
     for (std::size_t block = 1; block < start_.size(); ++block) start_[block] += start_[block - 1];
-    blocks(size, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      std::size_t next = start_[block];
-      for (std::size_t n = begin; n < end; ++n) to_[n] = keep(n) ? static_cast<std::uint32_t>(next++) : kDropped;
-    });
   }
 
   std::size_t kept() const { return start_.back(); }
 
   // The new index of an element, or kDropped.
-  std::uint32_t operator[](std::size_t n) const { return to_[n]; }
+  std::uint32_t operator[](std::size_t n) const {
+    return within_[n] == kDropped ? kDropped : static_cast<std::uint32_t>(start_[n / kBlock]) + within_[n];
+  }
 
   // Moves the elements; change(element) is called for each that is kept.
-  template <class T, class Change>
-  void apply(std::vector<T>& array, const Change& change) const {
+  template <class Container, class Change>
+  void apply(Container& array, const Change& change) const {
+    using T = std::remove_reference_t<decltype(array[0])>;
+    static_assert(std::is_trivially_copyable_v<T>);
     blocks(array.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       std::size_t next = begin;
       for (std::size_t n = begin; n < end; ++n) {
-        if (to_[n] == kDropped) continue;
+        if (within_[n] == kDropped) continue;
         if (next != n) array[next] = array[n];
         change(array[next++]);
       }
     });
     for (std::size_t block = 1; block * kBlock < array.size(); ++block) {
-      const auto from = array.begin() + static_cast<std::ptrdiff_t>(block * kBlock);
-      std::copy(from, from + static_cast<std::ptrdiff_t>(start_[block + 1] - start_[block]),
-                array.begin() + static_cast<std::ptrdiff_t>(start_[block]));
+      std::memmove(array.data() + start_[block], array.data() + block * kBlock,
+                   (start_[block + 1] - start_[block]) * sizeof(T));
     }
     array.resize(kept());
   }
 
-  template <class T>
-  void apply(std::vector<T>& array) const {
-    apply(array, [](T&) {});
+  template <class Container>
+  void apply(Container& array) const {
+    apply(array, [](auto&) {});
   }
 
  private:
@@ -68,7 +73,7 @@ class Compaction {
 
   const Executor& executor_;
   std::vector<std::size_t> start_;  // of the kept elements of every block
-  std::vector<std::uint32_t> to_;
+  Array<std::uint32_t> within_;     // place among the kept elements of its block
 };
 
 }  // namespace isoweave

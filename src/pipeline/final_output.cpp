@@ -9,13 +9,11 @@ void FinalOutput::take(Simplifier& simplifier) {
   points_.clear();
   normals_.clear();
   triangles_.clear();
-  for (const Index t : simplifier.final_triangles()) {
-    triangles_.push_back(write_triangle(zone, t));
-    zone.remove_triangle(t);
-  }
+  const std::vector<Index> final_triangles = simplifier.final_triangles();
+  for (const Index t : final_triangles) triangles_.push_back(write_triangle(zone, t));
   sink_.append(points_, normals_, triangles_);
   triangles_written_ += triangles_.size();
-  simplifier.compact();
+  simplifier.drop(final_triangles);
   if (components_.labels() > zone.vertices.size()) forget_components(zone);
 }
 

@@ -123,7 +123,7 @@ class VolumeSweep {
 
     simplifier_.append(piece_);
     SlabRecord record;
-    record.live_triangles = simplifier_.zone().live_triangles();
+    record.live_triangles = simplifier_.live_triangles();
     record.bytes = simplifier_.zone().bytes() + window_.bytes();
     simplifier_.decide();
     clock_.lap(report_.seconds_simplify);
@@ -132,7 +132,7 @@ class VolumeSweep {
     output_.report(report_);
     clock_.lap(report_.seconds_write);
     record.layer = layers_ - extractor_.layers_left();
-    record.undecided_triangles = simplifier_.zone().live_triangles();
+    record.undecided_triangles = simplifier_.live_triangles();
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
     if (control_.progress) {

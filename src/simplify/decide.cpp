@@ -87,8 +87,7 @@ bool Decider::topology_allows() {
 
 // Of the faces that are left.
 bool Decider::keeps_sides(Vec3 x) const {
-  return kernels_.keeps_sides(u_fan_, u_.count(), x) &&
-         kernels_.keeps_sides(v_fan_, v_.count(), x - edge_vector_);
+  return kernels_.keeps_sides(u_fan_, u_.count(), x) && kernels_.keeps_sides(v_fan_, v_.count(), x - edge_vector_);
 }
 
 // Where the full cost is least among the points x (gradient . x = offset) that keep the enclosed volume when the edge
@@ -149,9 +148,11 @@ void Decider::merge_sides(Index h) {
   const std::atomic_ref<Index> start(zone_.vertices[zone_.origin(b)].half_edge);
   if (start.load(std::memory_order_relaxed) == b) start.store(outer_a, std::memory_order_relaxed);
   zone_.remove_triangle(h >> 2);
+  ++counts_.removed;
 }
 
-// Merges the two ends into the vertex of u_, x away from where that was. Afterwards u_ is the star of the merged vertex.
+// Merges the two ends into the vertex of u_, x away from where that was. Afterwards u_ is the star of the merged
+// vertex.
 void Decider::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
   for (int n = 0; n < v_.faces; ++n) {

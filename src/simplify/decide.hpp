@@ -15,11 +15,13 @@ struct DecisionCounts {
   std::uint64_t collapses = 0;
   std::uint64_t postponed = 0;  // decided, and illegal at the time
   std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
+  std::uint64_t removed = 0;    // triangles
 
   void operator+=(const DecisionCounts& other) {
     collapses += other.collapses;
     postponed += other.postponed;
     rekeyed += other.rekeyed;
+    removed += other.removed;
   }
 };
 

@@ -15,7 +15,8 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
   virtual ~Driver() = default;
 
-  // To be called after every append to the zone. Stops early when *stop becomes true; the zone is of no use then.
+  // To be called after every append to the zone. Leaves the least key of every vertex in zone.turn_keys. Stops early
+  // when *stop becomes true; the zone is of no use then.
   virtual void run(const std::atomic<bool>* stop) = 0;
 
   virtual DecisionCounts counts() const = 0;

@@ -1,7 +1,7 @@
 #include "simplify/kernels.hpp"
 
-#include <vector>
 #include <cstdlib>
+#include <vector>
 
 namespace isoweave {
 
@@ -11,7 +11,8 @@ extern const Kernels kAvx512Kernels;
 
 void measure(const Zone& zone, Star& star, Fan& fan) {
   star.pad(star.neighbour[star.border ? star.count() - 1 : 0]);
-  kernels().measure(zone.vertices.data(), zone.vertices[star.vertex].position, star.neighbour.data(), star.count(), fan);
+  kernels().measure(zone.vertices.data(), zone.vertices[star.vertex].position, star.neighbour.data(), star.count(),
+                    fan);
 }
 
 std::span<const Kernels* const> all_kernels() {
@@ -27,7 +28,8 @@ std::span<const Kernels* const> all_kernels() {
 }
 
 const Kernels& kernels() {
-  static const Kernels& best = *all_kernels()[getenv("ISOK") ? static_cast<std::size_t>(atoi(getenv("ISOK"))) : all_kernels().size() - 1];
+  static const Kernels& best =
+      *all_kernels()[getenv("ISOK") ? static_cast<std::size_t>(atoi(getenv("ISOK"))) : all_kernels().size() - 1];
   return best;
 }
 

@@ -21,8 +21,8 @@ struct EdgeEnds {
 struct alignas(64) Fan {
   static constexpr std::size_t kRoom = 40;  // 29 neighbours, rounded up to whole vectors, and one vector beyond
 
-  double x[kRoom], y[kRoom], z[kRoom];                          // of the neighbours
-  double normal_x[kRoom], normal_y[kRoom], normal_z[kRoom];     // of the faces, twice as long as their area
+  double x[kRoom], y[kRoom], z[kRoom];                       // of the neighbours
+  double normal_x[kRoom], normal_y[kRoom], normal_z[kRoom];  // of the faces, twice as long as their area
 
   // Leaves a face out of what is computed from now on.
   void drop(std::size_t slot) { normal_x[slot] = normal_y[slot] = normal_z[slot] = 0; }

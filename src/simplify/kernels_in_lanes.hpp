@@ -12,7 +12,9 @@ namespace isoweave {
 template <std::size_t N>
 class KernelsInLanes {
  public:
-  static constexpr Kernels table(const char* name) { return {name, edge_costs, measure, sum_faces, keeps_sides, count_common}; }
+  static constexpr Kernels table(const char* name) {
+    return {name, edge_costs, measure, sum_faces, keeps_sides, count_common};
+  }
 
  private:
   using Real = Lanes<N>;
@@ -84,7 +86,9 @@ class KernelsInLanes {
     }
   }
 
-  static Vec neighbour(const Fan& fan, std::size_t n) { return {Real::load(fan.x + n), Real::load(fan.y + n), Real::load(fan.z + n)}; }
+  static Vec neighbour(const Fan& fan, std::size_t n) {
+    return {Real::load(fan.x + n), Real::load(fan.y + n), Real::load(fan.z + n)};
+  }
 
   static Vec normal(const Fan& fan, std::size_t n) {
     return {Real::load(fan.normal_x + n), Real::load(fan.normal_y + n), Real::load(fan.normal_z + n)};

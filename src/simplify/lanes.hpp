@@ -61,9 +61,8 @@ struct Lanes {
 // Calls body(n) with the constants n = 0...N - 1.
 template <std::size_t N, class Body>
 [[gnu::always_inline]] inline void unrolled(const Body& body) {
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (body(std::integral_constant<std::size_t, I>()), ...);
-  }(std::make_index_sequence<N>());
+  [&]<std::size_t... I>(std::index_sequence<I...>) { (body(std::integral_constant<std::size_t, I>()), ...); }
+  (std::make_index_sequence<N>());
 }
 
 template <std::size_t N>

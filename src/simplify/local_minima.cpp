@@ -10,6 +10,7 @@ namespace isoweave {
 namespace {
 
 constexpr double kPlaceSide = 24;  // mean voxels: what a worker has in hand at a time stays in its cache
+constexpr std::size_t kPlaces = 1024;
 
 }  // namespace
 
@@ -221,58 +222,55 @@ DecisionCounts LocalMinima::counts() const {
 
 void LocalMinima::run(const std::atomic<bool>* stop) {
   give_turns(zone_, executor_);
-  wake_neighbourhood();
+  wake_waiters_of_settled();
   group_by_place();
   const bool alone = workers_.size() == 1;
   if (!alone) owners_.assign(zone_.vertices.size(), 0);
   std::atomic<std::size_t> next_place{0};
-  const std::size_t places = places_.start.size() - 1;
   executor_.for_each(executor_.threads(), 1, [&](std::int64_t n) {
     Worker& worker = *workers_[static_cast<std::size_t>(n)];
     worker.begin(alone ? nullptr : &owners_);
-    for (std::size_t place = next_place++; place < places; place = next_place++) {
+    for (std::size_t place = next_place++; place < kPlaces; place = next_place++) {
       for (std::size_t m = places_.start[place]; m < places_.start[place + 1]; ++m) {
-        worker.serve(awake_[places_.items[m]], stop);
+        worker.serve(awake(places_.items[m]), stop);
       }
     }
   });
   ++rounds_;
 }
 
-// The vertices that have settled, and whoever waited for them.
-void LocalMinima::wake_neighbourhood() {
-  awake_ = zone_.settled;
-  for (const Index v : zone_.settled) {
-    Turn& turn = zone_.turns[v];
+void LocalMinima::wake_waiters_of_settled() {
+  woken_.clear();
+  for (const Index v : zone_.settled.old) {
     if (is_unknown(zone_.turn_keys[v])) continue;
+    Turn& turn = zone_.turns[v];
     for (Index w = turn.first_waiter; w != kNone; w = zone_.turns[w].next_waiter) {
       zone_.turns[w].waits_for = kNone;
-      awake_.push_back(w);
+      woken_.push_back(w);
     }
     turn.first_waiter = kNone;
   }
 }
 
-// Groups the vertices to serve by columns of the volume.
+Index LocalMinima::awake(std::size_t n) const {
+  return n < zone_.settled.size() ? zone_.settled[n] : woken_[n - zone_.settled.size()];
+}
+
+// Groups the vertices to serve by columns of the volume; after kColumns of them the numbers start again.
 void LocalMinima::group_by_place() {
-  if (awake_.empty()) return places_.start.assign(1, 0);
+  constexpr std::uint32_t kColumns = 32;
+  static_assert(kColumns * kColumns == kPlaces);
   const double side = kPlaceSide * std::sqrt(zone_.options().a0);
-  Vec3 low = zone_.vertices[awake_.front()].position;
-  Vec3 high = low;
-  for (const Index v : awake_) {
-    const Vec3 p = zone_.vertices[v].position;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), 0};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), 0};
-  }
-  const auto column = [&](double p, double from) { return static_cast<std::size_t>((p - from) / side); };
-  const std::size_t nx = column(high.x, low.x) + 1;
-  const std::size_t ny = column(high.y, low.y) + 1;
+  const auto column = [&](double p) {
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(p / side))) % kColumns;
+  };
+  place_.resize(zone_.settled.size() + woken_.size());
+  executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t n) {
+    const Vec3 p = zone_.vertices[awake(static_cast<std::size_t>(n))].position;
+    place_[static_cast<std::size_t>(n)] = column(p.x) + kColumns * column(p.y);
+  });
   fill_buckets(
-      executor_, static_cast<std::uint32_t>(awake_.size()), nx * ny,
-      [&](std::uint32_t n) {
-        const Vec3 p = zone_.vertices[awake_[n]].position;
-        return column(p.x, low.x) + nx * column(p.y, low.y);
-      },
+      executor_, static_cast<std::uint32_t>(place_.size()), kPlaces, [&](std::uint32_t n) { return place_[n]; },
       places_);
 }
 

@@ -27,15 +27,17 @@ class LocalMinima final : public Driver {
  private:
   class Worker;
 
-  void wake_neighbourhood();
+  void wake_waiters_of_settled();
   void group_by_place();
+  Index awake(std::size_t n) const;
 
   Zone& zone_;
   const Executor& executor_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<std::uint16_t> owners_;  // per vertex: the worker that holds it, 0 for none
-  std::vector<Index> awake_;           // vertices to serve
-  Buckets places_;                     // of awake_
+  std::vector<Index> woken_;           // vertices that waited for one that has settled
+  std::vector<std::uint32_t> place_;   // of the vertices to serve: those settled and those woken
+  Buckets places_;                     // of their numbers
   std::uint64_t rounds_ = 0;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "simplify/turns.hpp"
+
 namespace isoweave {
 
 void Queue::run(const std::atomic<bool>* stop) {
@@ -10,6 +12,7 @@ void Queue::run(const std::atomic<bool>* stop) {
     decide_group();
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) return;
   }
+  for (Index v = 0; v < zone_.vertices.size(); ++v) give_turn(zone_, v);
   ++rounds_;
 }
 

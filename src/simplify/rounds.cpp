@@ -18,7 +18,8 @@ Rounds::Rounds(Zone& zone, Quality quality, const Executor& executor)
 void Rounds::run(const std::atomic<bool>* stop) {
   give_turns(zone_, executor_);
   marks_.assign(zone_.vertices.size(), 0);
-  changed_ = zone_.settled;
+  changed_.resize(zone_.settled.size());
+  for (std::size_t n = 0; n < changed_.size(); ++n) changed_[n] = zone_.settled[n];
   while (!changed_.empty() && !(stop != nullptr && stop->load(std::memory_order_relaxed))) {
     list_candidates();
     pick_minima();

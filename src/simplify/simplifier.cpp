@@ -40,51 +40,39 @@ void Simplifier::decide() {
 }
 
 std::vector<Index> Simplifier::final_triangles() {
-  mark_undecided();
-  inspect(name_final_vertices());
+  const std::vector<Index> vertices = name_final_vertices();
+  std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
   std::vector<Index> triangles;
   collect(
       executor_, zone_.triangle_count(), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
-          const auto& [a, b, c] = zone_.triangles[t].sides;
-          if (a.vertex == kNone) continue;
-          if (!undecided_[a.vertex] && !undecided_[b.vertex] && !undecided_[c.vertex]) list.push_back(t);
+          if (zone_.triangles[t].sides[0].vertex == kNone) continue;
+          int undecided = 0;
+          for (const HalfEdge& side : zone_.triangles[t].sides) {
+            undecided += undecided_[side.vertex];
+            if (undecided_[side.vertex]) continue;
+            std::atomic_ref(corners[side.vertex]).fetch_add(1, std::memory_order_relaxed);
+          }
+          if (undecided == 0) list.push_back(t);
         }
       },
       triangles);
+  inspect(vertices, corners);
   return triangles;
-}
-
-void Simplifier::mark_undecided() {
-  const CostBits retire = zone_.options().retire;
-  undecided_.assign(zone_.vertices.size(), 0);
-  const auto mark = [&](Index v) {
-    const std::atomic_ref flag(undecided_[v]);
-    if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
-  };
-  executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
-    const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
-    if (triangle.sides[0].vertex == kNone) return;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto& [v, twin, key] = triangle.sides[c];
-      if (zone_.states[v] == VertexState::kIncomplete) mark(v);
-      if (cost_of(key) > retire) continue;
-      mark(v);
-      mark(triangle.sides[(c + 1) % 3].vertex);
-    }
-  });
 }
 
 // Vertices that have become final; those of them whose star can be walked.
 std::vector<Index> Simplifier::name_final_vertices() {
+  undecided_.resize(zone_.vertices.size());
   std::vector<Index> walkable;
   collect(
       executor_, static_cast<std::int64_t>(zone_.vertices.size()), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
           VertexState& state = zone_.states[v];
-          if (undecided_[v] || state == VertexState::kIncomplete || state == VertexState::kFinal) continue;
+          undecided_[v] = state == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= zone_.options().retire;
+          if (undecided_[v] || state == VertexState::kFinal) continue;
           if (zone_.walkable(v)) list.push_back(v);
           state = VertexState::kFinal;
         }
@@ -93,17 +81,16 @@ std::vector<Index> Simplifier::name_final_vertices() {
   return walkable;
 }
 
+void Simplifier::drop(const std::vector<Index>& triangles) {
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
+                     [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });
+  dropped_ += triangles.size();
+  const std::uint64_t gone = zone_.triangle_count() - live_triangles();
+  if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
+}
+
 // The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must differ.
-void Simplifier::inspect(const std::vector<Index>& vertices) {
-  std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
-  executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
-    const Triangle& triangle = zone_.triangles[static_cast<std::size_t>(t)];
-    if (triangle.sides[0].vertex == kNone) return;
-    for (const HalfEdge& side : triangle.sides) {
-      const Index v = side.vertex;
-      if (!undecided_[v]) std::atomic_ref(corners[v]).fetch_add(1, std::memory_order_relaxed);
-    }
-  });
+void Simplifier::inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) {
   std::atomic<std::uint64_t> bad_vertices{0};
   std::atomic<std::uint64_t> bad_edges{0};
   executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {

@@ -32,16 +32,21 @@ class Simplifier {
   Zone& zone() { return zone_; }
   const Zone& zone() const { return zone_; }
 
-  void append(const SurfacePiece& piece) { zone_.append(piece, executor_); }
+  void append(const SurfacePiece& piece) {
+    zone_.append(piece, executor_);
+    appended_ += piece.triangles.size();
+  }
 
   // Decides every edge that can be decided with what has been appended. Throws Interrupted.
   void decide();
 
-  // Triangles all of whose vertices are final, in memory order. Marks vertices final. The caller takes them out with
-  // Zone::remove_triangle and then calls compact().
+  // Triangles all of whose vertices are final, in memory order. Marks vertices final. The caller hands them to drop()
+  // once it has no more use for them.
   std::vector<Index> final_triangles();
+  void drop(const std::vector<Index>& triangles);
 
-  void compact() { zone_.compact(executor_); }
+  // Those that are held and have not been collapsed.
+  std::uint64_t live_triangles() const { return appended_ - counts().removed - dropped_; }
 
   DecisionCounts counts() const { return driver_->counts(); }
   Schedule schedule() const { return schedule_; }  // never automatic
@@ -49,9 +54,8 @@ class Simplifier {
   const SurfaceDefects& defects() const { return defects_; }
 
  private:
-  void mark_undecided();
   std::vector<Index> name_final_vertices();
-  void inspect(const std::vector<Index>& vertices);
+  void inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners);
   std::uint32_t list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const;
 
   Zone zone_;
@@ -60,6 +64,8 @@ class Simplifier {
   Schedule schedule_;
   std::unique_ptr<Driver> driver_;
   std::vector<std::uint8_t> undecided_;  // per vertex
+  std::uint64_t appended_ = 0;           // triangles
+  std::uint64_t dropped_ = 0;
   SurfaceDefects defects_;
 };
 

@@ -28,7 +28,8 @@ struct Star {
     vertex = v;
     walk(zone, start);
     if (border && start != zone.vertices[v].half_edge) walk(zone, zone.vertices[v].half_edge);
-    if (border) neighbour[static_cast<std::size_t>(faces)] = zone.origin(previous(out[static_cast<std::size_t>(faces - 1)]));
+    if (border)
+      neighbour[static_cast<std::size_t>(faces)] = zone.origin(previous(out[static_cast<std::size_t>(faces - 1)]));
   }
 
   void gather(const Zone& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }

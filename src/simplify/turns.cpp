@@ -27,20 +27,19 @@ void renew_turn(Zone& zone, Index v) {
   zone.turns[v].edge = edge;
 }
 
+void give_turn(Zone& zone, Index v) {
+  if (zone.states[v] == VertexState::kIncomplete) {
+    zone.turn_keys[v] = kUnknownTurn;
+  } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
+    zone.turn_keys[v] = kNoTurn;
+  } else {
+    renew_turn(zone, v);
+  }
+}
+
 void give_turns(Zone& zone, const Executor& executor) {
-  executor.for_each(static_cast<std::int64_t>(zone.settled.size()), 4096, [&](std::int64_t n) {
-    const Index v = zone.settled[static_cast<std::size_t>(n)];
-    switch (zone.states[v]) {
-      case VertexState::kIncomplete:
-        zone.turn_keys[v] = kUnknownTurn;
-        break;
-      case VertexState::kLocked:
-        zone.turn_keys[v] = kNoTurn;
-        break;
-      default:
-        if (exists(zone.vertices[v].half_edge)) renew_turn(zone, v);
-    }
-  });
+  executor.for_each(static_cast<std::int64_t>(zone.settled.size()), 4096,
+                    [&](std::int64_t n) { give_turn(zone, zone.settled[static_cast<std::size_t>(n)]); });
 }
 
 }  // namespace isoweave

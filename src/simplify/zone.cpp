@@ -15,15 +15,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 2048;
-constexpr std::int64_t kEdges = 256;  // that get their keys together
 constexpr Index kBackwards = Index{1} << 31;  // in EdgeSide::other: runs from the larger to the smaller number
-
-// Grows by a quarter where std::vector would double: the zone is what bounds the memory of a run.
-template <class T>
-void grow(std::vector<T>& vector, std::size_t size, const T& value = T()) {
-  if (size > vector.capacity()) vector.reserve(std::max(size, vector.capacity() + vector.capacity() / 4));
-  vector.resize(size, value);
-}
 
 }  // namespace
 
@@ -41,47 +33,67 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   const auto first_vertex = static_cast<Index>(vertices.size());
   const Index first_triangle = triangle_count();
   list_settled(first_vertex + static_cast<Index>(piece.positions.size()));
-  grow(vertices, vertices.size() + piece.positions.size());
-  grow(states, vertices.size(), VertexState::kIncomplete);
-  grow(turn_keys, vertices.size());
-  grow(turns, vertices.size());
-  grow(triangles, triangle_total);
-  normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
-  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
-    Vertex& vertex = vertices[first_vertex + static_cast<Index>(n)];
-    vertex.position = piece.positions[static_cast<std::size_t>(n)];
-    vertex.id = piece.ids[static_cast<std::size_t>(n)];
-  });
+  add_vertices(piece, executor);
+  add_triangles(piece, executor);
   const auto vertex_of = [&](Index n) {
     return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
   };
-  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
-    const Index t = first_triangle + static_cast<Index>(n);
-    for (Index c = 0; c < 3; ++c) {
-      const Index v = vertex_of(piece.triangles[static_cast<std::size_t>(n)][c]);
-      triangles[t].sides[c].vertex = v;
-      start_at(v, half_edge(t, c));
-    }
-  });
   for (const Index n : piece.locked) states[vertex_of(n)] = VertexState::kLocked;
   link(piece, first_triangle, executor);
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
   front_ = std::move(front);
-  settle_vertices(first_triangle, executor);
+  settle_vertices(executor);
+  find_open_half_edges(first_triangle, executor);
   settle_edges(first_triangle, executor);
 }
 
 // The vertices that were incomplete, those beside them, and the new ones up to `end`.
 void Zone::list_settled(Index end) {
-  settled = front_;
+  settled.old = front_;
   for (const Index h : unkeyed_edges_) {
-    settled.push_back(origin(h));
-    settled.push_back(destination(h));
+    settled.old.push_back(origin(h));
+    settled.old.push_back(destination(h));
   }
-  std::sort(settled.begin(), settled.end());
-  settled.erase(std::unique(settled.begin(), settled.end()), settled.end());
-  for (auto v = static_cast<Index>(vertices.size()); v < end; ++v) settled.push_back(v);
+  std::sort(settled.old.begin(), settled.old.end());
+  settled.old.erase(std::unique(settled.old.begin(), settled.old.end()), settled.old.end());
+  settled.first_new = static_cast<Index>(vertices.size());
+  settled.end = end;
+}
+
+void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
+  const std::size_t first = vertices.size();
+  const std::size_t end = first + piece.positions.size();
+  vertices.resize(end);
+  states.resize(end);
+  turn_keys.resize(end);
+  turns.resize(end);
+  normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
+  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
+    const auto from = static_cast<std::size_t>(n);
+    Vertex& vertex = vertices[first + from];
+    vertex = Vertex();
+    vertex.position = piece.positions[from];
+    vertex.id = piece.ids[from];
+    states[first + from] = VertexState::kIncomplete;
+    turn_keys[first + from] = 0;
+    turns[first + from] = Turn();
+  });
+}
+
+void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
+  const Index first = triangle_count();
+  triangles.resize(first + piece.triangles.size());
+  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
+    const Index t = first + static_cast<Index>(n);
+    triangles[t] = Triangle();
+    for (Index c = 0; c < 3; ++c) {
+      const Index corner = piece.triangles[static_cast<std::size_t>(n)][c];
+      const Index v = corner < piece.inherited ? front_[corner] : settled.first_new + (corner - piece.inherited);
+      triangles[t].sides[c].vertex = v;
+      start_at(v, half_edge(t, c));
+    }
+  });
 }
 
 // Walks around v may start at h: keeps the smallest that is offered.
@@ -170,22 +182,21 @@ std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece)
 }
 
 // Vertices that later pieces do not add to are complete now: they get their quadrics.
-void Zone::settle_vertices(Index first_triangle, const Executor& executor) {
-  std::vector<Index> complete;
-  for (const Index v : settled) {
-    if (states[v] != VertexState::kIncomplete) continue;
+void Zone::settle_vertices(const Executor& executor) {
+  std::vector<std::uint8_t> is_front(vertices.size(), 0);
+  for (const Index v : front_) is_front[v] = 1;
+  executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
+    const Index v = settled[static_cast<std::size_t>(n)];
+    if (states[v] != VertexState::kIncomplete || is_front[v] != 0) return;
     states[v] = VertexState::kComplete;
-    complete.push_back(v);
-  }
-  for (const Index v : front_) states[v] = VertexState::kIncomplete;
-  executor.for_each(static_cast<std::int64_t>(complete.size()), kBlock, [&](std::int64_t n) {
-    const Index v = complete[static_cast<std::size_t>(n)];
-    if (states[v] != VertexState::kComplete || !exists(vertices[v].half_edge)) return;
+    if (!exists(vertices[v].half_edge)) return;
     start_at_border(v);
     initial_quadric(v);
   });
+}
 
-  // Only a triangle between incomplete vertices can close a half-edge.
+// Half-edges that the next piece may bring a twin for: only a triangle between incomplete vertices can.
+void Zone::find_open_half_edges(Index first_triangle, const Executor& executor) {
   const auto closed = [&](Index h) {
     return twin(h) != kNone || states[origin(h)] != VertexState::kIncomplete ||
            states[destination(h)] != VertexState::kIncomplete;
@@ -266,51 +277,66 @@ Quadric Zone::border_plane(Index v, Index other, Index face) const {
   return size > 0 ? plane_quadric(across, dot(side, side) / (options_.a0 * options_.a0 * size)) : Quadric();
 }
 
+// Edges that get their keys together.
+struct Zone::EdgeBatch {
+  static constexpr std::size_t kCapacity = 64;
+
+  std::array<Index, kCapacity> half_edges;
+  std::array<std::uint64_t, kCapacity> ties;
+  std::array<EdgeEnds, kCapacity> ends;
+  std::size_t count = 0;
+};
+
 // Keys of the edges whose two ends are complete now.
 void Zone::settle_edges(Index first_triangle, const Executor& executor) {
-  std::vector<Index> edges;
+  EdgeBatch batch;
+  std::erase_if(unkeyed_edges_, [&](Index h) { return settle_edge(h, batch); });
+  give_keys(batch);
+  std::vector<Index> unkeyed;
   collect(
       executor, triangle_count() - first_triangle, kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        EdgeBatch own;
         for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
           for (Index c = 0; c < 3; ++c) {
-            if (represents_edge(half_edge(t, c))) list.push_back(half_edge(t, c));
+            const Index h = half_edge(t, c);
+            if (represents_edge(h) && !settle_edge(h, own)) list.push_back(h);
           }
         }
+        give_keys(own);
       },
-      edges);
-  edges.insert(edges.end(), unkeyed_edges_.begin(), unkeyed_edges_.end());
-  executor.for_blocks(static_cast<std::int64_t>(edges.size()), kEdges, [&](std::int64_t begin, std::int64_t end) {
-    give_keys(std::span(edges).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)));
-  });
-  std::erase_if(edges, [&](Index h) { return cost(h) != kUnknownCost; });
-  unkeyed_edges_ = std::move(edges);
+      unkeyed);
+  unkeyed_edges_.insert(unkeyed_edges_.end(), unkeyed.begin(), unkeyed.end());
 }
 
-// Keys of those edges both of whose ends are complete.
-void Zone::give_keys(std::span<const Index> edges) {
-  std::array<EdgeEnds, kEdges> ends;
-  std::array<Index, kEdges> known;
-  std::size_t count = 0;
-  for (const Index h : edges) {
-    const Index a = origin(h);
-    const Index b = destination(h);
-    if (states[a] == VertexState::kIncomplete || states[b] == VertexState::kIncomplete) continue;
-    const Vertex& u = vertices[a].id < vertices[b].id ? vertices[a] : vertices[b];
-    const Vertex& v = vertices[a].id < vertices[b].id ? vertices[b] : vertices[a];
-    const std::uint64_t tie = mix_bits(options_.numbering.edge_id(u.id, v.id));
-    for (const Index side : {h, twin(h)}) {
-      if (exists(side)) triangles[side >> 2].tie_low[side & 3] = static_cast<std::uint32_t>(tie);
-    }
-    const bool locked = states[a] == VertexState::kLocked || states[b] == VertexState::kLocked;
-    set_key(h, make_key(kRetiredCost, tie));
-    if (locked) continue;
-    ends[count] = {&u, &v};
-    known[count++] = h;
+// False when an end is incomplete. Else the edge gets its tie, and a key now or with the rest of the batch.
+bool Zone::settle_edge(Index h, EdgeBatch& batch) {
+  const Index a = origin(h);
+  const Index b = destination(h);
+  if (states[a] == VertexState::kIncomplete || states[b] == VertexState::kIncomplete) return false;
+  const bool a_first = vertices[a].id < vertices[b].id;
+  const Vertex* const u = &vertices[a_first ? a : b];
+  const Vertex* const v = &vertices[a_first ? b : a];
+  const std::uint64_t tie = mix_bits(options_.numbering.edge_id(u->id, v->id));
+  for (const Index side : {h, twin(h)}) {
+    if (exists(side)) triangles[side >> 2].tie_low[side & 3] = static_cast<std::uint32_t>(tie);
   }
-  std::array<CostBits, kEdges> costs;
-  kernels().edge_costs(std::span(ends).first(count), costs.data());
-  for (std::size_t n = 0; n < count; ++n) set_cost(known[n], costs[n]);
+  if (states[a] == VertexState::kLocked || states[b] == VertexState::kLocked) {
+    set_key(h, make_key(kRetiredCost, tie));
+    return true;
+  }
+  if (batch.count == EdgeBatch::kCapacity) give_keys(batch);
+  batch.half_edges[batch.count] = h;
+  batch.ties[batch.count] = tie;
+  batch.ends[batch.count++] = {u, v};
+  return true;
+}
+
+void Zone::give_keys(EdgeBatch& batch) {
+  std::array<CostBits, EdgeBatch::kCapacity> costs;
+  kernels().edge_costs(std::span(batch.ends).first(batch.count), costs.data());
+  for (std::size_t n = 0; n < batch.count; ++n) set_key(batch.half_edges[n], make_key(costs[n], batch.ties[n]));
+  batch.count = 0;
 }
 
 void Zone::remove_triangle(Index t) {
@@ -318,26 +344,15 @@ void Zone::remove_triangle(Index t) {
 }
 
 void Zone::compact(const Executor& executor) {
-  std::atomic<Index> dead{0};
-  executor.for_blocks(triangle_count(), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    Index own = 0;
-    for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) own += !alive(half_edge(t, 0));
-    dead += own;
-  });
-  dead_triangles_ = dead;
-  if (8 * std::uint64_t{dead_triangles_} < triangles.size()) return;
-
   // A vertex is held as long as a triangle uses it, or will.
   std::vector<std::uint8_t> used(vertices.size(), 0);
   const auto use = [&](Index v) { std::atomic_ref(used[v]).store(1, std::memory_order_relaxed); };
   for (const Index v : front_) use(v);
-  executor.for_each(triangle_count(), kBlock, [&](std::int64_t t) {
-    const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
-    if (triangle.sides[0].vertex == kNone) return;
-    for (const HalfEdge& side : triangle.sides) use(side.vertex);
+  const Compaction new_triangle(executor, triangles.size(), [&](std::size_t t) {
+    if (triangles[t].sides[0].vertex == kNone) return false;
+    for (const HalfEdge& side : triangles[t].sides) use(side.vertex);
+    return true;
   });
-  const Compaction new_triangle(executor, triangles.size(),
-                                [&](std::size_t t) { return triangles[t].sides[0].vertex != kNone; });
   const Compaction new_vertex(executor, vertices.size(), [&](std::size_t v) { return used[v] != 0; });
   const auto move_half_edge = [&](Index& h) {
     if (!exists(h)) return;
@@ -365,14 +380,13 @@ void Zone::compact(const Executor& executor) {
   for (Index& h : open_half_edges_) move_half_edge(h);
   for (Index& h : unkeyed_edges_) move_half_edge(h);
   settled.clear();
-  dead_triangles_ = 0;
 }
 
 std::uint64_t Zone::bytes() const {
   return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
-         turns.capacity() * (sizeof(Turn) + sizeof(Key)) +
-         normals.capacity() * sizeof(Point) + triangles.capacity() * sizeof(Triangle) +
-         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity() + settled.capacity()) *
+         turns.capacity() * (sizeof(Turn) + sizeof(Key)) + normals.capacity() * sizeof(Point) +
+         triangles.capacity() * sizeof(Triangle) +
+         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) *
              sizeof(Index);
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "extract/surface_piece.hpp"
+#include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/quadric.hpp"
 #include "simplify/rules.hpp"
@@ -80,6 +81,22 @@ struct Turn {
   Index waits_for = kNone;
 };
 
+// Vertices whose edges may have got keys: some that were there before, and all new ones.
+struct SettledVertices {
+  std::vector<Index> old;
+  Index first_new = 0;
+  Index end = 0;
+
+  std::size_t size() const { return old.size() + (end - first_new); }
+  Index operator[](std::size_t n) const {
+    return n < old.size() ? old[n] : first_new + static_cast<Index>(n - old.size());
+  }
+  void clear() {
+    old.clear();
+    first_new = end = 0;
+  }
+};
+
 struct ZoneOptions {
   EdgeNumbering numbering;
   double a0 = 1;        // mean voxel face, length squared
@@ -90,17 +107,16 @@ class Zone {
  public:
   explicit Zone(const ZoneOptions& options) : options_(options) {}
 
-  std::vector<Vertex> vertices;
-  std::vector<VertexState> states;  // parallel to vertices
-  std::vector<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
-  std::vector<Key> turn_keys;       // parallel to vertices; least key of the edges
-  std::vector<Turn> turns;          // parallel to vertices; both kept by the schedule that uses them
-  std::vector<Triangle> triangles;
-  std::vector<Index> settled;  // vertices that got keys with the last piece
+  Array<Vertex> vertices;
+  Array<VertexState> states;   // parallel to vertices
+  std::vector<Point> normals;  // parallel to vertices, or empty: sum of the unit normals merged into each
+  Array<Key> turn_keys;        // parallel to vertices: least key of the edges; kept by the schedule
+  Array<Turn> turns;           // parallel to vertices; kept by the schedules that use them
+  Array<Triangle> triangles;
+  SettledVertices settled;  // with the last piece
 
   const ZoneOptions& options() const { return options_; }
   Index triangle_count() const { return static_cast<Index>(triangles.size()); }
-  Index live_triangles() const { return triangle_count() - dead_triangles_; }
 
   const HalfEdge& half(Index h) const { return reinterpret_cast<const HalfEdge*>(triangles.data())[h]; }
   HalfEdge& half(Index h) { return reinterpret_cast<HalfEdge*>(triangles.data())[h]; }
@@ -114,9 +130,7 @@ class Zone {
   bool alive(Index h) const { return origin(h) != kNone; }  // the triangle of h is there
 
   // The order in which edges are decided.
-  bool comes_before(Index a, Index b) const {
-    return key(a) != key(b) ? key(a) < key(b) : tie_low(a) < tie_low(b);
-  }
+  bool comes_before(Index a, Index b) const { return key(a) != key(b) ? key(a) < key(b) : tie_low(a) < tie_low(b); }
 
   // The star of v is one fan that can be walked around.
   bool walkable(Index v) const {
@@ -143,12 +157,14 @@ class Zone {
   // Marks a triangle as gone.
   void remove_triangle(Index t);
 
-  // Drops what is gone once it is at least an eighth of what is held. Keeps the order of triangles.
+  // Drops what is gone. Keeps the order of triangles.
   void compact(const Executor& executor);
 
   std::uint64_t bytes() const;
 
  private:
+  struct EdgeBatch;
+
   // One side of an edge, in the list of the end with the smaller number.
   struct EdgeSide {
     Index other;  // number of the other end, and the direction
@@ -156,11 +172,14 @@ class Zone {
   };
 
   void list_settled(Index end);
+  void add_vertices(const SurfacePiece& piece, const Executor& executor);
+  void add_triangles(const SurfacePiece& piece, const Executor& executor);
   void start_at(Index v, Index h);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void pair_sides(std::span<EdgeSide> sides);
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
-  void settle_vertices(Index first_triangle, const Executor& executor);
+  void settle_vertices(const Executor& executor);
+  void find_open_half_edges(Index first_triangle, const Executor& executor);
   void start_at_border(Index v);
   void initial_quadric(Index v);
   Quadric face_planes(Index v) const;
@@ -168,13 +187,13 @@ class Zone {
   Vec3 face_normal(Index h) const;
   Quadric border_plane(Index v, Index other, Index face) const;
   void settle_edges(Index first_triangle, const Executor& executor);
-  void give_keys(std::span<const Index> edges);
+  bool settle_edge(Index h, EdgeBatch& batch);
+  void give_keys(EdgeBatch& batch);
 
   ZoneOptions options_;
   std::vector<Index> front_;            // incomplete vertices, in the order of the piece that named them
   std::vector<Index> open_half_edges_;  // without twin, between incomplete vertices: the next piece may bring it
   std::vector<Index> unkeyed_edges_;    // an end incomplete
-  Index dead_triangles_ = 0;
 };
 
 }  // namespace isoweave
