@@ -89,8 +89,7 @@ class Job : public Task {
  public:
   Job(const VolumeFile& file, const Goal& goal, Quality quality) : file_(file), goal_(goal), quality_(quality) {}
   void run() override {
-    mesh_volume(*open_source(file_), sink_, mesh_options(file_.iso, goal_.length, quality_),
-                on(goal_.threads));
+    mesh_volume(*open_source(file_), sink_, mesh_options(file_.iso, goal_.length, quality_), on(goal_.threads));
   }
   std::size_t triangles() const override { return sink_.mesh().triangles.size(); }
   isoweave::TriangleMesh mesh() const override { return sink_.mesh(); }

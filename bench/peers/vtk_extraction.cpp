@@ -1,23 +1,16 @@
 #include <vtkFlyingEdges3D.h>
-#include <vtkSMPTools.h>
-
-#include <stdexcept>
 
 #include "task.hpp"
 #include "vtk_data.hpp"
+#include "vtk_smp.hpp"
 
 namespace bench {
 namespace {
 
-void use_backend(const std::string& backend, int threads) {
-  if (!vtkSMPTools::SetBackend(backend.c_str())) throw std::runtime_error("this VTK has no SMP back end " + backend);
-  vtkSMPTools::Initialize(threads);
-}
-
 class FlyingEdges : public Task {
  public:
   FlyingEdges(const std::string& backend, const HeldVolume& volume, const Goal& goal) {
-    use_backend(backend, goal.threads);
+    use_vtk_threads(backend.c_str(), goal.threads);
     filter_->SetInputData(image_over(volume));
     filter_->SetValue(0, stored_iso(volume.info, volume.iso));
     filter_->ComputeNormalsOff();

@@ -4,13 +4,13 @@
 #include <vtkFlyingEdges3D.h>
 #include <vtkPointData.h>
 #include <vtkQuadricDecimation.h>
-#include <vtkSMPTools.h>
 
 #include <fstream>
 #include <stdexcept>
 
 #include "task.hpp"
 #include "vtk_data.hpp"
+#include "vtk_smp.hpp"
 
 namespace bench {
 namespace {
@@ -50,8 +50,7 @@ class QuadricJob : public Task {
 }  // namespace
 
 vtkSmartPointer<vtkPolyData> flying_edges(const VolumeFile& file, int threads) {
-  vtkSMPTools::SetBackend("TBB");
-  vtkSMPTools::Initialize(threads);
+  use_vtk_threads("TBB", threads);
   const auto filter = vtkSmartPointer<vtkFlyingEdges3D>::New();
   filter->SetInputData(read_image(file));
   filter->SetValue(0, file.iso);
