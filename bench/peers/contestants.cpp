@@ -5,6 +5,7 @@ namespace bench {
 Contestants all_contestants() {
   Contestants contestants;
   add_isoweave(contestants);
+  add_memory_floor(contestants);
 #ifdef BENCH_MESHOPTIMIZER
   add_meshoptimizer(contestants);
   add_meshoptimizer_slabs(contestants);

@@ -1,4 +1,6 @@
 // Ours, through the public headers only.
+#include <algorithm>
+
 #include "isoweave/pipeline.hpp"
 #include "task.hpp"
 
@@ -10,34 +12,36 @@ using isoweave::Quality;
 // Errors, in mean voxels, between which every count of interest lies.
 constexpr Steering kErrors{1e-3, 50};
 
-class CountingSink : public isoweave::MeshSink {
- public:
-  void append(std::span<const isoweave::Point>, std::span<const isoweave::Point>,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    triangles_ += triangles.size();
-  }
-  void finish() override {}
-  std::size_t triangles() const { return triangles_; }
+std::array<std::uint32_t, 3> narrow(const std::array<std::uint64_t, 3>& triangle) {
+  return {static_cast<std::uint32_t>(triangle[0]), static_cast<std::uint32_t>(triangle[1]),
+          static_cast<std::uint32_t>(triangle[2])};
+}
 
- private:
-  std::size_t triangles_ = 0;
-};
-
+// Holds the whole mesh in memory, as all peers do, in the pieces in which it comes.
 class HoldingSink : public isoweave::MeshSink {
  public:
   void append(std::span<const isoweave::Point> vertices, std::span<const isoweave::Point>,
               std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    mesh_.vertices.insert(mesh_.vertices.end(), vertices.begin(), vertices.end());
-    for (const auto& [a, b, c] : triangles) {
-      mesh_.triangles.push_back(
-          {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
-    }
+    isoweave::TriangleMesh& piece = pieces_.emplace_back();
+    piece.vertices.assign(vertices.begin(), vertices.end());
+    piece.triangles.resize(triangles.size());
+    std::transform(triangles.begin(), triangles.end(), piece.triangles.begin(), narrow);
+    triangles_ += triangles.size();
   }
   void finish() override {}
-  const isoweave::TriangleMesh& mesh() const { return mesh_; }
+  std::size_t triangles() const { return triangles_; }
+  isoweave::TriangleMesh mesh() const {
+    isoweave::TriangleMesh whole;
+    for (const isoweave::TriangleMesh& piece : pieces_) {
+      whole.vertices.insert(whole.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+      whole.triangles.insert(whole.triangles.end(), piece.triangles.begin(), piece.triangles.end());
+    }
+    return whole;
+  }
 
  private:
-  isoweave::TriangleMesh mesh_;
+  std::vector<isoweave::TriangleMesh> pieces_;
+  std::size_t triangles_ = 0;
 };
 
 // Open, as the peers make no caps, and without origin and direction, which the peers do not apply.
@@ -60,12 +64,12 @@ class Extraction : public Task {
     mesh_volume(source, sink_, mesh_options(volume_.iso, 0, Quality::kNormal), on(threads_));
   }
   std::size_t triangles() const override { return sink_.triangles(); }
-  isoweave::TriangleMesh mesh() const override { return {}; }
+  isoweave::TriangleMesh mesh() const override { return sink_.mesh(); }
 
  private:
   const HeldVolume& volume_;
   int threads_;
-  CountingSink sink_;
+  HoldingSink sink_;
 };
 
 class Simplification : public Task {
@@ -75,7 +79,7 @@ class Simplification : public Task {
   void run() override {
     simplify_mesh(full_, sink_, {.error = {goal_.length, false}, .quality = quality_}, on(goal_.threads));
   }
-  std::size_t triangles() const override { return sink_.mesh().triangles.size(); }
+  std::size_t triangles() const override { return sink_.triangles(); }
   isoweave::TriangleMesh mesh() const override { return sink_.mesh(); }
 
  private:
@@ -91,7 +95,7 @@ class Job : public Task {
   void run() override {
     mesh_volume(*open_source(file_), sink_, mesh_options(file_.iso, goal_.length, quality_), on(goal_.threads));
   }
-  std::size_t triangles() const override { return sink_.mesh().triangles.size(); }
+  std::size_t triangles() const override { return sink_.triangles(); }
   isoweave::TriangleMesh mesh() const override { return sink_.mesh(); }
 
  private:

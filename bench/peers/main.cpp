@@ -30,6 +30,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--left", arguments.left, "Percentages of the triangles to be left")->delimiter(',');
   app.add_option("--threads", settings.threads)->delimiter(',');
   app.add_option("--repetitions", settings.repetitions);
+  app.add_option("--only", settings.only, "Only peers with this in their name");
   app.add_option("--limit", settings.limit_seconds, "Seconds that one run may take");
   app.add_option("--scratch", input.scratch, "Folder for files that are needed meanwhile")->required();
   app.add_option("-o,--output", arguments.output, "JSON")->required();

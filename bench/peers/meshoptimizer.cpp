@@ -2,15 +2,14 @@
 
 #include <meshoptimizer.h>
 
-#include "task.hpp"
+#include <algorithm>
 
 namespace bench {
 namespace {
 
 class MeshoptimizerTask : public Task {
  public:
-  MeshoptimizerTask(const isoweave::TriangleMesh& full, const Goal& goal)
-      : full_(full), goal_(goal), indices_(flat_indices(full)) {}
+  MeshoptimizerTask(const isoweave::TriangleMesh& full, const Goal& goal) : full_(full), goal_(goal) {}
   std::size_t triangles() const override { return indices_.size() / 3; }
   isoweave::TriangleMesh mesh() const override { return {full_.vertices, to_triangles(indices_), {}}; }
 
@@ -23,28 +22,29 @@ class MeshoptimizerTask : public Task {
 class Quadric : public MeshoptimizerTask {
  public:
   using MeshoptimizerTask::MeshoptimizerTask;
-  void run() override { indices_ = meshoptimizer_simplify(indices_, full_.vertices, goal_.triangles, 0); }
+  void run() override { indices_ = meshoptimizer_simplify(flat_indices(full_), full_.vertices, goal_.triangles, 0); }
 };
 
 class Sloppy : public MeshoptimizerTask {
  public:
   using MeshoptimizerTask::MeshoptimizerTask;
   void run() override {
-    std::vector<unsigned> left(indices_.size());
-    left.resize(meshopt_simplifySloppy(left.data(), indices_.data(), indices_.size(), full_.vertices[0].data(),
-                                       full_.vertices.size(), sizeof(isoweave::Point), goal_.triangles * 3, kAnyError,
-                                       nullptr));
-    indices_ = std::move(left);
+    const std::span<const unsigned> indices = flat_indices(full_);
+    indices_.resize(indices.size());
+    indices_.resize(meshopt_simplifySloppy(indices_.data(), indices.data(), indices.size(), full_.vertices[0].data(),
+                                           full_.vertices.size(), sizeof(isoweave::Point), goal_.triangles * 3,
+                                           kAnyError, nullptr));
   }
 };
 
 }  // namespace
 
-std::vector<unsigned> meshoptimizer_simplify(const std::vector<unsigned>& indices,
+std::vector<unsigned> meshoptimizer_simplify(std::span<const unsigned> indices,
                                              const std::vector<isoweave::Point>& vertices, std::size_t target_triangles,
                                              unsigned options) {
   std::vector<unsigned> left(indices.size());
   if (indices.empty()) return left;
+  target_triangles = std::min(target_triangles, indices.size() / 3);  // more is an assertion
   left.resize(meshopt_simplify(left.data(), indices.data(), indices.size(), vertices[0].data(), vertices.size(),
                                sizeof(isoweave::Point), target_triangles * 3, kAnyError, options, nullptr));
   return left;

@@ -33,6 +33,7 @@ struct Settings {
   int repetitions = 5;
   double slow_seconds = 60;  // a peer that takes longer runs once
   double limit_seconds = 900;
+  std::string only;  // part of the names of the peers to compare with; empty: all
 };
 
 // Finds the length at which a runner leaves the triangles asked for, or as near as it comes: sets the goal's length and

@@ -77,10 +77,15 @@ void compare_at(double left, std::size_t wanted, const std::vector<Runner>& runn
   }
 }
 
+// The first, and the peers that are asked for.
 template <class Input>
-std::vector<Runner> bind_all(const std::vector<Contestant<Input>>& contestants, const Input& input) {
+std::vector<Runner> bind_all(const std::vector<Contestant<Input>>& contestants, const Input& input,
+                             const Settings& settings) {
   std::vector<Runner> runners;
-  for (const Contestant<Input>& contestant : contestants) runners.push_back(bind(contestant, input));
+  for (const Contestant<Input>& contestant : contestants) {
+    const bool wanted = runners.empty() || contestant.name.find(settings.only) != std::string::npos;
+    if (wanted) runners.push_back(bind(contestant, input));
+  }
   return runners;
 }
 
@@ -93,7 +98,7 @@ std::size_t share(const Json& full, double left) {
 Json extract_suite(const SuiteInput& input, const Settings& settings) {
   const Contestants contestants = all_contestants();
   const HeldVolume volume = hold(*open_source(input.volume), input.iso);
-  const std::vector<Runner> runners = bind_all(contestants.extractors, volume);
+  const std::vector<Runner> runners = bind_all(contestants.extractors, volume, settings);
   Json rows = Json::array();
   for (std::size_t r = 1; r < runners.size(); ++r) {
     add_rows(rows, compare({runners.front(), {}}, {runners[r], {}}, settings, nullptr), 100);
@@ -107,7 +112,7 @@ Json simplify_suite(const SuiteInput& input, const std::vector<double>& left, co
   const FullSurface full{input.scratch + "/full.ply", mean_voxel(info)};
   const Json surface = extract_full(input, full, settings.limit_seconds);
   const isoweave::TriangleMesh mesh = isoweave::read_mesh(full.path);
-  const std::vector<Runner> runners = bind_all(contestants.simplifiers, mesh);
+  const std::vector<Runner> runners = bind_all(contestants.simplifiers, mesh, settings);
   Json rows = Json::array();
   for (const double percent : left) compare_at(percent, share(surface, percent), runners, settings, full, rows);
   return {{"input", describe(input, info)}, {"full", surface}, {"rows", rows}, {"absent", contestants.absent}};
@@ -120,7 +125,7 @@ Json job_suite(const SuiteInput& input, const std::vector<double>& left, const S
   const FullSurface full{input.scratch + "/full.ply", mean_voxel(info)};
   const Json surface = extract_full(input, full, settings.limit_seconds);
   const VolumeFile file = write_raw(*source, input.iso, input.scratch + "/volume.raw");
-  const std::vector<Runner> runners = bind_all(contestants.jobs, file);
+  const std::vector<Runner> runners = bind_all(contestants.jobs, file, settings);
   Json rows = Json::array();
   for (const double percent : left) compare_at(percent, share(surface, percent), runners, settings, full, rows);
   return {{"input", describe(input, info)}, {"full", surface}, {"rows", rows}, {"absent", contestants.absent}};

@@ -58,6 +58,7 @@ Contestants all_contestants();
 
 // Each adds the contestants of one library.
 void add_isoweave(Contestants& contestants);
+void add_memory_floor(Contestants& contestants);
 void add_meshoptimizer(Contestants& contestants);
 void add_meshoptimizer_slabs(Contestants& contestants);
 void add_vtk_extraction(Contestants& contestants);

@@ -6,7 +6,8 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include <array>
+#include <cstring>
+#include <stdexcept>
 
 namespace bench {
 
@@ -69,11 +70,10 @@ vtkSmartPointer<vtkPolyData> to_polydata(const isoweave::TriangleMesh& mesh) {
 isoweave::TriangleMesh to_mesh(vtkPolyData* surface) {
   isoweave::TriangleMesh mesh;
   mesh.vertices.resize(static_cast<std::size_t>(surface->GetNumberOfPoints()));
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    std::array<double, 3> position{};
-    surface->GetPoint(static_cast<vtkIdType>(v), position.data());
-    for (std::size_t axis = 0; axis < 3; ++axis) mesh.vertices[v][axis] = static_cast<float>(position[axis]);
-  }
+  if (mesh.vertices.empty()) return mesh;
+  vtkDataArray* const positions = surface->GetPoints()->GetData();
+  if (positions->GetDataType() != VTK_FLOAT) throw std::runtime_error("expected points of VTK in single precision");
+  std::memcpy(mesh.vertices.data(), positions->GetVoidPointer(0), mesh.vertices.size() * sizeof(isoweave::Point));
   mesh.triangles.reserve(static_cast<std::size_t>(surface->GetNumberOfPolys()));
   vtkCellArray* const polygons = surface->GetPolys();
   vtkIdType corners = 0;
