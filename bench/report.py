@@ -588,15 +588,20 @@ def plots(results, folder):
     return {block: [(name, text) for name, text in found if name] for block, found in made.items()}
 
 
-def blocks(results, folder, link):
-    """Every part of the report by its name."""
-    images = {block: [image(link, name, text) for name, text in found] for block, found in plots(results, folder).items()}
+def with_one_simplified(results):
+    """Without the simplification of all volumes but the smallest: what people read through."""
+    return [result for result in results if result not in suite(results, "simplify")[1:]]
+
+
+def blocks(results, folder, link, detailed):
+    """Every part of the report by its name. `detailed`: the results that are shown one by one."""
+    images = {block: [image(link, name, text) for name, text in found] for block, found in plots(detailed, folder).items()}
     summaries = [summary_table(results, threads) for threads in (4, 1)] if suite(results, "simplify") else []
     parts = {
         "machine": [machine_text(results), missing_text(results), failures(results)],
         "goals": [goal_table(results)],
         "extraction": list(extraction_tables(results)),
-        "simplification": summaries + images["simplification"] + list(simplification_tables(results)),
+        "simplification": summaries + images["simplification"] + list(simplification_tables(detailed)),
         "job": images["job"] + list(job_tables(results)),
         "scaling": images["scaling"] + list(scaling_tables(results)),
     }
@@ -604,14 +609,14 @@ def blocks(results, folder, link):
 
 
 def write_report(results, out):
-    parts = blocks(results, out, "")
+    parts = blocks(results, out, "", results)
     text = "\n\n".join(f"## {name.capitalize()}\n\n{part}" for name, part in parts.items())
     (out / "report.md").write_text(f"# isoweave beside other libraries\n\n{text}\n")
     print(out / "report.md")
 
 
 def rewrite_docs(results, path):
-    parts = blocks(results, path.with_suffix(""), f"{path.stem}/")
+    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_one_simplified(results))
     for png in path.with_suffix("").glob("*.png"):
         png.unlink()
     text = path.read_text()

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,7 +12,9 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -30,10 +33,24 @@ void write_all(int file, const std::string& text) {
   }
 }
 
+// Whoever needs more memory than there is fails by itself, before the system ends something else.
+void limit_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);) {
+    rlim_t kilobytes = 0;
+    if (std::sscanf(line.c_str(), "MemAvailable: %lu kB", &kilobytes) != 1) continue;
+    const rlimit limit{kilobytes * 1024, kilobytes * 1024};
+    setrlimit(RLIMIT_DATA, &limit);
+  }
+}
+
 [[noreturn]] void be_child(const std::function<Json()>& work, int file) {
   Json message;
   try {
+    limit_memory();
     message["result"] = work();
+  } catch (const std::bad_alloc&) {
+    message["failure"] = "needs more memory than there is";
   } catch (const std::exception& error) {
     message["failure"] = error.what();
   }

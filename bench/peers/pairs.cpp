@@ -67,10 +67,11 @@ struct Series {
     return all;
   }
 
-  // The first run, which has the quality, with the median time and the largest peak.
-  Json summary() const {
+  // The first run with the median time and the largest peak.
+  Json summary(const Json& quality) const {
     if (!failure.empty()) return {{"failure", failure}};
     Json json = runs.front();
+    if (!quality.is_null()) json["quality"] = quality;
     json["seconds"] = median(seconds());
     for (const Json& run : runs) {
       if (run["peak_bytes"] > json["peak_bytes"]) json["peak_bytes"] = run["peak_bytes"];
@@ -79,15 +80,17 @@ struct Series {
   }
 };
 
-// Runs once more unless it failed before. The result is the same each time, so its quality is measured once.
-void repeat(const Entry& entry, int threads, const Settings& settings, const FullSurface* full, Series& series) {
+// Runs once more unless it failed before.
+void repeat(Entry& entry, int threads, const Settings& settings, const FullSurface* full, Series& series) {
   if (!series.failure.empty()) return;
   Goal goal = entry.goal;
   goal.threads = threads;
-  const FullSurface* const reference = series.runs.empty() ? full : nullptr;
+  const FullSurface* const reference = entry.quality.is_null() ? full : nullptr;
   Outcome outcome = run_in_child([&] { return measure(entry.runner, goal, reference); }, settings.limit_seconds);
   series.failure = std::move(outcome.failure);
-  if (series.failure.empty()) series.runs.push_back(std::move(outcome.result));
+  if (!series.failure.empty()) return;
+  if (outcome.result.contains("quality")) entry.quality = outcome.result["quality"];
+  series.runs.push_back(std::move(outcome.result));
 }
 
 bool is_over(const Series& peer, const Settings& settings) {
@@ -95,7 +98,8 @@ bool is_over(const Series& peer, const Settings& settings) {
 }
 
 Json row(const Entry& ours, const Entry& peer, int threads, const Series& our_series, const Series& peer_series) {
-  Json json{{"ours", our_series.summary()}, {"peer", peer_series.summary()}, {"threads", threads}};
+  Json json{
+      {"ours", our_series.summary(ours.quality)}, {"peer", peer_series.summary(peer.quality)}, {"threads", threads}};
   json["ours"]["name"] = ours.runner.name;
   json["ours"]["length"] = ours.goal.length;
   json["peer"]["name"] = peer.runner.name;
@@ -148,7 +152,7 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
   return {};
 }
 
-std::vector<Json> compare(const Entry& ours, const Entry& peer, const Settings& settings, const FullSurface* full) {
+std::vector<Json> compare(Entry& ours, Entry& peer, const Settings& settings, const FullSurface* full) {
   std::map<int, Series> our_series, peer_series;
   bool over = false;
   for (int round = 0; round < settings.repetitions && !over; ++round) {

@@ -43,9 +43,10 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
 struct Entry {
   Runner runner;
   Goal goal;
+  Json quality = {};  // measured once: the mesh does not depend on threads and repetitions
 };
 
 // One row for each number of threads. Quality is measured when `full` is given.
-std::vector<Json> compare(const Entry& ours, const Entry& peer, const Settings& settings, const FullSurface* full);
+std::vector<Json> compare(Entry& ours, Entry& peer, const Settings& settings, const FullSurface* full);
 
 }  // namespace bench

@@ -101,7 +101,8 @@ Json extract_suite(const SuiteInput& input, const Settings& settings) {
   const std::vector<Runner> runners = bind_all(contestants.extractors, volume, settings);
   Json rows = Json::array();
   for (std::size_t r = 1; r < runners.size(); ++r) {
-    add_rows(rows, compare({runners.front(), {}}, {runners[r], {}}, settings, nullptr), 100);
+    Entry ours{runners.front(), {}}, peer{runners[r], {}};
+    add_rows(rows, compare(ours, peer, settings, nullptr), 100);
   }
   return {{"input", describe(input, volume.info)}, {"rows", rows}, {"absent", contestants.absent}};
 }
