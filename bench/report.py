@@ -461,30 +461,40 @@ def plot_speed(result, folder):
 
 
 def error_curves(result):
-    """Name, counts and RMS distances of every contestant; ours first."""
+    """Name and (share left, RMS distance) of every contestant; ours first."""
     curves = {NORMAL: {}}
     for row in rows_of(result, None, thread_counts(result)[0]):
         for side in (row["ours"], row["peer"]):
             if "quality" in side:
-                curves.setdefault(side["name"], {})[side["triangles"]] = side["quality"]["rms"]
+                share = 100 * side["triangles"] / result["full"]["triangles"]
+                curves.setdefault(side["name"], {})[share] = side["quality"]["rms"]
     return [(name, sorted(points.items())) for name, points in curves.items() if points]
 
 
+def error_styles(curves):
+    """Ours in one colour and with marks of their own, each peer in a colour."""
+    colours = iter(OTHERS)
+    for name, _ in curves:
+        if is_ours(name):
+            yield {"color": OURS, "marker": {NORMAL: "o", FINE: "^"}.get(name, "s"), "linewidth": 2.2, "zorder": 3}
+        else:
+            yield {"color": next(colours, "#878787"), "marker": "o", "linewidth": 1.2, "zorder": 2}
+
+
 def plot_error(result, folder):
-    curves = error_curves(result)
+    curves, shares = error_curves(result), lefts(result)
     if not curves:
         return None
     figure, panel = plt.subplots(figsize=(8, 4.4))
-    colours = iter(OTHERS)
-    for name, points in curves:
-        style = {NORMAL: "-", FINE: "--"}.get(name, ":") if is_ours(name) else "-"
-        panel.plot(*zip(*points), style, marker="o", markersize=4, linewidth=2.2 if is_ours(name) else 1.2,
-                   color=OURS if is_ours(name) else next(colours, "#878787"), label=name, zorder=3 if is_ours(name) else 2)
+    for (name, points), style in zip(curves, error_styles(curves)):
+        panel.plot(*zip(*points), markersize=5, label=name, **style)
     panel.set_xscale("log")
     panel.set_yscale("log")
+    panel.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
     plain_logs(panel.yaxis)
-    panel.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value / 1000:g} k"))
-    panel.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    panel.set_xlim(min(shares) / 1.3, max(shares) * 1.3)
+    panel.set_xticks(shares, [f"{left:g} %" for left in shares])
+    panel.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     panel.set_xlabel(f"triangles left of {result['full']['triangles']:,}")
     panel.set_ylabel("RMS distance, voxels")
     panel.set_title(volume_name(result))
@@ -502,20 +512,28 @@ def job_memory(result):
 
 
 def plot_job_memory(results, folder):
-    """Bars of all volumes below each other."""
+    """A panel of bars for each volume."""
     groups = [(volume_name(result), job_memory(result)) for result in suite(results, "job")]
-    bars = [(volume, name, size) for volume, sides in groups for name, size in sides]
-    if not bars:
+    groups = [(volume, sides) for volume, sides in groups if sides]
+    if not groups:
         return None
-    figure, panel = plt.subplots(figsize=(8, 0.3 * len(bars) + 1.2))
-    for at, (volume, name, size) in enumerate(bars):
+    heights = [len(sides) for _, sides in groups]
+    figure, panels = plt.subplots(len(groups), 1, figsize=(8, 0.3 * sum(heights) + 0.7 * len(groups) + 0.3),
+                                  gridspec_kw={"height_ratios": heights}, squeeze=False)
+    for panel, (volume, sides) in zip(panels[:, 0], groups):
+        draw_memory(panel, sides)
+        panel.set_title(volume, loc="left")
+    panels[-1][0].set_xlabel("memory of the whole job, MB")
+    return save(figure, folder, "memory")
+
+
+def draw_memory(panel, sides):
+    for at, (name, size) in enumerate(sides):
         panel.barh(at, size, color=OURS if is_ours(name) else "#9ecae1")
         panel.text(size, at, f" {size:.0f}", va="center")
-    panel.set_yticks(range(len(bars)), [f"{volume}: {name}" for volume, name, _ in bars])
+    panel.set_yticks(range(len(sides)), [name for name, _ in sides])
     panel.invert_yaxis()
     panel.grid(axis="y", visible=False)
-    panel.set_xlabel("memory of the whole job, MB")
-    return save(figure, folder, "memory")
 
 
 def plot_scaling(result, folder):

@@ -16,6 +16,7 @@ namespace {
 // Counts nearer than this to the one asked for are as good as equal.
 constexpr double kCountTolerance = 0.005;
 constexpr int kMostTries = 24;
+constexpr double kFinestStep = 1e-3;  // of the logarithm of a length: what changes the count by a jump is found by then
 
 // From here on, the peak is that of what follows.
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
@@ -129,7 +130,7 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
   double low_count = 0, high_count = 0;  // logarithms; 0: not known, and the bracket is halved
   Goal nearest = goal;
   double nearest_miss = INFINITY;
-  for (int tries = 0; tries < kMostTries && nearest_miss > kCountTolerance; ++tries) {
+  for (int tries = 0; tries < kMostTries && nearest_miss > kCountTolerance && high - low > kFinestStep; ++tries) {
     const bool both_known = low_count > 0 && high_count > 0;
     const double length =
         both_known ? interpolate(low, high, low_count, high_count, std::log(wanted)) : (low + high) / 2;
