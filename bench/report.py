@@ -32,6 +32,7 @@ UNKNOWN = "–"
 
 def load(folder):
     results = [json.loads(path.read_text()) for path in sorted(pathlib.Path(folder).glob("*.json"))]
+    results = [result for result in results if result["rows"]]
     return sorted(results, key=lambda result: samples(result) if "input" in result else 0)
 
 
@@ -274,12 +275,12 @@ def extraction_ratios(results):
 
 
 def label_like_ratios(results):
-    """Speed of extraction as a share of the speed of reading, where fewer than one sample in 100 gives a triangle."""
+    """Speed of extraction as a share of the speed of reading, where there is less than a triangle for 50 samples."""
     return [
         (row["ratio"], f"{volume_name(result)}, {row['threads']} threads")
         for result in suite(results, "extract")
         for row in rows_of(result, FLOOR)
-        if row["ours"]["triangles"] < samples(result) / 100
+        if row["ours"]["triangles"] < samples(result) / 50
     ]
 
 
