@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tables and plots from the results of bench/run.
+"""Tables and plots from the results of bench/run; needs python3-matplotlib.
 
   bench/report.py RESULTS OUT            OUT/report.md and OUT/*.svg, *.png
   bench/report.py RESULTS --docs FILE    rewrites what lies in FILE between the lines <!-- begin NAME --> and
@@ -210,7 +210,8 @@ def extraction_tables(results):
 def tables_at_each_share(result):
     for left in lefts(result):
         rows = [row for row in result["rows"] if row["left"] == left]
-        yield f"**{describe(result)}, {left:g} % left**\n\n{contestants_table(rows, thread_counts(result), result['full'])}"
+        head = f"**{describe(result)}, {left:g} % left**"
+        yield f"{head}\n\n{contestants_table(rows, thread_counts(result), result['full'])}"
 
 
 def simplification_tables(results):
@@ -239,10 +240,11 @@ def summary_table(results, threads):
     peers = list(dict.fromkeys(name for result in found for name in names(result["rows"])))
     lines = []
     for peer in peers:
-        ratios = [[row["ratio"] for result in found for row in rows_of(result, peer, threads, [left])] for left in shares]
-        lines.append([peer, *(range_text(values) for values in ratios)])
+        rows = [[row for result in found for row in rows_of(result, peer, threads, [left])] for left in shares]
+        lines.append([peer, *(range_text([row["ratio"] for row in same]) for same in rows)])
     volumes = f"{len(found)} volume{'s' if len(found) != 1 else ''}"
-    return table([f"{threads} thread{'s' if threads > 1 else ''}, {volumes}", *(f"{left:g} % left" for left in shares)], lines)
+    head = f"{threads} thread{'s' if threads > 1 else ''}, {volumes}"
+    return table([head, *(f"{left:g} % left" for left in shares)], lines)
 
 
 # ---- goals
@@ -286,7 +288,8 @@ def label_like_ratios(results):
 
 def rms_ratios(results, peer, left):
     return [
-        (row["ours"]["quality"]["rms"] / row["peer"]["quality"]["rms"], f"{volume_name(result)}, {row['left']:g} % left")
+        (row["ours"]["quality"]["rms"] / row["peer"]["quality"]["rms"],
+         f"{volume_name(result)}, {row['left']:g} % left")
         for result in suite(results, "simplify")
         for row in equal_rows(result, peer, None, left)
         if row["threads"] == thread_counts(result)[0]
@@ -335,24 +338,37 @@ def fine_times(results):
     ]
 
 
+def at_least(bound):
+    return bound, True
+
+
+def at_most(bound):
+    return bound, False
+
+
 def goals(results):
-    """What is compared, against what, the goal, and how near the worst case comes to it."""
-    at_least, at_most = (lambda bound: (bound, True)), (lambda bound: (bound, False))
-    simplify = lambda peers, threads, left=None: ratios_to(results, "simplify", peers, threads, left)
+    """What is compared, against what, the goal, the measured values, and their bound."""
     return [
         ("extraction, same threads", "VTK flying edges (TBB)", "2×", extraction_ratios(results), at_least(2)),
         ("extraction, label-like volumes", "every sample read once", f"{NEAR:g} of its speed",
          label_like_ratios(results), at_least(NEAR)),
-        ("simplification, 1 thread, 20 % left", "meshoptimizer", "1×", simplify([MESHOPTIMIZER], 1, [20]), at_least(1)),
-        ("its RMS distance", "meshoptimizer", "at most 0.7 of theirs", rms_ratios(results, MESHOPTIMIZER, [20]), at_most(0.7)),
+        ("simplification, 1 thread, 20 % left", "meshoptimizer", "1×",
+         ratios_to(results, "simplify", [MESHOPTIMIZER], 1, [20]), at_least(1)),
+        ("its RMS distance", "meshoptimizer", "at most 0.7 of theirs",
+         rms_ratios(results, MESHOPTIMIZER, [20]), at_most(0.7)),
         ("simplification, 4 threads, 20 to 5 % left", "meshoptimizer", "4×",
-         simplify([MESHOPTIMIZER], 4, [20, 10, 5]), at_least(4)),
-        ("simplification, 4 threads, 10 % left", "meshoptimizer in 16 slabs", "1.25×", simplify([SLABS], 4, [10]), at_least(1.25)),
+         ratios_to(results, "simplify", [MESHOPTIMIZER], 4, [20, 10, 5]), at_least(4)),
+        ("simplification, 4 threads, 10 % left", "meshoptimizer in 16 slabs", "1.25×",
+         ratios_to(results, "simplify", [SLABS], 4, [10]), at_least(1.25)),
         ("its non-manifold edges", "", "none", nonmanifold_edges(results, [10]), at_most(0)),
-        ("simplification, 4 threads", "VTK quadric, CGAL, OpenMesh", "40×", simplify(SLOW_PEERS, 4), at_least(40)),
-        ("whole job, 4 threads", "flying edges + meshoptimizer", "3.5×", ratios_to(results, "job", [FAST_JOB], 4), at_least(3.5)),
-        ("whole job, 4 threads", "flying edges + VTK quadric", "30×", ratios_to(results, "job", [QUADRIC_JOB], 4), at_least(30)),
-        ("memory of the whole job, 155 M samples or more", "the leanest of them", "5× less", memory_ratios(results), at_least(5)),
+        ("simplification, 4 threads", "VTK quadric, CGAL, OpenMesh", "40×",
+         ratios_to(results, "simplify", SLOW_PEERS, 4), at_least(40)),
+        ("whole job, 4 threads", "flying edges + meshoptimizer", "3.5×",
+         ratios_to(results, "job", [FAST_JOB], 4), at_least(3.5)),
+        ("whole job, 4 threads", "flying edges + VTK quadric", "30×",
+         ratios_to(results, "job", [QUADRIC_JOB], 4), at_least(30)),
+        ("memory of the whole job, 155 M samples or more", "the leanest of them", "5× less",
+         memory_ratios(results), at_least(5)),
         ("RMS distance of `fine`, 50, 20, 10, 5 % left", "the best of all peers", "at most 1.0 of theirs",
          fine_rms_ratios(results), at_most(1)),
         ("time of `fine`", "`normal`", "at most 2×", fine_times(results), at_most(2)),
@@ -383,6 +399,10 @@ def slopes(points):
     return [1000 * (b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(points, points[1:])]
 
 
+def layer_count(row):
+    return row["layers"]
+
+
 def slab_text(row):
     return str(row["slab"] or "auto")
 
@@ -395,7 +415,7 @@ def scaling_tables(results):
             yield table(["threads, " + kind, *(str(count) for count, _ in threads)],
                         [["seconds", *(number(seconds) for _, seconds in threads)],
                          ["times as fast", *(times(threads[0][1] / seconds) for _, seconds in threads)]])
-            layers = medians(rows, "layers", kind, lambda row: row["layers"])
+            layers = medians(rows, "layers", kind, layer_count)
             yield table(["layers, " + kind, *(str(count) for count, _ in layers)],
                         [["seconds", *(number(seconds) for _, seconds in layers)],
                          ["ms per layer more", "", *(number(slope) for slope in slopes(layers))]])
@@ -408,16 +428,17 @@ def scaling_tables(results):
 
 
 def memory_table(rows):
-    curves = {mode: medians(rows, f"memory, {mode}", "smooth", lambda row: row["layers"], lambda row: row["peak_bytes"])
+    curves = {mode: medians(rows, f"memory, {mode}", "smooth", layer_count, lambda row: row["peak_bytes"])
               for mode in ("open", "closed")}
-    return table(["layers, smooth", *(str(count) for count, _ in curves["open"])],
-                 [[f"peak memory {mode}, MB", *(megabytes(peak) for _, peak in curve)] for mode, curve in curves.items()])
+    lines = [[f"peak memory {mode}, MB", *(megabytes(peak) for _, peak in curve)] for mode, curve in curves.items()]
+    return table(["layers, smooth", *(str(count) for count, _ in curves["open"])], lines)
 
 
 # ---- plots
 
 SHADES = ["#9ecae1", "#6baed6", "#3182bd", "#08519c", "#08306b"]
-OURS, OTHERS = "#d95f02", ["#1b6ca8", "#7b3294", "#4d9221", "#8c510a", "#878787", "#c51b7d", "#35978f", "#bf812d", "#542788", "#b2182b"]
+OURS = "#d95f02"
+OTHERS = ["#1b6ca8", "#7b3294", "#4d9221", "#8c510a", "#878787", "#c51b7d", "#35978f", "#bf812d", "#542788", "#b2182b"]
 plt.rcParams.update({
     "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#e6e6e6",
     "axes.axisbelow": True, "figure.facecolor": "white", "savefig.facecolor": "white", "legend.frameon": False,
@@ -445,7 +466,8 @@ def plot_speed(result, folder):
     peers = [name for name in names(result["rows"]) if rows_of(result, name)]
     if not peers:
         return None
-    figure, panels = plt.subplots(1, len(counts), figsize=(4.6 * len(counts) + 1, 0.32 * len(peers) + 1.4), sharey=True, squeeze=False)
+    size = (4.6 * len(counts) + 1, 0.32 * len(peers) + 1.4)
+    figure, panels = plt.subplots(1, len(counts), figsize=size, sharey=True, squeeze=False)
     for panel, count in zip(panels[0], counts):
         for left, shade in zip(shares, SHADES[-len(shares):]):
             points = [(row["ratio"], peers.index(row["peer"]["name"])) for row in rows_of(result, None, count, [left])]
@@ -542,10 +564,10 @@ def plot_scaling(result, folder):
     figure, panels = plt.subplots(2, 2, figsize=(9, 6))
     for kind, colour in (("noise", OTHERS[0]), ("smooth", OTHERS[2])):
         draw_speedup(panels[0][0], medians(rows, "threads", kind, lambda row: row["threads"]), kind, colour)
-        panels[0][1].plot(*zip(*medians(rows, "layers", kind, lambda row: row["layers"])), "o-", color=colour, label=kind)
+        panels[0][1].plot(*zip(*medians(rows, "layers", kind, layer_count)), "o-", color=colour, label=kind)
         panels[1][0].plot(*zip(*medians(rows, "slab", kind, slab_text)), "o-", color=colour, label=kind)
     for mode, style in (("open", "o-"), ("closed", "o--")):
-        points = medians(rows, f"memory, {mode}", "smooth", lambda row: row["layers"], lambda row: row["peak_bytes"] / 1e6)
+        points = medians(rows, f"memory, {mode}", "smooth", layer_count, lambda row: row["peak_bytes"] / 1e6)
         panels[1][1].plot(*zip(*points), style, color=OTHERS[2], label=f"smooth, {mode}")
     labels = [("threads", "times as fast as one thread"), ("layers of the same texture", "seconds"),
               ("layers per slab", "seconds"), ("layers of the same texture", "peak memory, MB")]
@@ -599,8 +621,11 @@ def plots(results, folder):
     """Names of the files and what they show, by block."""
     folder.mkdir(parents=True, exist_ok=True)
     made = {
-        "simplification": [(plot_speed(result, folder), f"Speed ratios, {volume_name(result)}") for result in suite(results, "simplify")]
-        + [(plot_error(result, folder), f"Error against triangles left, {volume_name(result)}") for result in suite(results, "simplify")],
+        "simplification": [
+            (plot(result, folder), f"{what}, {volume_name(result)}")
+            for result in suite(results, "simplify")
+            for plot, what in ((plot_speed, "Speed ratios"), (plot_error, "Error against triangles left"))
+        ],
         "job": [(plot_job_memory(results, folder), "Memory of the whole job")],
         "scaling": [(plot_scaling(result, folder), "Scaling") for result in suite(results, "scaling")],
     }
@@ -614,7 +639,8 @@ def with_one_simplified(results):
 
 def blocks(results, folder, link, detailed):
     """Every part of the report by its name. `detailed`: the results that are shown one by one."""
-    images = {block: [image(link, name, text) for name, text in found] for block, found in plots(detailed, folder).items()}
+    made = plots(detailed, folder)
+    images = {block: [image(link, name, text) for name, text in found] for block, found in made.items()}
     summaries = [summary_table(results, threads) for threads in (4, 1)] if suite(results, "simplify") else []
     parts = {
         "machine": [machine_text(results), missing_text(results), failures(results)],
