@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "simplify/turns.hpp"
 #include "surfaces.hpp"
 
 namespace isoweave::testing {
@@ -44,6 +45,7 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
       offer(standing_half_edge(zone, decider.changed()[static_cast<std::size_t>(n)]));
     }
   }
+  give_all_turns(zone);
   return decider.counts();
 }
 
@@ -90,6 +92,7 @@ inline void decide_at_random(Zone& zone, Quality quality, std::mt19937& random) 
       decider.decide();
     }
   }
+  give_all_turns(zone);
 }
 
 }  // namespace isoweave::testing

@@ -12,7 +12,7 @@ void Queue::run(const std::atomic<bool>* stop) {
     decide_group();
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) return;
   }
-  for (Index v = 0; v < zone_.vertices.size(); ++v) give_turn(zone_, v);
+  give_all_turns(zone_);
   ++rounds_;
 }
 

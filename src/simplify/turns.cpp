@@ -1,6 +1,19 @@
 #include "simplify/turns.hpp"
 
 namespace isoweave {
+namespace {
+
+void give_turn(Zone& zone, Index v) {
+  if (zone.states[v] == VertexState::kIncomplete) {
+    zone.turn_keys[v] = kUnknownTurn;
+  } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
+    zone.turn_keys[v] = kNoTurn;
+  } else {
+    renew_turn(zone, v);
+  }
+}
+
+}  // namespace
 
 void renew_turn(Zone& zone, Index v) {
   const HalfEdge* const halves = &zone.half(0);
@@ -27,14 +40,8 @@ void renew_turn(Zone& zone, Index v) {
   zone.turns[v].edge = edge;
 }
 
-void give_turn(Zone& zone, Index v) {
-  if (zone.states[v] == VertexState::kIncomplete) {
-    zone.turn_keys[v] = kUnknownTurn;
-  } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
-    zone.turn_keys[v] = kNoTurn;
-  } else {
-    renew_turn(zone, v);
-  }
+void give_all_turns(Zone& zone) {
+  for (Index v = 0; v < zone.vertices.size(); ++v) give_turn(zone, v);
 }
 
 void give_turns(Zone& zone, const Executor& executor) {

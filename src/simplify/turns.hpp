@@ -13,8 +13,8 @@ inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
 // Sets v's turn from its edges. v must be complete or final and still there.
 void renew_turn(Zone& zone, Index v);
 
-// The same for any vertex.
-void give_turn(Zone& zone, Index v);
+// Turns of all vertices.
+void give_all_turns(Zone& zone);
 
 // Turns of the vertices whose edges got keys with the last append.
 void give_turns(Zone& zone, const Executor& executor);
