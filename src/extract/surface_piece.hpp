@@ -19,7 +19,7 @@ struct SurfacePiece {
   std::vector<Point> normals;                           // of new vertices, unit or zero, outwards; or none
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<std::uint32_t> incomplete;                // vertices that later pieces give more triangles
-  std::vector<std::uint32_t> locked;                    // vertices that must stay as they are
+  bool manifold = true;  // a promise; without it vertices where the surface is not an oriented manifold are locked
   std::uint64_t cells_crossed = 0;
 
   void clear() {
@@ -30,7 +30,7 @@ struct SurfacePiece {
     normals.clear();
     triangles.clear();
     incomplete.clear();
-    locked.clear();
+    manifold = true;
   }
 };
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
-#include "measure/defects.hpp"
 #include "measure/geometry.hpp"
 
 namespace isoweave {
@@ -101,15 +100,7 @@ void for_each_edge(SideTable& table, Visit&& visit) {
 
 class Checker {
  public:
-  explicit Checker(const TriangleMesh& mesh)
-      : mesh_(mesh), corners_(3 * mesh.triangles.size()), misoriented_(mesh.vertices.size()) {}
-
-  std::vector<std::uint8_t> defective() {
-    count_edges();
-    std::vector<std::uint8_t> out = find_fans();
-    for (std::size_t v = 0; v < out.size(); ++v) out[v] = out[v] > 1 || misoriented_[v] != 0;
-    return out;
-  }
+  explicit Checker(const TriangleMesh& mesh) : mesh_(mesh), corners_(3 * mesh.triangles.size()) {}
 
   MeshCheck run() {
     result_.triangles = mesh_.triangles.size();
@@ -136,12 +127,7 @@ class Checker {
       if (sides.size() == 1) {
         ++result_.open_edges;
       } else if (sides.size() == 2) {
-        if (sides[0].from_high == sides[1].from_high) {
-          ++result_.misoriented_edges;
-          for (const std::uint64_t corner : {sides[0].corner, next_corner(sides[0].corner)}) {
-            misoriented_[mesh_.triangles[corner / 3][corner % 3]] = 1;
-          }
-        }
+        if (sides[0].from_high == sides[1].from_high) ++result_.misoriented_edges;
         join_corners(sides[0], sides[1]);
       } else {
         ++result_.nonmanifold_edges;
@@ -207,7 +193,6 @@ class Checker {
   MeshCheck result_;
   std::uint64_t edges_ = 0;
   DisjointSets<std::uint64_t> corners_;
-  std::vector<std::uint8_t> misoriented_;  // of each vertex: an end of a misoriented edge
 };
 
 }  // namespace
@@ -215,11 +200,6 @@ class Checker {
 MeshCheck check_mesh(const TriangleMesh& mesh) {
   measure::require_indices_in_range(mesh);
   return Checker(mesh).run();
-}
-
-std::vector<std::uint8_t> defective_vertices(const TriangleMesh& mesh) {
-  measure::require_indices_in_range(mesh);
-  return Checker(mesh).defective();
 }
 
 }  // namespace isoweave

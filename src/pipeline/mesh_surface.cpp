@@ -1,47 +1,58 @@
 #include "pipeline/mesh_surface.hpp"
 
 #include <cmath>
+#include <vector>
 
-#include "measure/defects.hpp"
+#include "measure/geometry.hpp"
 
 namespace isoweave {
 namespace {
 
+constexpr std::int64_t kBlock = 4096;
+
 Vec3 position_of(const Point& p) { return {p[0], p[1], p[2]}; }
+
+bool repeats_a_vertex(const std::array<std::uint32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+// Twice the sum of the areas.
+double sum_areas(const TriangleMesh& mesh, std::int64_t begin, std::int64_t end) {
+  double sum = 0;
+  for (std::int64_t n = begin; n < end; ++n) {
+    const auto& t = mesh.triangles[static_cast<std::size_t>(n)];
+    const Vec3 a = position_of(mesh.vertices[t[0]]);
+    const Vec3 normal = cross(position_of(mesh.vertices[t[1]]) - a, position_of(mesh.vertices[t[2]]) - a);
+    sum += std::sqrt(dot(normal, normal));
+  }
+  return sum;
+}
 
 }  // namespace
 
-void make_piece(const TriangleMesh& mesh, SurfacePiece& piece, std::uint64_t& dropped) {
+void make_piece(const TriangleMesh& mesh, const Executor& executor, SurfacePiece& piece, std::uint64_t& dropped) {
+  measure::require_indices_in_range(mesh);
   piece.clear();
-  dropped = 0;
-  piece.positions.reserve(mesh.vertices.size());
-  piece.ids.reserve(mesh.vertices.size());
-  for (const Point& p : mesh.vertices) {
-    piece.ids.push_back(piece.positions.size());
-    piece.positions.push_back(position_of(p));
-  }
-  piece.triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
-      ++dropped;
-    } else {
-      piece.triangles.push_back(t);
-    }
-  }
-  const std::vector<std::uint8_t> defective = defective_vertices(mesh);
-  for (std::uint32_t v = 0; v < defective.size(); ++v) {
-    if (defective[v] != 0) piece.locked.push_back(v);
-  }
+  piece.manifold = false;
+  piece.positions.resize(mesh.vertices.size());
+  piece.ids.resize(mesh.vertices.size());
+  executor.for_each(static_cast<std::int64_t>(mesh.vertices.size()), kBlock, [&](std::int64_t n) {
+    const auto v = static_cast<std::size_t>(n);
+    piece.positions[v] = position_of(mesh.vertices[v]);
+    piece.ids[v] = v;
+  });
+  piece.triangles = mesh.triangles;
+  dropped = std::erase_if(piece.triangles, repeats_a_vertex);
 }
 
-double mean_triangle_area(const TriangleMesh& mesh) {
+double mean_triangle_area(const TriangleMesh& mesh, const Executor& executor) {
+  if (mesh.triangles.empty()) return 0;
+  const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+  std::vector<double> sums(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
+  executor.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    sums[static_cast<std::size_t>(begin / kBlock)] = sum_areas(mesh, begin, end);
+  });
   double sum = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = position_of(mesh.vertices[t[0]]);
-    const Vec3 normal = cross(position_of(mesh.vertices[t[1]]) - a, position_of(mesh.vertices[t[2]]) - a);
-    sum += std::sqrt(dot(normal, normal)) / 2;
-  }
-  return mesh.triangles.empty() ? 0 : sum / static_cast<double>(mesh.triangles.size());
+  for (const double block : sums) sum += block;
+  return sum / 2 / static_cast<double>(count);
 }
 
 }  // namespace isoweave

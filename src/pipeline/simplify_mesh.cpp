@@ -1,4 +1,5 @@
 // The same simplifier on a mesh that is there as a whole.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -42,6 +43,10 @@ void report_check(const MeshCheck& check, MeshReport& report) {
   report.euler = check.euler;
 }
 
+std::uint64_t count_locked(const Zone& zone) {
+  return static_cast<std::uint64_t>(std::count(zone.states.begin(), zone.states.end(), VertexState::kLocked));
+}
+
 }  // namespace
 
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
@@ -50,7 +55,7 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   Stopwatch clock;
   MeshReport report;
   const Executor executor(control.threads);
-  const double mean_area = mean_triangle_area(mesh);
+  const double mean_area = mean_triangle_area(mesh, executor);
   const double a0 = mean_area > 0 ? 2 * mean_area : 1;
   report.threads = executor.threads();
   report.error = options.error.value * (options.error.voxels ? std::sqrt(a0) : 1);
@@ -63,19 +68,19 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
 
   SurfacePiece piece;
   std::uint64_t dropped = 0;
-  make_piece(mesh, piece, dropped);
+  make_piece(mesh, executor, piece, dropped);
   report.triangles_extracted = mesh.triangles.size();
   report.vertices_extracted = mesh.vertices.size();
-  report.locked_vertices = piece.locked.size();
   if (dropped > 0) {
     report.warnings.push_back(std::to_string(dropped) + " triangles that repeat a vertex are left out");
   }
-  if (!piece.locked.empty()) {
-    report.warnings.push_back(std::to_string(piece.locked.size()) +
-                              " vertices are not on an oriented manifold and stay where they are");
-  }
   simplifier.append(piece);
   piece = {};
+  report.locked_vertices = count_locked(simplifier.zone());
+  if (report.locked_vertices > 0) {
+    report.warnings.push_back(std::to_string(report.locked_vertices) +
+                              " vertices are not on an oriented manifold and stay where they are");
+  }
   simplifier.decide();
   clock.lap(report.seconds_simplify);
 

@@ -17,6 +17,19 @@ namespace {
 constexpr std::int64_t kBlock = 2048;
 constexpr Index kBackwards = Index{1} << 31;  // in EdgeSide::other: runs from the larger to the smaller number
 
+// By insertion where there are few, in a fan's hub by std::sort.
+template <class T, class Less>
+void sort_few(std::span<T> items, const Less& less) {
+  constexpr std::size_t kFew = 32;
+  if (items.size() > kFew) return std::sort(items.begin(), items.end(), less);
+  for (std::size_t n = 1; n < items.size(); ++n) {
+    const T item = items[n];
+    std::size_t at = n;
+    for (; at > 0 && less(item, items[at - 1]); --at) items[at] = items[at - 1];
+    items[at] = item;
+  }
+}
+
 }  // namespace
 
 void Zone::append(const SurfacePiece& piece, const Executor& executor) {
@@ -38,8 +51,8 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   const auto vertex_of = [&](Index n) {
     return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
   };
-  for (const Index n : piece.locked) states[vertex_of(n)] = VertexState::kLocked;
   link(piece, first_triangle, executor);
+  if (!piece.manifold) lock_split_vertices(executor);
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
   front_ = std::move(front);
@@ -145,27 +158,50 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
 }
 
-// Pairs sides that run in opposite directions between the same ends. Edges between locked vertices may have any number
-// of sides and stay unlinked: nobody walks around their ends.
+// An edge has one side, or two that run in opposite directions. Others stay unlinked, and their ends where they are.
 void Zone::pair_sides(std::span<EdgeSide> sides) {
-  constexpr std::size_t kFewSides = 32;
   const auto other_end = [](const EdgeSide& side) { return side.other & ~kBackwards; };
-  const bool sorted = sides.size() > kFewSides;  // the hub of a large fan
-  if (sorted) {
-    std::sort(sides.begin(), sides.end(),
-              [&](const EdgeSide& a, const EdgeSide& b) { return other_end(a) < other_end(b); });
-  }
-  for (std::size_t m = 0; m < sides.size(); ++m) {
-    for (std::size_t k = m + 1; k < sides.size(); ++k) {
-      if (sorted && other_end(sides[k]) != other_end(sides[m])) break;
-      if ((sides[m].other ^ sides[k].other) != kBackwards) continue;
-      const Index h = sides[m].half_edge;
-      if (states[origin(h)] == VertexState::kLocked && states[destination(h)] == VertexState::kLocked) break;
-      set_twin(h, sides[k].half_edge);
-      set_twin(sides[k].half_edge, h);
-      break;
+  sort_few(sides, [&](const EdgeSide& a, const EdgeSide& b) { return other_end(a) < other_end(b); });
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && other_end(sides[end]) == other_end(sides[begin])) ++end;
+    if (end - begin == 1) continue;
+    const Index h = sides[begin].half_edge;
+    if (end - begin == 2 && sides[begin].other != sides[begin + 1].other) {
+      set_twin(h, sides[begin + 1].half_edge);
+      set_twin(sides[begin + 1].half_edge, h);
+    } else {
+      lock(origin(h));
+      lock(destination(h));
     }
   }
+}
+
+void Zone::lock(Index v) { std::atomic_ref(states[v]).store(VertexState::kLocked, std::memory_order_relaxed); }
+
+// Vertices whose faces form more than one fan.
+void Zone::lock_split_vertices(const Executor& executor) {
+  std::vector<std::uint32_t> corners(vertices.size(), 0);
+  executor.for_each(triangle_count(), kBlock, [&](std::int64_t t) {
+    for (const HalfEdge& side : triangles[static_cast<std::size_t>(t)].sides) {
+      std::atomic_ref(corners[side.vertex]).fetch_add(1, std::memory_order_relaxed);
+    }
+  });
+  executor.for_each(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t n) {
+    const auto v = static_cast<Index>(n);
+    if (exists(vertices[v].half_edge) && count_fan(v) != corners[v]) lock(v);
+  });
+}
+
+// Faces that a walk both ways around v meets.
+std::uint32_t Zone::count_fan(Index v) const {
+  const Index first = vertices[v].half_edge;
+  std::uint32_t faces = 1;
+  for (Index h = rotate(first); h != first; h = rotate(h), ++faces) {
+    if (exists(h)) continue;
+    for (h = twin(first); exists(h); h = twin(next(h))) ++faces;
+    return faces;
+  }
+  return faces;
 }
 
 // The open half-edges that a piece can close, with the numbers that it gives to their ends.

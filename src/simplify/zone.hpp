@@ -177,6 +177,9 @@ class Zone {
   void start_at(Index v, Index h);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void pair_sides(std::span<EdgeSide> sides);
+  void lock(Index v);
+  void lock_split_vertices(const Executor& executor);
+  std::uint32_t count_fan(Index v) const;
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(const Executor& executor);
   void find_open_half_edges(Index first_triangle, const Executor& executor);
