@@ -96,7 +96,7 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
   SliceWindow window(*source);
   MemorySink sink;
   const World world;
-  FinalOutput output(world, sink);
+  FinalOutput output(world, sink, executor);
   SurfacePiece piece;
   SurfaceRun run;
   while (extractor.layers_left() > 0) {

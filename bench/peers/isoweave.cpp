@@ -53,6 +53,7 @@ isoweave::MeshOptions mesh_options(double iso, double error, Quality quality) {
 isoweave::RunControl on(int threads) {
   isoweave::RunControl control;
   control.threads = threads;
+  control.measure = false;  // nor do the peers
   return control;
 }
 

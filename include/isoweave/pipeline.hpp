@@ -47,6 +47,7 @@ struct RunControl {
   Schedule schedule = Schedule::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
+  bool measure = true;  // digest, components and range of the samples; without it these stay empty in the report
 };
 
 struct MeshOptions {

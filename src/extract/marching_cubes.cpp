@@ -1,5 +1,6 @@
 #include "extract/marching_cubes.hpp"
 
+#include <atomic>
 #include <bit>
 #include <limits>
 
@@ -59,6 +60,9 @@ MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& opt
   const bool closed = options.rule.closed;
   edge_mask_ = closed ? bit_range(words_, 0, nx + 1) : bit_range(words_, 1, nx);
   cell_mask_ = edge_mask_;
+  end_mask_.assign(words_, 0);
+  for (const std::int64_t bit : {std::int64_t{1}, nx})
+    end_mask_[static_cast<std::size_t>(bit >> 6)] |= 1ULL << (bit & 63);
   const std::size_t size = rows_ * words_;
   slices_[0] = {std::vector<std::uint64_t>(size, 0), std::vector<std::uint64_t>(size, 0),
                 std::vector<std::uint64_t>(size, 0), std::vector<std::uint32_t>(size, 0)};
@@ -127,6 +131,22 @@ void MarchingCubes::find_crossings(std::size_t n, std::size_t row, std::uint32_t
   }
 }
 
+// Crossings in the faces of an open volume: each is the end of two open edges, and has one to its name.
+std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row) const {
+  const auto is_end = [](std::int64_t at, std::int64_t size) { return at == 0 || at == size - 1; };
+  const bool end_slice = is_end(next_layer_ + static_cast<std::int64_t>(n) + 1, lattice_.dims[2]);
+  const bool end_row = is_end(static_cast<std::int64_t>(row) - 1, lattice_.dims[1]);
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < words_; ++w) {
+    const std::size_t at = row * words_ + w;
+    if (end_slice || end_row) count += ones(slices_[n + 1].cross_x[at]);
+    count += ones(slices_[n + 1].cross_y[at] & (end_slice ? kAll : end_mask_[w]));
+    count += ones(layers_[n].cross_z[at] & (end_row ? kAll : end_mask_[w]));
+  }
+  return count;
+}
+
 void MarchingCubes::number_row(std::size_t n, std::size_t row, std::uint32_t base) {
   for (std::size_t w = row * words_; w < (row + 1) * words_; ++w) {
     layers_[n].base[w] = base;
@@ -150,10 +170,15 @@ void MarchingCubes::number_vertices(std::size_t layers, SurfacePiece& piece) {
     throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(total) +
                      " vertices, expected fewer than 2^32: choose thinner slabs");
   }
+  std::atomic<std::uint64_t> on_border{0};
   executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
     const auto at = static_cast<std::size_t>(job);
     number_row(at / rows_, at % rows_, front_size_ + row_counts_[at]);
+    if (!options_.rule.closed) {
+      on_border.fetch_add(crossings_on_border(at / rows_, at % rows_), std::memory_order_relaxed);
+    }
   });
+  piece.open_edges = on_border;
   piece.positions.resize(total);
   piece.ids.resize(total);
   piece.normals.resize(options_.normals ? total : 0);

@@ -51,6 +51,7 @@ class MarchingCubes {
 
   void classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const;
   void find_crossings(std::size_t n, std::size_t row, std::uint32_t& count);
+  std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
   void number_row(std::size_t n, std::size_t row, std::uint32_t base);
   void number_vertices(std::size_t layers, SurfacePiece& piece);
   template <class T>
@@ -75,6 +76,7 @@ class MarchingCubes {
   std::vector<Slice> slices_;  // slices_[0] is the front left by the slab before
   std::vector<Layer> layers_;
   std::vector<std::uint32_t> row_counts_;
+  std::vector<std::uint64_t> end_mask_;  // per word: the first and the last sample of a row
   std::uint32_t front_size_ = 0;
 };
 

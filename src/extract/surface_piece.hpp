@@ -21,10 +21,12 @@ struct SurfacePiece {
   std::vector<std::uint32_t> incomplete;                // vertices that later pieces give more triangles
   bool manifold = true;  // a promise; without it vertices where the surface is not an oriented manifold are locked
   std::uint64_t cells_crossed = 0;
+  std::uint64_t open_edges = 0;  // of the whole surface, among the new vertices: one for each on a border
 
   void clear() {
     inherited = 0;
     cells_crossed = 0;
+    open_edges = 0;
     positions.clear();
     ids.clear();
     normals.clear();

@@ -1,22 +1,31 @@
 #include "measure/component_counter.hpp"
 
+#include <numeric>
 #include <utility>
 
 namespace isoweave {
 
-std::uint32_t ComponentCounter::add() {
-  const auto label = static_cast<std::uint32_t>(parent_.size());
-  parent_.push_back(label);
-  ++added_;
-  return label;
+std::uint32_t ComponentCounter::add(std::size_t count) {
+  const auto first = static_cast<std::uint32_t>(parent_.size());
+  parent_.resize(parent_.size() + count);
+  std::iota(parent_.begin() + first, parent_.end(), first);
+  added_ += count;
+  return first;
 }
 
+// The larger root comes under the smaller one, unless another thread has just moved it.
 void ComponentCounter::join(std::uint32_t a, std::uint32_t b) {
-  a = root(a);
-  b = root(b);
-  if (a == b) return;
-  parent_[b > a ? b : a] = b > a ? a : b;
-  ++joined_;
+  while (true) {
+    a = root(a);
+    b = root(b);
+    if (a == b) return;
+    if (a > b) std::swap(a, b);
+    std::uint32_t found = b;
+    if (std::atomic_ref(parent_[b]).compare_exchange_strong(found, a, std::memory_order_relaxed)) {
+      joined_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+  }
 }
 
 void ComponentCounter::compact(std::span<std::uint32_t*> labels) {
@@ -32,10 +41,15 @@ void ComponentCounter::compact(std::span<std::uint32_t*> labels) {
   for (std::uint32_t label = 0; label < roots; ++label) parent_[label] = label;
 }
 
+// Halves the paths that it walks.
 std::uint32_t ComponentCounter::root(std::uint32_t label) {
-  while (parent_[label] != label) {
-    parent_[label] = parent_[parent_[label]];
-    label = parent_[label];
+  const auto parent = [&](std::uint32_t of) { return std::atomic_ref(parent_[of]); };
+  std::uint32_t above = parent(label).load(std::memory_order_relaxed);
+  while (above != label) {
+    const std::uint32_t next = parent(above).load(std::memory_order_relaxed);
+    if (next != above) parent(label).store(next, std::memory_order_relaxed);
+    label = above;
+    above = next;
   }
   return label;
 }

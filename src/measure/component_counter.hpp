@@ -1,6 +1,7 @@
 // Connected components of a surface that is seen piece by piece.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,10 +12,10 @@ namespace isoweave {
 // Union-find over labels. compact() forgets labels that no longer matter, so memory follows the vertices held.
 class ComponentCounter {
  public:
-  // A new component of one vertex; returns its label.
-  std::uint32_t add();
+  // New components of one vertex each; returns the first of their consecutive labels.
+  std::uint32_t add(std::size_t count);
 
-  // The two labels name the same component from now on.
+  // The two labels name the same component from now on. May be called by several threads at the same time.
   void join(std::uint32_t a, std::uint32_t b);
 
   // Components so far.
@@ -31,7 +32,7 @@ class ComponentCounter {
 
   std::vector<std::uint32_t> parent_;
   std::uint64_t added_ = 0;
-  std::uint64_t joined_ = 0;
+  std::atomic<std::uint64_t> joined_{0};
 };
 
 }  // namespace isoweave

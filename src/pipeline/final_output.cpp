@@ -1,50 +1,64 @@
 #include "pipeline/final_output.hpp"
 
-#include <utility>
+#include "parallel/collect.hpp"
 
 namespace isoweave {
+namespace {
+
+constexpr std::int64_t kBlock = 4096;
+
+}  // namespace
 
 void FinalOutput::take(Simplifier& simplifier) {
   Zone& zone = simplifier.zone();
-  points_.clear();
-  normals_.clear();
-  triangles_.clear();
-  const std::vector<Index> final_triangles = simplifier.final_triangles();
-  for (const Index t : final_triangles) triangles_.push_back(write_triangle(zone, t));
-  sink_.append(points_, normals_, triangles_);
-  triangles_written_ += triangles_.size();
-  simplifier.drop(final_triangles);
-  if (components_.labels() > zone.vertices.size()) forget_components(zone);
+  const std::vector<Index> triangles = simplifier.final_triangles();
+  number_vertices(zone, triangles);
+  output_.add_triangles(triangles.size(), [&](std::size_t n, Index c) {
+    const Vertex& vertex = zone.vertices[zone.origin(half_edge(triangles[n], c))];
+    return OutputCorner{vertex.output, vertex.component, vertex.position};
+  });
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
+                     [&](std::int64_t n) { close_sides(zone, triangles[static_cast<std::size_t>(n)]); });
+  simplifier.drop(triangles);
+  if (output_.components().labels() > zone.vertices.size()) forget_components(zone);
 }
 
-std::array<std::uint64_t, 3> FinalOutput::write_triangle(Zone& zone, Index t) {
-  std::array<std::uint64_t, 3> numbers;
-  std::array<Point, 3> corners;
-  for (Index c = 0; c < 3; ++c) {
-    const Index h = half_edge(t, c);
-    const Index v = zone.origin(h);
-    Vertex& vertex = zone.vertices[v];
-    corners[c] = world_.point(vertex.position);
-    if (vertex.output == kNotWritten) {
-      vertex.output = vertices_written_++;
-      vertex.component = components_.add();
-      points_.push_back(corners[c]);
-      if (!zone.normals.empty()) normals_.push_back(world_.normal(zone.normals[v]));
+// Vertices that these triangles are the first to name, in memory order.
+void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangles) {
+  marks_.assign(zone.vertices.size(), 0);
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t n) {
+    for (const HalfEdge& side : zone.triangles[triangles[static_cast<std::size_t>(n)]].sides) {
+      if (zone.vertices[side.vertex].output != kNotWritten) continue;
+      std::atomic_ref(marks_[side.vertex]).store(1, std::memory_order_relaxed);
     }
-    numbers[c] = vertex.output;
-    const Index twin = zone.twin(h);
-    open_edges_ += twin == kNone;
-    if (exists(twin)) zone.set_twin(twin, kWritten);
+  });
+  collect(
+      executor_, static_cast<std::int64_t>(marks_.size()), kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+          if (marks_[v] != 0) list.push_back(v);
+        }
+      },
+      new_vertices_);
+  const std::uint64_t first = output_.vertices();
+  const std::uint32_t label = output_.add_vertices(
+      new_vertices_.size(), !zone.normals.empty(),
+      [&](std::size_t n) { return zone.vertices[new_vertices_[n]].position; },
+      [&](std::size_t n) { return zone.normals[new_vertices_[n]]; });
+  executor_.for_each(static_cast<std::int64_t>(new_vertices_.size()), kBlock, [&](std::int64_t n) {
+    Vertex& vertex = zone.vertices[new_vertices_[static_cast<std::size_t>(n)]];
+    vertex.output = first + static_cast<std::uint64_t>(n);
+    vertex.component = label + static_cast<std::uint32_t>(n);
+  });
+}
+
+// Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
+void FinalOutput::close_sides(Zone& zone, Index triangle) {
+  for (HalfEdge& side : zone.triangles[triangle].sides) {
+    const Index twin = std::atomic_ref(side.twin).load(std::memory_order_relaxed);
+    if (twin == kNone) open_edges_.fetch_add(1, std::memory_order_relaxed);
+    if (exists(twin)) std::atomic_ref(zone.half(twin).twin).store(kWritten, std::memory_order_relaxed);
   }
-  const Index first = zone.vertices[zone.origin(half_edge(t, 0))].component;
-  components_.join(first, zone.vertices[zone.origin(half_edge(t, 1))].component);
-  components_.join(first, zone.vertices[zone.origin(half_edge(t, 2))].component);
-  if (world_.mirrors()) {
-    std::swap(numbers[1], numbers[2]);
-    std::swap(corners[1], corners[2]);
-  }
-  digest_ += triangle_digest(corners[0], corners[1], corners[2]);
-  return numbers;
 }
 
 void FinalOutput::forget_components(Zone& zone) {
@@ -52,17 +66,7 @@ void FinalOutput::forget_components(Zone& zone) {
   for (Vertex& vertex : zone.vertices) {
     if (vertex.output != kNotWritten) labels.push_back(&vertex.component);
   }
-  components_.compact(labels);
-}
-
-void FinalOutput::report(MeshReport& report) const {
-  report.vertices = vertices_written_;
-  report.triangles = triangles_written_;
-  report.open_edges = open_edges_;
-  report.components = components_.count();
-  const std::uint64_t edges = (3 * triangles_written_ + open_edges_) / 2;
-  report.euler = static_cast<std::int64_t>(vertices_written_ + triangles_written_) - static_cast<std::int64_t>(edges);
-  report.digest = digest_;
+  output_.components().compact(labels);
 }
 
 }  // namespace isoweave

@@ -7,6 +7,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
 #include "pipeline/final_output.hpp"
+#include "pipeline/full_output.hpp"
 #include "pipeline/sweep.hpp"
 #include "volume/samples.hpp"
 
@@ -39,7 +40,8 @@ class VolumeSweep {
         voxel_(cube_root(volume_.geometry.spacing[0] * volume_.geometry.spacing[1] * volume_.geometry.spacing[2])),
         simplifier_(simplifier_options(), executor_, control.stop),
         world_(volume_.geometry, options.space),
-        output_(world_, sink),
+        output_(world_, sink, executor_, control.measure),
+        full_output_(world_, sink, executor_, control.measure),
         sink_(sink) {}
 
   MeshReport run() {
@@ -85,10 +87,14 @@ class VolumeSweep {
     report_.schedule = simplifier_.schedule();
     report_.error = options_.error.value * (options_.error.voxels ? voxel_ : 1);
     const bool turned = options_.space == OutputSpace::kLps || options_.space == OutputSpace::kRas;
+    simplifies_ = report_.error > 0 || !has_cells();
     if (turned && volume_.geometry.space == Space::kUnknown) {
       report_.warnings.push_back(volume_.path + ": the file does not say which space it is in; coordinates are kept");
     }
   }
+
+  // An open volume of one sample along an axis has crossings and no triangles.
+  bool has_cells() const { return options_.closed || std::ranges::min(volume_.dims) > 1; }
 
   // Layers of the next slab: as asked, or as many as hold kSlabTriangles going by what has been extracted so far.
   std::int64_t next_slab() const {
@@ -110,7 +116,7 @@ class VolumeSweep {
     const auto [first, end] = extractor_.slices_for(layers);
     const std::int64_t read = window_.advance(first, end);
     voxels_ += static_cast<std::uint64_t>(read * volume_.slice_samples());
-    measure_samples(read);
+    if (control_.measure) measure_samples(read);
     clock_.lap(report_.seconds_read);
 
     extractor_.extract(window_, layers, piece_);
@@ -121,23 +127,33 @@ class VolumeSweep {
     report_.vertices_extracted += piece_.positions.size();
     clock_.lap(report_.seconds_extract);
 
-    simplifier_.append(piece_);
     SlabRecord record;
-    record.live_triangles = simplifier_.live_triangles();
-    record.bytes = simplifier_.zone().bytes() + window_.bytes();
-    simplifier_.decide();
-    clock_.lap(report_.seconds_simplify);
-
-    output_.take(simplifier_);
-    output_.report(report_);
+    simplifies_ ? take_final(record) : take_all(record);
     clock_.lap(report_.seconds_write);
     record.layer = layers_ - extractor_.layers_left();
-    record.undecided_triangles = simplifier_.live_triangles();
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
     if (control_.progress) {
       control_.progress({record.layer, layers_, voxels_, record.live_triangles, record.final_triangles, record.bytes});
     }
+  }
+
+  void take_final(SlabRecord& record) {
+    simplifier_.append(piece_);
+    record.live_triangles = simplifier_.live_triangles();
+    record.bytes = simplifier_.zone().bytes() + window_.bytes();
+    simplifier_.decide();
+    clock_.lap(report_.seconds_simplify);
+    output_.take(simplifier_);
+    output_.report(report_);
+    record.undecided_triangles = simplifier_.live_triangles();
+  }
+
+  void take_all(SlabRecord& record) {
+    record.live_triangles = piece_.triangles.size();
+    record.bytes = window_.bytes();
+    full_output_.take(piece_);
+    full_output_.report(report_);
   }
 
   // Range of the slices just read, the last ones in the window.
@@ -152,7 +168,6 @@ class VolumeSweep {
 
   void finish_report() {
     report_simplifier(simplifier_, report_);
-    output_.report(report_);
     const double low = volume_.slope * range_.min + volume_.intercept;
     const double high = volume_.slope * range_.max + volume_.intercept;
     report_.min = volume_.slope > 0 || range_.empty() ? low : high;
@@ -179,6 +194,8 @@ class VolumeSweep {
   Simplifier simplifier_;
   World world_;
   FinalOutput output_;
+  FullOutput full_output_;
+  bool simplifies_ = true;
   MeshSink& sink_;
   SurfacePiece piece_;
   SampleRange range_;

@@ -87,7 +87,7 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   // A linked surface is measured as it leaves; around locked vertices only a look at the whole tells.
   const World world;
   Recorder recorder(sink);
-  FinalOutput output(world, report.locked_vertices > 0 ? recorder : sink);
+  FinalOutput output(world, report.locked_vertices > 0 ? recorder : sink, executor, control.measure);
   output.take(simplifier);
   report_simplifier(simplifier, report);
   output.report(report);

@@ -92,6 +92,38 @@ TEST(Surface, DistanceFollowsTheErrorAskedFor) {
   }
 }
 
+// The short way of an unsimplified surface, counted piece by piece, against a look at the whole.
+TEST(Surface, WithoutErrorIsWhatCheckSees) {
+  for (const char* kind : {"noise", "gyroid", "specks"}) {
+    for (const bool closed : {true, false}) {
+      for (const std::array<std::int64_t, 3> dims : {std::array<std::int64_t, 3>{70, 19, 23}, {9, 1, 12}, {2, 66, 2}}) {
+        for (const std::int64_t slab : {1, 7, 0}) {
+          GenerateOptions volume;
+          volume.kind = kind;
+          volume.dims = dims;
+          MeshOptions options;
+          options.error = {0, true};
+          options.closed = closed;
+          options.slab = slab;
+          const Result result = run(volume, options);
+          const MeshCheck check = check_mesh(result.mesh);
+          SCOPED_TRACE(std::string(kind) + (closed ? " closed" : " open") + ", slab " + std::to_string(slab) + ", " +
+                       std::to_string(dims[1]) + " rows");
+          EXPECT_EQ(result.report.triangles, check.triangles);
+          EXPECT_EQ(result.report.triangles, result.report.triangles_extracted);
+          EXPECT_EQ(result.report.vertices, check.vertices);
+          EXPECT_EQ(check.unused_vertices, 0u);
+          EXPECT_EQ(result.report.open_edges, check.open_edges);
+          EXPECT_EQ(result.report.components, check.components);
+          EXPECT_EQ(result.report.euler, check.euler);
+          EXPECT_EQ(result.report.digest, check.digest);
+          EXPECT_EQ(check.nonmanifold_edges + check.nonmanifold_vertices, 0u);
+        }
+      }
+    }
+  }
+}
+
 TEST(Surface, FineIsNearerThanFastAtEqualCount) {
   GenerateOptions volume;
   volume.kind = "noise";

@@ -1,0 +1,28 @@
+// The surface as it is extracted on its way out: what there is to do when nothing is simplified.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "extract/surface_piece.hpp"
+#include "pipeline/surface_output.hpp"
+
+namespace isoweave {
+
+class FullOutput {
+ public:
+  FullOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure)
+      : output_(world, sink, executor, measure) {}
+
+  // Writes a piece of a manifold surface.
+  void take(const SurfacePiece& piece);
+
+  void report(MeshReport& report) const { output_.report(open_edges_, report); }
+
+ private:
+  SurfaceOutput output_;
+  std::vector<OutputCorner> front_;  // vertices that the next piece names as well
+  std::uint64_t open_edges_ = 0;
+};
+
+}  // namespace isoweave

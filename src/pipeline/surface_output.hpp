@@ -1,0 +1,93 @@
+// Triangles on their way to the sink: their vertices are numbered, they are measured and handed over.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "isoweave/pipeline.hpp"
+#include "measure/component_counter.hpp"
+#include "parallel/parallel.hpp"
+#include "pipeline/world.hpp"
+
+namespace isoweave {
+
+// A vertex of a triangle on its way out.
+struct OutputCorner {
+  std::uint64_t number;  // in the output
+  std::uint32_t label;   // of its component
+  Vec3 position;
+};
+
+class SurfaceOutput {
+ public:
+  // measure: digest and components.
+  SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure)
+      : world_(world), sink_(sink), executor_(executor), measure_(measure) {}
+
+  std::uint64_t vertices() const { return vertices_; }
+  ComponentCounter& components() { return components_; }
+
+  // Adds vertices with consecutive numbers from vertices() on and consecutive labels from the one returned.
+  // position(n), normal(n): of the n-th of them, called by any thread.
+  template <class Position, class Normal>
+  std::uint32_t add_vertices(std::size_t count, bool normals, const Position& position, const Normal& normal) {
+    points_.resize(count);
+    normals_.resize(normals ? count : 0);
+    executor_.for_each(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t i) {
+      const auto n = static_cast<std::size_t>(i);
+      points_[n] = world_.point(position(n));
+      if (normals) normals_[n] = world_.normal(normal(n));
+    });
+    vertices_ += count;
+    return measure_ ? components_.add(count) : 0;
+  }
+
+  // Adds triangles and hands everything to the sink. corner(n, c): OutputCorner c of the n-th, called by any thread.
+  template <class CornerOf>
+  void add_triangles(std::size_t count, const CornerOf& corner) {
+    numbers_.resize(count);
+    executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t begin, std::int64_t end) {
+      std::uint64_t digest = 0;
+      for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+        std::array<OutputCorner, 3> corners{corner(n, 0), corner(n, 1), corner(n, 2)};
+        if (world_.mirrors()) std::swap(corners[1], corners[2]);
+        for (std::size_t c = 0; c < 3; ++c) numbers_[n][c] = corners[c].number;
+        if (measure_) digest += measure(corners);
+      }
+      digest_.fetch_add(digest, std::memory_order_relaxed);
+    });
+    triangles_ += count;
+    sink_.append(points_, normals_, numbers_);
+  }
+
+  // Fills in counts, Euler number, components and digest of what has been written.
+  void report(std::uint64_t open_edges, MeshReport& report) const;
+
+ private:
+  static constexpr std::int64_t kBlock = 4096;
+
+  std::uint64_t measure(const std::array<OutputCorner, 3>& corners) {
+    components_.join(corners[0].label, corners[1].label);
+    components_.join(corners[0].label, corners[2].label);
+    return triangle_digest(world_.point(corners[0].position), world_.point(corners[1].position),
+                           world_.point(corners[2].position));
+  }
+
+  const World& world_;
+  MeshSink& sink_;
+  const Executor& executor_;
+  bool measure_;
+  ComponentCounter components_;
+  std::vector<Point> points_;
+  std::vector<Point> normals_;
+  std::vector<std::array<std::uint64_t, 3>> numbers_;
+  std::uint64_t vertices_ = 0;
+  std::uint64_t triangles_ = 0;
+  std::atomic<std::uint64_t> digest_{0};
+};
+
+}  // namespace isoweave
