@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isoweave/mesh.hpp"
+#include "parallel/array.hpp"
 #include "slab/vec3.hpp"
 
 namespace isoweave {
@@ -14,10 +15,10 @@ namespace isoweave {
 // the order in which quadrics are summed. Indices are 32 bit: a piece holds fewer than 2^32 vertices.
 struct SurfacePiece {
   std::uint32_t inherited = 0;
-  std::vector<Vec3> positions;                          // of new vertices, physical lengths
-  std::vector<std::uint64_t> ids;                       // of new vertices, unique in the whole surface
-  std::vector<Point> normals;                           // of new vertices, unit or zero, outwards; or none
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+  Array<Vec3> positions;                          // of new vertices, physical lengths
+  Array<std::uint64_t> ids;                       // of new vertices, unique in the whole surface
+  Array<Point> normals;                           // of new vertices, unit or zero, outwards; or none
+  Array<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<std::uint32_t> incomplete;                // vertices that later pieces give more triangles
   bool manifold = true;  // a promise; without it vertices where the surface is not an oriented manifold are locked
   std::uint64_t cells_crossed = 0;
@@ -27,10 +28,10 @@ struct SurfacePiece {
     inherited = 0;
     cells_crossed = 0;
     open_edges = 0;
-    positions.clear();
-    ids.clear();
-    normals.clear();
-    triangles.clear();
+    positions.resize(0);
+    ids.resize(0);
+    normals.resize(0);
+    triangles.resize(0);
     incomplete.clear();
     manifold = true;
   }

@@ -1,5 +1,7 @@
 #include "pipeline/mesh_surface.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -31,6 +33,7 @@ double sum_areas(const TriangleMesh& mesh, std::int64_t begin, std::int64_t end)
 void make_piece(const TriangleMesh& mesh, const Executor& executor, SurfacePiece& piece, std::uint64_t& dropped) {
   measure::require_indices_in_range(mesh);
   piece.clear();
+  dropped = 0;
   piece.manifold = false;
   piece.positions.resize(mesh.vertices.size());
   piece.ids.resize(mesh.vertices.size());
@@ -39,8 +42,17 @@ void make_piece(const TriangleMesh& mesh, const Executor& executor, SurfacePiece
     piece.positions[v] = position_of(mesh.vertices[v]);
     piece.ids[v] = v;
   });
-  piece.triangles = mesh.triangles;
-  dropped = std::erase_if(piece.triangles, repeats_a_vertex);
+  piece.triangles.resize(mesh.triangles.size());
+  std::atomic<bool> any_repeats{false};
+  executor.for_each(static_cast<std::int64_t>(mesh.triangles.size()), kBlock, [&](std::int64_t n) {
+    const auto t = static_cast<std::size_t>(n);
+    piece.triangles[t] = mesh.triangles[t];
+    if (repeats_a_vertex(mesh.triangles[t])) any_repeats.store(true, std::memory_order_relaxed);
+  });
+  if (!any_repeats) return;
+  const auto kept = std::remove_if(piece.triangles.begin(), piece.triangles.end(), repeats_a_vertex);
+  dropped = static_cast<std::uint64_t>(piece.triangles.end() - kept);
+  piece.triangles.resize(piece.triangles.size() - dropped);
 }
 
 double mean_triangle_area(const TriangleMesh& mesh, const Executor& executor) {

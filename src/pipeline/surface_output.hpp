@@ -5,11 +5,11 @@
 #include <atomic>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "measure/component_counter.hpp"
+#include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "pipeline/world.hpp"
 
@@ -61,7 +61,8 @@ class SurfaceOutput {
       digest_.fetch_add(digest, std::memory_order_relaxed);
     });
     triangles_ += count;
-    sink_.append(points_, normals_, numbers_);
+    sink_.append({points_.data(), points_.size()}, {normals_.data(), normals_.size()},
+                 {numbers_.data(), numbers_.size()});
   }
 
   // Fills in counts, Euler number, components and digest of what has been written.
@@ -82,9 +83,9 @@ class SurfaceOutput {
   const Executor& executor_;
   bool measure_;
   ComponentCounter components_;
-  std::vector<Point> points_;
-  std::vector<Point> normals_;
-  std::vector<std::array<std::uint64_t, 3>> numbers_;
+  Array<Point> points_;
+  Array<Point> normals_;
+  Array<std::array<std::uint64_t, 3>> numbers_;
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
   std::atomic<std::uint64_t> digest_{0};

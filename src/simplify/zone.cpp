@@ -145,7 +145,8 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
   for (std::size_t n = 0; n < ends; ++n) start[n + 1] += start[n];
   std::vector<Index> fill(start.begin(), start.end() - 1);
-  std::vector<EdgeSide> sides(start.back());
+  Array<EdgeSide> sides;
+  sides.resize(start.back());
   executor.for_each(count, kBlock, [&](std::int64_t n) {
     each_side(n, [&](Index a, Index b, Index h) {
       const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
@@ -154,7 +155,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
   executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
     const auto end = static_cast<std::size_t>(n);
-    pair_sides(std::span(sides).subspan(start[end], start[end + 1] - start[end]));
+    pair_sides({sides.data() + start[end], start[end + 1] - start[end]});
   });
 }
 
