@@ -237,9 +237,10 @@ bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {
   return options_.rule.closed || (k >= 0 && k + 1 < lattice_.dims[2] && j >= 0 && j + 1 < lattice_.dims[1]);
 }
 
-// Calls visit(bit, case) for every cell of a cell row that the surface crosses.
-template <class Visit>
-void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, Visit&& visit) const {
+// Calls visit(bit, case) for every cell of a cell row that the surface crosses, and enter_word(w) before the first of a
+// word.
+template <class EnterWord, class Visit>
+void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const {
   if (!has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) return;
   const std::uint64_t* rows[4] = {&slices_[n].inside[row * words_], &slices_[n].inside[(row + 1) * words_],
                                   &slices_[n + 1].inside[row * words_], &slices_[n + 1].inside[(row + 1) * words_]};
@@ -252,7 +253,9 @@ void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, Visit&& vis
       any |= rows[r][w] | shifted[r];
       all &= rows[r][w] & shifted[r];
     }
-    for_each_bit(any & ~all & cell_mask_[w], w, [&](std::int64_t bit) {
+    const std::uint64_t active = any & ~all & cell_mask_[w];
+    if (active != 0) enter_word(w);
+    for_each_bit(active, w, [&](std::int64_t bit) {
       const auto pair = [&](std::size_t r) {
         return static_cast<std::uint32_t>((rows[r][w] >> (bit & 63) & 1) | (shifted[r] >> (bit & 63) & 1) << 1);
       };
@@ -261,15 +264,22 @@ void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, Visit&& vis
   }
 }
 
-// Number of the vertex on an edge of the cell at `bit` of cell row `row` of layer n.
-std::uint32_t MarchingCubes::vertex_at(std::size_t n, std::size_t row, std::int64_t bit, int edge) const {
-  const CellEdge e = kEdgeTable[static_cast<std::size_t>(edge)];
-  const std::int64_t x = bit + e.dx;
-  const std::size_t at = (row + e.dy) * words_ + static_cast<std::size_t>(x >> 6);
-  if (e.axis == 2) return layers_[n].base[at] + ones(layers_[n].cross_z[at] & below(x));
-  const Slice& slice = slices_[n + e.dz];
-  if (e.axis == 0) return slice.base[at] + ones(slice.cross_x[at] & below(x));
-  return slice.base[at] + ones(slice.cross_x[at]) + ones(slice.cross_y[at] & below(x));
+MarchingCubes::CellWord MarchingCubes::cell_word(std::size_t n, std::size_t row, std::size_t w) const {
+  CellWord word{};
+  for (std::size_t e = 0; e < kEdgeTable.size(); ++e) {
+    const CellEdge edge = kEdgeTable[e];
+    const Slice& slice = slices_[n + edge.dz];
+    const auto base_at = [&](std::size_t at) {
+      if (edge.axis == 2) return layers_[n].base[at];
+      return slice.base[at] + (edge.axis == 1 ? ones(slice.cross_x[at]) : 0);
+    };
+    const std::size_t at = (row + edge.dy) * words_ + w;
+    const auto& crossings = edge.axis == 2 ? layers_[n].cross_z : edge.axis == 1 ? slice.cross_y : slice.cross_x;
+    word.crossings[e] = crossings[at];
+    word.base[e] = base_at(at);
+    if (w + 1 < words_) word.next_base[e] = base_at(at + 1);
+  }
+  return word;
 }
 
 // Counts triangles per cell row, then writes them in lattice order.
@@ -279,10 +289,12 @@ void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) cons
   const auto jobs = static_cast<std::int64_t>(counts.size());
   executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
     const auto at = static_cast<std::size_t>(job);
-    for_active_cells(at / rows_, at % rows_, [&](std::int64_t, std::uint32_t cell) {
-      counts[at] += kCaseTable[cell].triangles;
-      ++cells[at];
-    });
+    for_active_cells(
+        at / rows_, at % rows_, [](std::size_t) {},
+        [&](std::int64_t, std::uint32_t cell) {
+          counts[at] += kCaseTable[cell].triangles;
+          ++cells[at];
+        });
   });
   for (const std::uint32_t crossed : cells) piece.cells_crossed += crossed;
   piece.triangles.resize(exclusive_scan(counts));
@@ -291,12 +303,22 @@ void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) cons
     const std::size_t n = at / rows_;
     const std::size_t row = at % rows_;
     auto* out = piece.triangles.data() + counts[at];
-    for_active_cells(n, row, [&](std::int64_t bit, std::uint32_t cell) {
-      const CellCase& shape = kCaseTable[cell];
-      for (std::size_t t = 0; t < shape.triangles; ++t, ++out) {
-        for (std::size_t c = 0; c < 3; ++c) (*out)[c] = vertex_at(n, row, bit, shape.edges[3 * t + c]);
-      }
-    });
+    CellWord word{};
+    for_active_cells(
+        n, row, [&](std::size_t w) { word = cell_word(n, row, w); },
+        [&](std::int64_t bit, std::uint32_t cell) {
+          const bool last_of_word = (bit & 63) == 63;
+          const std::array<std::uint64_t, 2> before{below(bit), below(bit) << 1 | 1};
+          const auto vertex = [&](std::size_t e) {
+            const std::size_t dx = kEdgeTable[e].dx;
+            if (last_of_word && dx == 1) return word.next_base[e];
+            return word.base[e] + ones(word.crossings[e] & before[dx]);
+          };
+          const CellCase& shape = kCaseTable[cell];
+          for (std::size_t t = 0; t < shape.triangles; ++t, ++out) {
+            for (std::size_t c = 0; c < 3; ++c) (*out)[c] = vertex(static_cast<std::size_t>(shape.edges[3 * t + c]));
+          }
+        });
   });
 }
 

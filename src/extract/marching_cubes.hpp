@@ -5,6 +5,7 @@
 // crossing is computed once, found by its lattice position, and numbered in lattice order.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -49,6 +50,13 @@ class MarchingCubes {
     std::vector<std::uint32_t> base;
   };
 
+  // The twelve edges of the cells of one word: their crossings, the number of the word's first, and of the next word's.
+  struct CellWord {
+    std::array<std::uint64_t, 12> crossings;
+    std::array<std::uint32_t, 12> base;
+    std::array<std::uint32_t, 12> next_base;
+  };
+
   void classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const;
   void find_crossings(std::size_t n, std::size_t row, std::uint32_t& count);
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
@@ -59,9 +67,9 @@ class MarchingCubes {
   void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
   void list_front(SurfacePiece& piece);
   bool has_cells(std::int64_t k, std::size_t row) const;
-  template <class Visit>
-  void for_active_cells(std::size_t n, std::size_t row, Visit&& visit) const;
-  std::uint32_t vertex_at(std::size_t n, std::size_t row, std::int64_t bit, int edge) const;
+  template <class EnterWord, class Visit>
+  void for_active_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const;
+  CellWord cell_word(std::size_t n, std::size_t row, std::size_t w) const;
 
   Lattice lattice_;
   SampleType type_;

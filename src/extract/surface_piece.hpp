@@ -19,7 +19,7 @@ struct SurfacePiece {
   Array<std::uint64_t> ids;                       // of new vertices, unique in the whole surface
   Array<Point> normals;                           // of new vertices, unit or zero, outwards; or none
   Array<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
-  std::vector<std::uint32_t> incomplete;                // vertices that later pieces give more triangles
+  std::vector<std::uint32_t> incomplete;          // vertices that later pieces give more triangles
   bool manifold = true;  // a promise; without it vertices where the surface is not an oriented manifold are locked
   std::uint64_t cells_crossed = 0;
   std::uint64_t open_edges = 0;  // of the whole surface, among the new vertices: one for each on a border
