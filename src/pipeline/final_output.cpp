@@ -13,10 +13,15 @@ void FinalOutput::take(Simplifier& simplifier) {
   Zone& zone = simplifier.zone();
   const std::vector<Index> triangles = simplifier.final_triangles();
   number_vertices(zone, triangles);
-  output_.add_triangles(triangles.size(), [&](std::size_t n, Index c) {
-    const Vertex& vertex = zone.vertices[zone.origin(half_edge(triangles[n], c))];
-    return OutputCorner{vertex.output, vertex.component, vertex.position};
-  });
+  const auto vertex = [&](std::size_t n, std::size_t c) -> const Vertex& {
+    return zone.vertices[zone.triangles[triangles[n]].sides[c].vertex];
+  };
+  output_.add_triangles(
+      triangles.size(), [&](std::size_t n, std::size_t c) { return vertex(n, c).output; },
+      [&](std::size_t n, std::size_t c) {
+        const Vertex& v = vertex(n, c);
+        return OutputCorner{v.output, v.component, v.position};
+      });
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
                      [&](std::int64_t n) { close_sides(zone, triangles[static_cast<std::size_t>(n)]); });
   simplifier.drop(triangles);

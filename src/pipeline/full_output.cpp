@@ -12,8 +12,13 @@ void FullOutput::take(const SurfacePiece& piece) {
     const std::uint32_t n = v - piece.inherited;
     return OutputCorner{first_number + n, first_label + n, piece.positions[n]};
   };
-  output_.add_triangles(piece.triangles.size(),
-                        [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
+  output_.add_triangles(
+      piece.triangles.size(),
+      [&](std::size_t n, std::size_t c) {
+        const std::uint32_t v = piece.triangles[n][c];
+        return v < piece.inherited ? front_[v].number : first_number + (v - piece.inherited);
+      },
+      [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
   std::vector<OutputCorner> front;
   front.reserve(piece.incomplete.size());
   for (const std::uint32_t v : piece.incomplete) front.push_back(vertex(v));

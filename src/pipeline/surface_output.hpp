@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <utility>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
@@ -46,17 +45,18 @@ class SurfaceOutput {
     return measure_ ? components_.add(count) : 0;
   }
 
-  // Adds triangles and hands everything to the sink. corner(n, c): OutputCorner c of the n-th, called by any thread.
-  template <class CornerOf>
-  void add_triangles(std::size_t count, const CornerOf& corner) {
+  // Adds triangles and hands everything to the sink. number(n, c): of corner c of the n-th in the output; corner(n, c):
+  // all of it. Called by any thread.
+  template <class NumberOf, class CornerOf>
+  void add_triangles(std::size_t count, const NumberOf& number, const CornerOf& corner) {
+    const std::array<std::size_t, 3> turn =
+        world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
     numbers_.resize(count);
     executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t begin, std::int64_t end) {
       std::uint64_t digest = 0;
       for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-        std::array<OutputCorner, 3> corners{corner(n, 0), corner(n, 1), corner(n, 2)};
-        if (world_.mirrors()) std::swap(corners[1], corners[2]);
-        for (std::size_t c = 0; c < 3; ++c) numbers_[n][c] = corners[c].number;
-        if (measure_) digest += measure(corners);
+        numbers_[n] = {number(n, turn[0]), number(n, turn[1]), number(n, turn[2])};
+        if (measure_) digest += measure({corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])});
       }
       digest_.fetch_add(digest, std::memory_order_relaxed);
     });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 namespace isoweave {
 
@@ -16,7 +17,7 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end) {
   }
   const std::int64_t count = end - end_;
   buffer_.resize(kept + static_cast<std::size_t>(count) * bytes);
-  if (count > 0) source_.read(end_, count, std::span(buffer_).subspan(kept));
+  if (count > 0) source_.read(end_, count, std::span(buffer_.data(), buffer_.size()).subspan(kept));
   first_ = first;
   end_ = end;
   return count;

@@ -3,16 +3,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "isoweave/volume.hpp"
+#include "parallel/array.hpp"
 
 namespace isoweave {
 
 // Holds slices [first, end) in the file's own sample type. Memory: (end - first) * slice_bytes.
 class SliceWindow {
  public:
-  explicit SliceWindow(SliceSource& source) : source_(source) {}
+  explicit SliceWindow(SliceSource& source) : source_(source), slice_bytes_(source.info().slice_bytes()) {}
 
   const VolumeInfo& info() const { return source_.info(); }
   std::int64_t end() const { return end_; }
@@ -24,12 +24,13 @@ class SliceWindow {
 
   // Samples of slice k, which must be held.
   const std::byte* slice(std::int64_t k) const {
-    return buffer_.data() + static_cast<std::size_t>(k - first_) * source_.info().slice_bytes();
+    return buffer_.data() + static_cast<std::size_t>(k - first_) * slice_bytes_;
   }
 
  private:
   SliceSource& source_;
-  std::vector<std::byte> buffer_;
+  std::size_t slice_bytes_;
+  Array<std::byte> buffer_;
   std::int64_t first_ = 0;
   std::int64_t end_ = 0;
 };
