@@ -57,7 +57,6 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
   front_ = std::move(front);
   settle_vertices(executor);
-  find_open_half_edges(first_triangle, executor);
   settle_edges(first_triangle, executor);
 }
 
@@ -205,7 +204,8 @@ std::uint32_t Zone::count_fan(Index v) const {
   return faces;
 }
 
-// The open half-edges that a piece can close, with the numbers that it gives to their ends.
+// The half-edges that a piece can bring a twin for, with the numbers that it gives to their ends: only a triangle
+// between incomplete vertices can.
 std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece) const {
   std::vector<std::pair<Index, Index>> numbers;  // of the front, by vertex
   for (Index n = 0; n < piece.inherited; ++n) numbers.emplace_back(front_[n], n);
@@ -214,7 +214,11 @@ std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece)
     return std::lower_bound(numbers.begin(), numbers.end(), std::pair<Index, Index>(v, 0))->second;
   };
   std::vector<std::array<Index, 3>> sides;
-  for (const Index h : open_half_edges_) sides.push_back({number(origin(h)), number(destination(h)), h});
+  for (const Index h : unkeyed_edges_) {
+    const bool open = twin(h) == kNone && states[origin(h)] == VertexState::kIncomplete &&
+                      states[destination(h)] == VertexState::kIncomplete;
+    if (open) sides.push_back({number(origin(h)), number(destination(h)), h});
+  }
   return sides;
 }
 
@@ -230,27 +234,6 @@ void Zone::settle_vertices(const Executor& executor) {
     start_at_border(v);
     initial_quadric(v);
   });
-}
-
-// Half-edges that the next piece may bring a twin for: only a triangle between incomplete vertices can.
-void Zone::find_open_half_edges(Index first_triangle, const Executor& executor) {
-  const auto closed = [&](Index h) {
-    return twin(h) != kNone || states[origin(h)] != VertexState::kIncomplete ||
-           states[destination(h)] != VertexState::kIncomplete;
-  };
-  std::erase_if(open_half_edges_, closed);
-  std::vector<Index> open;
-  collect(
-      executor, triangle_count() - first_triangle, kBlock,
-      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
-        for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
-          for (Index c = 0; c < 3; ++c) {
-            if (!closed(half_edge(t, c))) list.push_back(half_edge(t, c));
-          }
-        }
-      },
-      open);
-  open_half_edges_.insert(open_half_edges_.end(), open.begin(), open.end());
 }
 
 // Turns v's start back to the half-edge without a twin, if v lies on a border.
@@ -414,7 +397,6 @@ void Zone::compact(const Executor& executor) {
   new_vertex.apply(states);
   if (!normals.empty()) new_vertex.apply(normals);
   for (Index& v : front_) move_vertex(v);
-  for (Index& h : open_half_edges_) move_half_edge(h);
   for (Index& h : unkeyed_edges_) move_half_edge(h);
   settled.clear();
 }
@@ -423,7 +405,7 @@ std::uint64_t Zone::bytes() const {
   return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turns.capacity() * (sizeof(Turn) + sizeof(Key)) + normals.capacity() * sizeof(Point) +
          triangles.capacity() * sizeof(Triangle) +
-         (front_.capacity() + open_half_edges_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) *
+         (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) *
              sizeof(Index);
 }
 

@@ -182,7 +182,6 @@ class Zone {
   std::uint32_t count_fan(Index v) const;
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(const Executor& executor);
-  void find_open_half_edges(Index first_triangle, const Executor& executor);
   void start_at_border(Index v);
   void initial_quadric(Index v);
   Quadric face_planes(Index v) const;
@@ -195,8 +194,7 @@ class Zone {
 
   ZoneOptions options_;
   std::vector<Index> front_;            // incomplete vertices, in the order of the piece that named them
-  std::vector<Index> open_half_edges_;  // without twin, between incomplete vertices: the next piece may bring it
-  std::vector<Index> unkeyed_edges_;    // an end incomplete
+  std::vector<Index> unkeyed_edges_;  // an end incomplete
 };
 
 }  // namespace isoweave
