@@ -4,9 +4,9 @@
 
 namespace isoweave {
 
-extern const Kernels kPortableKernels;
-extern const Kernels kAvx2Kernels;
-extern const Kernels kAvx512Kernels;
+const Kernels& portable_kernels();
+const Kernels& avx2_kernels();
+const Kernels& avx512_kernels();
 
 void measure(const Zone& zone, Star& star, Fan& fan) {
   star.pad(star.neighbour[star.border ? star.count() - 1 : 0]);
@@ -15,20 +15,20 @@ void measure(const Zone& zone, Star& star, Fan& fan) {
 }
 
 std::span<const Kernels* const> all_kernels() {
-  static const std::vector<const Kernels*> all = [] {
-    std::vector<const Kernels*> list{&kPortableKernels};
+  static const std::vector<const Kernels*> kAll = [] {
+    std::vector<const Kernels*> list{&portable_kernels()};
 #ifdef ISOWEAVE_X86
-    if (__builtin_cpu_supports("avx2")) list.push_back(&kAvx2Kernels);
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) list.push_back(&kAvx512Kernels);
+    if (__builtin_cpu_supports("avx2")) list.push_back(&avx2_kernels());
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) list.push_back(&avx512_kernels());
 #endif
     return list;
   }();
-  return all;
+  return kAll;
 }
 
 const Kernels& kernels() {
-  static const Kernels& best = *all_kernels().back();
-  return best;
+  static const Kernels& kBest = *all_kernels().back();
+  return kBest;
 }
 
 }  // namespace isoweave

@@ -3,6 +3,9 @@
 
 namespace isoweave {
 
-extern constexpr Kernels kAvx2Kernels = KernelsInLanes<4>::table("avx2");
+const Kernels& avx2_kernels() {
+  static constexpr Kernels kTable = KernelsInLanes<4>::table("avx2");
+  return kTable;
+}
 
 }  // namespace isoweave

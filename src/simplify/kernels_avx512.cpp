@@ -3,6 +3,9 @@
 
 namespace isoweave {
 
-extern constexpr Kernels kAvx512Kernels = KernelsInLanes<8>::table("avx512");
+const Kernels& avx512_kernels() {
+  static constexpr Kernels kTable = KernelsInLanes<8>::table("avx512");
+  return kTable;
+}
 
 }  // namespace isoweave

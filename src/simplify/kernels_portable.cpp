@@ -2,6 +2,9 @@
 
 namespace isoweave {
 
-extern constexpr Kernels kPortableKernels = KernelsInLanes<2>::table("portable");
+const Kernels& portable_kernels() {
+  static constexpr Kernels kTable = KernelsInLanes<2>::table("portable");
+  return kTable;
+}
 
 }  // namespace isoweave

@@ -25,15 +25,23 @@ class LocalMinima::Worker {
   // owners: nullptr when this is the only worker.
   void begin(std::vector<std::uint16_t>* owners) { owners_ = owners; }
 
+  // Wakes those that v no longer comes before; the others go on waiting for it.
   void wake_waiters(Index v) {
-    Turn& turn = zone_.turns[v];
-    for (Index w = turn.first_waiter; w != kNone;) {
-      const Index after = zone_.turns[w].next_waiter;
-      waits_for(w).store(kNone, std::memory_order_release);
-      todo_.push_back(w);
+    Index kept = kNone;
+    for (Index w = zone_.turns[v].first_waiter; w != kNone;) {
+      Turn& waiter = zone_.turns[w];
+      const Index after = waiter.next_waiter;
+      const Key key = std::atomic_ref(zone_.turn_keys[w]).load(std::memory_order_relaxed);
+      if (zone_.turn_keys[v] < key && cost_of(key) <= zone_.options().retire) {
+        waiter.next_waiter = kept;
+        kept = w;
+      } else {
+        waits_for(w).store(kNone, std::memory_order_release);
+        todo_.push_back(w);
+      }
       w = after;
     }
-    turn.first_waiter = kNone;
+    zone_.turns[v].first_waiter = kept;
   }
 
   // Serves the vertex and everything that follows from it.
@@ -167,9 +175,9 @@ class LocalMinima::Worker {
     }
     const Star& merged = decider_.first();
     const Index gone = merged.vertex == u ? v : u;
-    wake_waiters(gone);
-    zone_.turn_keys[gone] = kNoTurn;
+    std::atomic_ref(zone_.turn_keys[gone]).store(kNoTurn, std::memory_order_relaxed);
     zone_.turns[gone].edge = kNone;
+    wake_waiters(gone);
     renew(merged.vertex);
     // Edges that were the turn of their other end have another key now.
     for (int n = 0; n < decider_.changed_count(); ++n) {

@@ -1,5 +1,7 @@
 #include "simplify/turns.hpp"
 
+#include <atomic>
+
 namespace isoweave {
 namespace {
 
@@ -36,7 +38,7 @@ void renew_turn(Zone& zone, Index v) {
     before = h;
     h = halves[previous(h)].twin;
   }
-  zone.turn_keys[v] = least;
+  std::atomic_ref(zone.turn_keys[v]).store(least, std::memory_order_relaxed);
   zone.turns[v].edge = edge;
 }
 

@@ -10,7 +10,8 @@ namespace isoweave {
 inline constexpr Key kUnknownTurn = 0;  // comes before all others
 inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
 
-// Sets v's turn from its edges. v must be complete or final and still there.
+// Sets v's turn from its edges. v must be complete or final and still there. Whoever does not own v may read its key
+// meanwhile, as an atomic.
 void renew_turn(Zone& zone, Index v);
 
 // Turns of all vertices.

@@ -405,8 +405,7 @@ std::uint64_t Zone::bytes() const {
   return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turns.capacity() * (sizeof(Turn) + sizeof(Key)) + normals.capacity() * sizeof(Point) +
          triangles.capacity() * sizeof(Triangle) +
-         (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) *
-             sizeof(Index);
+         (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }
 
 }  // namespace isoweave

@@ -193,7 +193,7 @@ class Zone {
   void give_keys(EdgeBatch& batch);
 
   ZoneOptions options_;
-  std::vector<Index> front_;            // incomplete vertices, in the order of the piece that named them
+  std::vector<Index> front_;          // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;  // an end incomplete
 };
 
