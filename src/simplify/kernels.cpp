@@ -27,8 +27,8 @@ std::span<const Kernels* const> all_kernels() {
 }
 
 const Kernels& kernels() {
-  static const Kernels& kBest = *all_kernels().back();
-  return kBest;
+  static const Kernels& best = *all_kernels().back();
+  return best;
 }
 
 }  // namespace isoweave

@@ -26,27 +26,24 @@ class KernelsInLanes {
     BasicQuadric<Real> quadric;
   };
 
-  // The first kColumns doubles of every vertex, by columns.
+  // The first kColumns doubles of every vertex, by columns. What lies behind them may be changing.
   template <std::size_t kColumns, class VertexOf>
-  [[gnu::always_inline]] static void load_columns(const VertexOf& vertex_of, Real* columns) {
-    static_assert(offsetof(Vertex, position) == 0 && offsetof(Vertex, quadric) == sizeof(Vec3));
+  [[gnu::always_inline]] static void load_vertices(const VertexOf& vertex_of, Real* columns) {
+    static_assert(offsetof(Vertex, position) == 0 && offsetof(Vertex, quadric) == 4 * sizeof(double));
+    constexpr std::size_t kWidth = std::min<std::size_t>(N, 4);
     const double* from[N];
     unrolled<N>([&](auto n) { from[n] = reinterpret_cast<const double*>(vertex_of(n)); });
-    unrolled<(kColumns + N - 1) / N>([&](auto block) {
-      Real rows[N];
-      unrolled<N>([&](auto n) { rows[n] = Real::load(from[n] + block * N); });
-      transpose<N>(rows);
-      unrolled<N>([&](auto n) {
-        if constexpr (block * N + n < kColumns) columns[block * N + n] = rows[n];
-      });
-    });
+    unrolled<kColumns / kWidth>(
+        [&](auto n) { isoweave::load_columns<kWidth>(from, n * kWidth, columns + n * kWidth); });
+    constexpr std::size_t kRest = kColumns % kWidth;
+    if constexpr (kRest > 0) isoweave::load_columns<kRest>(from, kColumns - kRest, columns + kColumns - kRest);
   }
 
   template <class VertexOf>
   [[gnu::always_inline]] static Ends load_ends(const VertexOf& vertex_of) {
-    Real c[13];
-    load_columns<13>(vertex_of, c);
-    return {{c[0], c[1], c[2]}, {c[3], c[4], c[5], c[6], c[7], c[8], {c[9], c[10], c[11]}, c[12]}};
+    Real c[14];
+    load_vertices<14>(vertex_of, c);
+    return {{c[0], c[1], c[2]}, {c[4], c[5], c[6], c[7], c[8], c[9], {c[10], c[11], c[12]}, c[13]}};
   }
 
   static void edge_costs(std::span<const EdgeEnds> edges, CostBits* costs) {
@@ -67,8 +64,8 @@ class KernelsInLanes {
     const Vec from{centre.x, centre.y, centre.z};
     std::size_t end = 0;
     for (; end < count; end += N) {
-      Real c[3];
-      load_columns<3>([&](std::size_t n) { return vertices + neighbours[end + n]; }, c);
+      Real c[4];
+      load_vertices<4>([&](std::size_t n) { return vertices + neighbours[end + n]; }, c);
       const Vec to = Vec{c[0], c[1], c[2]} - from;
       to.x.store(fan.x + end);
       to.y.store(fan.y + end);
@@ -108,7 +105,7 @@ class KernelsInLanes {
       unrolled<kColumns / N>([&](auto block) {
         Real rows[N];
         unrolled<N>([&](auto n) { rows[n] = columns[block * N + n]; });
-        transpose<N>(rows);
+        transpose<N, N>(rows);
         unrolled<N>([&](auto n) { total[block] = total[block] + rows[n]; });
       });
       unrolled<N>([&](auto n) { normal_z += fan.normal_z[begin + n]; });

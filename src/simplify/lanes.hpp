@@ -85,11 +85,11 @@ bool all(typename Lanes<N>::Mask mask) {
   return both != 0;
 }
 
-// Rows become columns: in steps, blocks of half the size change places across the diagonal.
-template <std::size_t N>
-[[gnu::always_inline]] inline void transpose(Lanes<N> (&rows)[N]) {
+// Rows become columns in every group of W lanes: in steps, blocks of half the size change places across the diagonal.
+template <std::size_t N, std::size_t W>
+[[gnu::always_inline]] inline void transpose(Lanes<N> (&rows)[W]) {
   const auto exchange = [&]<std::size_t... Lane>(auto half, std::index_sequence<Lane...>) {
-    unrolled<N>([&](auto n) {
+    unrolled<W>([&](auto n) {
       if constexpr ((n & half) == 0) {
         const auto a = rows[n].v;
         const auto b = rows[n + half].v;
@@ -99,9 +99,31 @@ template <std::size_t N>
     });
   };
   constexpr auto kAll = std::make_index_sequence<N>();
-  if constexpr (N > 4) exchange(std::integral_constant<std::size_t, 4>(), kAll);
-  if constexpr (N > 2) exchange(std::integral_constant<std::size_t, 2>(), kAll);
+  if constexpr (W > 4) exchange(std::integral_constant<std::size_t, 4>(), kAll);
+  if constexpr (W > 2) exchange(std::integral_constant<std::size_t, 2>(), kAll);
   exchange(std::integral_constant<std::size_t, 1>(), kAll);
+}
+
+// W doubles from each of `Count` places: from[row], from[row + W], ...
+template <std::size_t W, std::size_t Count>
+[[gnu::always_inline]] inline auto load_rows(const double* const* from, std::size_t row, std::size_t offset) {
+  if constexpr (Count == 1) {
+    return Lanes<W>::load(from[row] + offset).v;
+  } else {
+    const auto a = load_rows<W, Count / 2>(from, row, offset);
+    const auto b = load_rows<W, Count / 2>(from, row + W * Count / 2, offset);
+    return [&]<std::size_t... Lane>(std::index_sequence<Lane...>) { return __builtin_shufflevector(a, b, Lane...); }
+    (std::make_index_sequence<W * Count>());
+  }
+}
+
+// The W doubles that lie `offset` doubles after each of N places, by columns. Reads nothing else.
+template <std::size_t W, std::size_t N>
+[[gnu::always_inline]] inline void load_columns(const double* const (&from)[N], std::size_t offset, Lanes<N>* columns) {
+  Lanes<N> rows[W];
+  unrolled<W>([&](auto n) { rows[n] = Lanes<N>(load_rows<W, N / W>(from, n, offset)); });
+  transpose<N, W>(rows);
+  unrolled<W>([&](auto n) { columns[n] = rows[n]; });
 }
 
 }  // namespace isoweave

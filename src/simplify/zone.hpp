@@ -42,8 +42,8 @@ inline constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
 
 struct alignas(64) Vertex {
   Vec3 position;
-  Quadric quadric;  // relative to position
   std::uint64_t id = 0;
+  Quadric quadric;                     // relative to position
   std::uint64_t output = kNotWritten;  // number in the output
   Index half_edge = kNone;  // one that starts here; on a border the one without a twin; kNone: the vertex is gone
   Index component = 0;      // of the written surface, once written
