@@ -1,5 +1,5 @@
 // The kernels in lanes of N doubles. Each instruction set instantiates them for an N of its own, in a source file of
-// its own: code for one set can never stand in for that of another.
+// its own: the instances have different names, so that the linker keeps all of them.
 #pragma once
 
 #include <algorithm>
