@@ -1,5 +1,6 @@
 // A growing array for passes that fill what they have asked for: resize() leaves new elements as they are, so that the
-// threads that fill them touch their pages first. Large ones ask for huge pages: walks jump about in them.
+// threads that fill them touch their pages first. Large ones ask for huge pages, as walks jump about in them, and grow
+// in place, as two copies of the largest would be the peak of a run.
 #pragma once
 
 #include <sys/mman.h>
@@ -41,20 +42,35 @@ class Array {
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
   struct Free {
-    void operator()(T* memory) const { std::free(memory); }
+    std::size_t mapped = 0;  // bytes; 0: from the heap
+    void operator()(T* memory) const { mapped > 0 ? void(munmap(memory, mapped)) : std::free(memory); }
   };
 
   void reserve(std::size_t capacity) {
-    const std::size_t wanted = capacity * sizeof(T);
-    const std::size_t alignment = wanted >= 2 * kHugePage ? kHugePage : 64;
-    const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
-    std::unique_ptr<T, Free> memory(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
+    const std::size_t bytes = capacity * sizeof(T);
+    bytes < kHugePage ? take_from_heap((bytes + 63) / 64 * 64) : map((bytes + kHugePage - 1) / kHugePage * kHugePage);
+  }
+
+  void take_from_heap(std::size_t bytes) {
+    T* const memory = static_cast<T*>(std::aligned_alloc(64, bytes));
     if (memory == nullptr) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-    if (alignment == kHugePage) madvise(memory.get(), bytes, MADV_HUGEPAGE);  // a wish: small pages do as well
-#endif
-    if (size_ > 0) std::memcpy(memory.get(), data_.get(), size_ * sizeof(T));
-    data_ = std::move(memory);
+    move_to(memory, bytes, 0);
+  }
+
+  void map(std::size_t bytes) {
+    const std::size_t mapped = data_.get_deleter().mapped;
+    void* const memory = mapped > 0 ? mremap(data_.get(), mapped, bytes, MREMAP_MAYMOVE)
+                                    : mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    if (mapped > 0) data_.release();
+    madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: small pages do as well
+    move_to(static_cast<T*>(memory), bytes, bytes);
+  }
+
+  // Takes the elements along unless the memory has them already.
+  void move_to(T* memory, std::size_t bytes, std::size_t mapped) {
+    if (data_ != nullptr) std::memcpy(memory, data_.get(), size_ * sizeof(T));
+    data_ = std::unique_ptr<T, Free>(memory, Free{mapped});
     capacity_ = bytes / sizeof(T);
   }
 
