@@ -62,8 +62,8 @@ class Array {
     void* const memory = mapped > 0 ? mremap(data_.get(), mapped, bytes, MREMAP_MAYMOVE)
                                     : mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    if (mapped > 0) data_.release();
-    madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: small pages do as well
+    if (mapped > 0) static_cast<void>(data_.release());  // its pages have moved
+    madvise(memory, bytes, MADV_HUGEPAGE);               // a wish: small pages do as well
     move_to(static_cast<T*>(memory), bytes, bytes);
   }
 
