@@ -79,6 +79,8 @@ struct MeshReport {
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
   std::uint64_t triangles = 0, vertices = 0;  // written
+  // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
+  // construction and is not looked at.
   std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
   std::int64_t euler = 0;
   std::uint64_t digest = 0;

@@ -35,8 +35,6 @@ struct FaceSums {
 };
 
 struct Kernels {
-  const char* name;
-
   // Costs of collapsing edges.
   void (*edge_costs)(std::span<const EdgeEnds> edges, CostBits* costs);
 

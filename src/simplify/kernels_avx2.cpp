@@ -4,7 +4,7 @@
 namespace isoweave {
 
 const Kernels& avx2_kernels() {
-  static constexpr Kernels kTable = KernelsInLanes<4>::table("avx2");
+  static constexpr Kernels kTable = KernelsInLanes<4>::table();
   return kTable;
 }
 

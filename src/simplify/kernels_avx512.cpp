@@ -4,7 +4,7 @@
 namespace isoweave {
 
 const Kernels& avx512_kernels() {
-  static constexpr Kernels kTable = KernelsInLanes<8>::table("avx512");
+  static constexpr Kernels kTable = KernelsInLanes<8>::table();
   return kTable;
 }
 

@@ -12,9 +12,7 @@ namespace isoweave {
 template <std::size_t N>
 class KernelsInLanes {
  public:
-  static constexpr Kernels table(const char* name) {
-    return {name, edge_costs, measure, sum_faces, keeps_sides, count_common};
-  }
+  static constexpr Kernels table() { return {edge_costs, measure, sum_faces, keeps_sides, count_common}; }
 
  private:
   using Real = Lanes<N>;

@@ -3,7 +3,7 @@
 namespace isoweave {
 
 const Kernels& portable_kernels() {
-  static constexpr Kernels kTable = KernelsInLanes<2>::table("portable");
+  static constexpr Kernels kTable = KernelsInLanes<2>::table();
   return kTable;
 }
 

@@ -270,7 +270,8 @@ void LocalMinima::group_by_place() {
   static_assert(kColumns * kColumns == kPlaces);
   const double side = kPlaceSide * std::sqrt(zone_.options().a0);
   const auto column = [&](double p) {
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(p / side))) % kColumns;
+    const double number = std::clamp(std::floor(p / side), -1e15, 1e15);  // a mesh file may be anywhere
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(number)) % kColumns;
   };
   place_.resize(zone_.settled.size() + woken_.size());
   executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t n) {
