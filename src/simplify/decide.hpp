@@ -68,7 +68,7 @@ class Decider {
   // After a collapse: the key that the n-th of them had, the smaller one where two edges have become one.
   Key key_before(std::size_t n) const { return before_[n]; }
 
-  bool collapsed() const { return collapsed_; }  // first() is the star of the merged vertex then
+  bool collapsed() const { return collapsed_; }  // first() is the star of the merged vertex then, second() as it was
   const DecisionCounts& counts() const { return counts_; }
 
  private:

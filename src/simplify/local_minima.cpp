@@ -14,8 +14,8 @@ constexpr std::size_t kPlaces = 1024;
 
 }  // namespace
 
-// Serves vertices. While it works on one, it holds every vertex that it reads or writes: both ends of the edge and
-// their neighbours. It never waits for another worker with anything in hand.
+// Serves pairs. While it works on one, it holds every vertex that it reads or writes: both ends of the edge and their
+// neighbours. It never waits for another worker with anything in hand.
 class LocalMinima::Worker {
  public:
   Worker(Zone& zone, Quality quality, std::uint16_t number) : zone_(zone), decider_(zone, quality), number_(number) {}
@@ -25,26 +25,7 @@ class LocalMinima::Worker {
   // owners: nullptr when this is the only worker.
   void begin(std::vector<std::uint16_t>* owners) { owners_ = owners; }
 
-  // Wakes those that v no longer comes before; the others go on waiting for it.
-  void wake_waiters(Index v) {
-    Index kept = kNone;
-    for (Index w = zone_.turns[v].first_waiter; w != kNone;) {
-      Turn& waiter = zone_.turns[w];
-      const Index after = waiter.next_waiter;
-      const Key key = std::atomic_ref(zone_.turn_keys[w]).load(std::memory_order_relaxed);
-      if (zone_.turn_keys[v] < key && cost_of(key) <= zone_.options().retire) {
-        waiter.next_waiter = kept;
-        kept = w;
-      } else {
-        waits_for(w).store(kNone, std::memory_order_release);
-        todo_.push_back(w);
-      }
-      w = after;
-    }
-    zone_.turns[v].first_waiter = kept;
-  }
-
-  // Serves the vertex and everything that follows from it.
+  // Serves the pair that v belongs to and everything that follows from it.
   void serve(Index v, const std::atomic<bool>* stop) {
     todo_.push_back(v);
     while (!todo_.empty() || !later_.empty()) {
@@ -76,11 +57,6 @@ class LocalMinima::Worker {
     return found == number_;
   }
 
-  bool holds(Index v) const {
-    return owners_ == nullptr ||
-           std::atomic_ref<std::uint16_t>((*owners_)[v]).load(std::memory_order_relaxed) == number_;
-  }
-
   void release() {
     for (const Index v : held_) {
       std::atomic_ref<std::uint16_t>((*owners_)[v]).store(0, std::memory_order_release);
@@ -90,19 +66,17 @@ class LocalMinima::Worker {
 
   std::atomic_ref<Index> waits_for(Index v) { return std::atomic_ref<Index>(zone_.turns[v].waits_for); }
 
-  // Decides the least edge of v if it is a local minimum, else lets v wait for the vertex that comes first. False when
-  // another worker holds something: nothing has been done.
+  // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for the vertex
+  // that comes first. False when another worker holds something: nothing has been done.
   bool visit(Index v) {
     if (!hold(v)) return false;
     if (!has_turn(zone_, v)) return true;
-    if (waits_for(v).load(std::memory_order_acquire) != kNone) return true;
     const Index edge = zone_.turns[v].edge;
     const Index other = other_end(zone_, edge, v);
     if (!hold(other)) return false;
-    if (!same_turn(zone_, v, other)) {
-      wait(v, other);
-      return true;
-    }
+    if (!same_turn(zone_, v, other)) return true;
+    const Index pair = std::min(v, other);
+    if (waits_for(pair).load(std::memory_order_acquire) != kNone) return true;
     bool all_held = true;
     Index first = v;
     decider_.look_at(edge, [&](Star& star) {
@@ -112,12 +86,11 @@ class LocalMinima::Worker {
     });
     if (!all_held) return false;
     if (first != v) {
-      wait(v, first);
-      if (waits_for(other).load(std::memory_order_acquire) == kNone) enlist(other, v);
+      wait(pair, first);
       return true;
     }
     decider_.decide();
-    settle(v, other);
+    settle();
     return true;
   }
 
@@ -152,57 +125,69 @@ class LocalMinima::Worker {
     return first;
   }
 
-  void enlist(Index v, Index first) {
-    Turn& turn = zone_.turns[v];
+  void wait(Index pair, Index first) {
+    Turn& turn = zone_.turns[pair];
     turn.next_waiter = zone_.turns[first].first_waiter;
-    zone_.turns[first].first_waiter = v;
-    waits_for(v).store(first, std::memory_order_release);
+    zone_.turns[first].first_waiter = pair;
+    waits_for(pair).store(first, std::memory_order_release);
   }
 
-  void wait(Index v, Index first) {
-    enlist(v, first);
-    if (!is_unknown(zone_.turn_keys[first]) && waits_for(first).load(std::memory_order_acquire) == kNone) {
-      todo_.push_back(first);
+  // Wakes the pairs that v no longer comes before; the others go on waiting for it. The turn of a pair that waits does
+  // not change.
+  void wake_waiters(Index v) {
+    Index kept = kNone;
+    for (Index w = zone_.turns[v].first_waiter; w != kNone;) {
+      Turn& waiter = zone_.turns[w];
+      const Index after = waiter.next_waiter;
+      if (zone_.turn_keys[v] < std::atomic_ref(zone_.turn_keys[w]).load(std::memory_order_relaxed)) {
+        waiter.next_waiter = kept;
+        kept = w;
+      } else {
+        waits_for(w).store(kNone, std::memory_order_release);
+        todo_.push_back(w);
+      }
+      w = after;
     }
+    zone_.turns[v].first_waiter = kept;
   }
 
   // New turns for the vertices whose least edge has changed, all of them held.
-  void settle(Index u, Index v) {
-    if (!decider_.collapsed()) {
-      renew(u);
-      renew(v);
-      return;
+  void settle() {
+    const Star& first = decider_.first();
+    const Star& second = decider_.second();
+    renew_turn(zone_, first);
+    if (decider_.collapsed()) {
+      end_turns(second.vertex);
+    } else {
+      renew_turn(zone_, second);
+      follow(second.vertex);
     }
-    const Star& merged = decider_.first();
-    const Index gone = merged.vertex == u ? v : u;
+    follow(first.vertex);
+    // Edges that were the turn of their other end have another key now.
+    for (int n = 0; decider_.collapsed() && n < decider_.changed_count(); ++n) {
+      const auto place = static_cast<std::size_t>(n);
+      const Index w = other_end(zone_, decider_.changed()[place], first.vertex);
+      if (!has_turn(zone_, w) || zone_.turn_keys[w] != decider_.key_before(place)) continue;
+      renew_turn(zone_, w);
+      follow(w);
+    }
+  }
+
+  void end_turns(Index gone) {
     std::atomic_ref(zone_.turn_keys[gone]).store(kNoTurn, std::memory_order_relaxed);
     zone_.turns[gone].edge = kNone;
     wake_waiters(gone);
-    renew(merged.vertex);
-    // Edges that were the turn of their other end have another key now.
-    for (int n = 0; n < decider_.changed_count(); ++n) {
-      const auto place = static_cast<std::size_t>(n);
-      const Index w = other_end(zone_, decider_.changed()[place], merged.vertex);
-      if (has_turn(zone_, w) && zone_.turn_keys[w] == decider_.key_before(place)) renew(w);
-    }
   }
 
-  void renew(Index v) {
-    renew_turn(zone_, v);
+  // What v's new turn brings about. If its other end has the same turn they are a pair. When that end gets its turn at
+  // the same time from another worker, at least one of the two sees the other's: both store theirs first.
+  void follow(Index v) {
     wake_waiters(v);
-    stop_waiting(v);
-    todo_.push_back(v);
-  }
-
-  // Takes v out of the list that it waits in, unless another worker holds that: then what v waits for lies beside v
-  // itself and blocks its new least edge as well.
-  void stop_waiting(Index v) {
-    const Index first = waits_for(v).load(std::memory_order_acquire);
-    if (first == kNone || !holds(first)) return;
-    Index* link = &zone_.turns[first].first_waiter;
-    while (*link != v) link = &zone_.turns[*link].next_waiter;
-    *link = zone_.turns[v].next_waiter;
-    waits_for(v).store(kNone, std::memory_order_release);
+    if (!has_turn(zone_, v)) return;
+    const Index other = other_end(zone_, zone_.turns[v].edge, v);
+    if (std::atomic_ref(zone_.turn_keys[other]).load(std::memory_order_seq_cst) == zone_.turn_keys[v]) {
+      todo_.push_back(v);
+    }
   }
 
   Zone& zone_;
@@ -264,7 +249,14 @@ Index LocalMinima::awake(std::size_t n) const {
   return n < zone_.settled.size() ? zone_.settled[n] : woken_[n - zone_.settled.size()];
 }
 
-// Groups the vertices to serve by columns of the volume; after kColumns of them the numbers start again.
+// v and the other end of its least edge are a pair, and v is the one of them to serve, or both are.
+bool LocalMinima::stands_for_pair(Index v) const {
+  if (!has_turn(zone_, v)) return false;
+  const Index other = other_end(zone_, zone_.turns[v].edge, v);
+  return same_turn(zone_, v, other) && (v < other || other < zone_.settled.first_new);
+}
+
+// Groups the pairs to serve by columns of the volume; after kColumns of them the numbers start again.
 void LocalMinima::group_by_place() {
   constexpr std::uint32_t kColumns = 32;
   static_assert(kColumns * kColumns == kPlaces);
@@ -275,8 +267,12 @@ void LocalMinima::group_by_place() {
   };
   place_.resize(zone_.settled.size() + woken_.size());
   executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t n) {
-    const Vec3 p = zone_.vertices[awake(static_cast<std::size_t>(n))].position;
-    place_[static_cast<std::size_t>(n)] = column(p.x) + kColumns * column(p.y);
+    std::uint32_t& place = place_[static_cast<std::size_t>(n)];
+    const Index v = awake(static_cast<std::size_t>(n));
+    place = kPlaces;
+    if (!stands_for_pair(v)) return;
+    const Vec3 p = zone_.vertices[v].position;
+    place = column(p.x) + kColumns * column(p.y);
   });
   fill_buckets(
       executor_, static_cast<std::uint32_t>(place_.size()), kPlaces, [&](std::uint32_t n) { return place_[n]; },

@@ -30,6 +30,7 @@ class LocalMinima final : public Driver {
   void wake_waiters_of_settled();
   void group_by_place();
   Index awake(std::size_t n) const;
+  bool stands_for_pair(Index v) const;
 
   Zone& zone_;
   const Executor& executor_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "parallel/parallel.hpp"
+#include "simplify/star.hpp"
 #include "simplify/zone.hpp"
 
 namespace isoweave {
@@ -13,6 +14,9 @@ inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
 // Sets v's turn from its edges. v must be complete or final and still there. Whoever does not own v may read its key
 // meanwhile, as an atomic.
 void renew_turn(Zone& zone, Index v);
+
+// The same for the vertex of a star that has just been gathered.
+void renew_turn(Zone& zone, const Star& star);
 
 // Turns of all vertices.
 void give_all_turns(Zone& zone);
