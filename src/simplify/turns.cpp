@@ -5,29 +5,61 @@
 namespace isoweave {
 namespace {
 
-// The least of the edges offered.
-class LeastEdge {
- public:
-  LeastEdge(const Zone& zone, Index first) : zone_(zone), edge_(first), key_(zone.key(first)) {}
+// Offers every edge at v, once around.
+template <class Offer>
+void walk_edges(const Zone& zone, Index v, const Offer& offer) {
+  const HalfEdge* const halves = &zone.half(0);
+  const Index first = zone.vertices[v].half_edge;
+  Index h = first;
+  Index before = h;
+  do {
+    offer(h);
+    before = h;
+    h = halves[previous(h)].twin;
+  } while (h != first && exists(h));
+  if (!exists(h)) offer(previous(before));
+}
 
-  void offer(Index h) {
-    const Key key = zone_.key(h);
-    const bool first_of_equals = key == key_ && zone_.tie_low(h) < zone_.tie_low(edge_);
-    const bool less = key < key_ || first_of_equals;
-    key_ = less ? key : key_;
-    edge_ = less ? h : edge_;
+// The same for the vertex of a star that has not overflowed.
+template <class Offer>
+void walk_edges(const Zone&, const Star& star, const Offer& offer) {
+  const auto faces = static_cast<std::size_t>(star.faces);
+  for (std::size_t n = 0; n < faces; ++n) offer(star.out[n]);
+  if (star.border) offer(previous(star.out[faces - 1]));
+}
+
+// Sets the turn of v from its edges. The walk has no branch on keys: which edge is the least cannot be predicted.
+template <class Around>
+void set_turn(Zone& zone, Index v, const Around& around) {
+  const HalfEdge* const halves = &zone.half(0);
+  Index edge = kNone;
+  Key least = ~Key{0};
+  bool tied = false;
+  walk_edges(zone, around, [&](Index h) {
+    const Key key = halves[h].key;
+    const bool less = key < least;
+    tied = (tied & !less) | (key == least);
+    least = less ? key : least;
+    edge = less ? h : edge;
+  });
+  if (tied) {
+    walk_edges(zone, around, [&](Index h) {
+      if (zone.comes_before(h, edge)) edge = h;
+    });
   }
+  zone.turns[v].edge = edge;
+  std::atomic_ref(zone.turn_keys[v]).store(least, std::memory_order_seq_cst);
+}
 
-  void set_turn(Zone& zone, Index v) const {
-    zone.turns[v].edge = edge_;
-    std::atomic_ref(zone.turn_keys[v]).store(key_, std::memory_order_seq_cst);
-  }
+}  // namespace
 
- private:
-  const Zone& zone_;
-  Index edge_;
-  Key key_;
-};
+void renew_turn(Zone& zone, Index v) { set_turn(zone, v, v); }
+
+void renew_turn(Zone& zone, const Star& star) {
+  star.overflow ? set_turn(zone, star.vertex, star.vertex) : set_turn(zone, star.vertex, star);
+}
+
+namespace {
 
 void give_turn(Zone& zone, Index v) {
   if (zone.states[v] == VertexState::kIncomplete) {
@@ -40,29 +72,6 @@ void give_turn(Zone& zone, Index v) {
 }
 
 }  // namespace
-
-void renew_turn(Zone& zone, Index v) {
-  const Index first = zone.vertices[v].half_edge;
-  LeastEdge least(zone, first);
-  for (Index h = zone.rotate(first), before = first; h != first; h = zone.rotate(h)) {
-    if (!exists(h)) {
-      least.offer(previous(before));
-      break;
-    }
-    least.offer(h);
-    before = h;
-  }
-  least.set_turn(zone, v);
-}
-
-void renew_turn(Zone& zone, const Star& star) {
-  if (star.overflow) return renew_turn(zone, star.vertex);
-  LeastEdge least(zone, star.out[0]);
-  const auto faces = static_cast<std::size_t>(star.faces);
-  for (std::size_t n = 1; n < faces; ++n) least.offer(star.out[n]);
-  if (star.border) least.offer(previous(star.out[faces - 1]));
-  least.set_turn(zone, star.vertex);
-}
 
 void give_all_turns(Zone& zone) {
   for (Index v = 0; v < zone.vertices.size(); ++v) give_turn(zone, v);
