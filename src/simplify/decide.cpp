@@ -44,10 +44,8 @@ void Decider::decide() {
   } else {
     const double a0 = zone_.options().a0;
     const double weight = 1 / (2 * a0 * a0);
-    FaceSums u_sums;
-    FaceSums v_sums;
-    kernels_.sum_faces(u_fan_, u_.count(), weight, u_sums);
-    kernels_.sum_faces(v_fan_, v_.count(), weight, v_sums);
+    const FaceSums u_sums = kernels_.sum_faces(u_fan_, u_.count(), weight);
+    const FaceSums v_sums = kernels_.sum_faces(v_fan_, v_.count(), weight);
     full = u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_);
     best = best_place(full, u_sums.normal + v_sums.normal, dot(v_sums.normal, edge_vector_));
     limit = cost_bits(refinement_limit(quality_) * cost_value(key));
@@ -151,8 +149,7 @@ void Decider::merge_sides(Index h) {
   ++counts_.removed;
 }
 
-// Merges the two ends into the vertex of u_, x away from where that was. Afterwards u_ is the star of the merged
-// vertex.
+// Merges the two ends into the vertex of u_, x away from where that was.
 void Decider::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
   for (int n = 0; n < v_.faces; ++n) {
@@ -186,38 +183,32 @@ void Decider::join_rings() {
         if (start == kNone || !exists(zone_.twin(h))) start = h;
       }
     }
-    u_.gather(zone_, u_.vertex);
+    merged_.gather(zone_, u_.vertex);
     return;
   }
-  std::size_t count = 0;
-  for (const Star* star : {&u_, &v_}) {
-    for (std::size_t n = 1; n + 1 < static_cast<std::size_t>(star->faces); ++n, ++count) {
-      u_.out[count] = star->out[n];
-      u_.neighbour[count] = star->neighbour[n];
-    }
-  }
-  u_.faces = u_.neighbours = static_cast<int>(count);
-  start = u_.out[0];
+  merged_.join(u_, v_);
+  start = merged_.out[0];
 }
 
 // Keys of the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key it
 // replaces, and lies behind the collapse that made it.
 void Decider::update_keys(CostBits collapse_cost) {
-  const Vertex& merged = zone_.vertices[u_.vertex];
+  const Star& star = merged_;
+  const Vertex& merged = zone_.vertices[star.vertex];
   std::array<EdgeEnds, Star::kRoom> ends;
   std::array<CostBits, Star::kRoom> costs;
-  for (std::size_t n = 0; n < u_.count(); ++n) {
-    const Index h = n == static_cast<std::size_t>(u_.faces) ? previous(u_.out[n - 1]) : u_.out[n];
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < star.count(); ++n) {
+    const Index h = n == static_cast<std::size_t>(star.faces) ? previous(star.out[n - 1]) : star.out[n];
     const Key before = zone_.key(h);
-    if (cost_of(before) > zone_.options().retire) continue;
-    const Vertex* const other = &zone_.vertices[u_.neighbour[n]];
-    const bool merged_first = merged.id < other->id;
-    const auto next_changed = static_cast<std::size_t>(changed_count_++);
-    changed_[next_changed] = h;
-    before_[next_changed] = before;
-    ends[next_changed] = {merged_first ? &merged : other, merged_first ? other : &merged};
+    const std::array<const Vertex*, 2> both{&merged, &zone_.vertices[star.neighbour[n]]};
+    const std::size_t first = both[1]->id < merged.id;
+    changed_[count] = h;
+    before_[count] = before;
+    ends[count] = {both[first], both[1 - first]};
+    count += cost_of(before) <= zone_.options().retire;
   }
-  const auto count = static_cast<std::size_t>(changed_count_);
+  changed_count_ = static_cast<int>(count);
   kernels_.edge_costs(std::span(ends).first(count), costs.data());
   for (std::size_t n = 0; n < count; ++n) {
     const Index h = changed_[n];

@@ -68,7 +68,8 @@ class Decider {
   // After a collapse: the key that the n-th of them had, the smaller one where two edges have become one.
   Key key_before(std::size_t n) const { return before_[n]; }
 
-  bool collapsed() const { return collapsed_; }  // first() is the star of the merged vertex then, second() as it was
+  bool collapsed() const { return collapsed_; }  // second()'s vertex is gone then, and first()'s has the merged star
+  const Star& merged() const { return merged_; }
   const DecisionCounts& counts() const { return counts_; }
 
  private:
@@ -87,6 +88,7 @@ class Decider {
   const Kernels& kernels_ = kernels();
   Index edge_ = kNone;
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
+  Star merged_;
   Fan u_fan_, v_fan_;
   Vec3 edge_vector_;  // from u to v; places are measured from u
   std::array<Index, Star::kRoom> changed_;

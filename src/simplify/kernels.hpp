@@ -43,7 +43,7 @@ struct Kernels {
   void (*measure)(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan);
 
   // Planes of the faces in slots below `slots`, with a weight of `weight` per twice the area.
-  void (*sum_faces)(const Fan& fan, std::size_t slots, double weight, FaceSums& sums);
+  FaceSums (*sum_faces)(const Fan& fan, std::size_t slots, double weight);
 
   // Whether all faces keep their side when the vertex moves.
   bool (*keeps_sides)(const Fan& fan, std::size_t slots, Vec3 move);

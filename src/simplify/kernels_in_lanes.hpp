@@ -90,7 +90,7 @@ class KernelsInLanes {
   }
 
   // All lanes are added, also those beyond the last slot, which are zero: the number of turns stays the same.
-  static void sum_faces(const Fan& fan, std::size_t slots, double weight, FaceSums& sums) {
+  static FaceSums sum_faces(const Fan& fan, std::size_t slots, double weight) {
     constexpr std::size_t kColumns = 8;
     Real total[kColumns / N];
     for (Real& t : total) t = 0;
@@ -110,8 +110,7 @@ class KernelsInLanes {
     }
     double out[kColumns];
     unrolled<kColumns / N>([&](auto block) { total[block].store(out + block * N); });
-    sums.planes = {out[0], out[1], out[2], out[3], out[4], out[5], {}, 0};
-    sums.normal = {out[6], out[7], normal_z};
+    return {{out[0], out[1], out[2], out[3], out[4], out[5], {}, 0}, {out[6], out[7], normal_z}};
   }
 
   static bool keeps_sides(const Fan& fan, std::size_t slots, Vec3 move) {

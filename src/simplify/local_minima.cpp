@@ -81,7 +81,7 @@ class LocalMinima::Worker {
     Index first = v;
     decider_.look_at(edge, [&](Star& star) {
       all_held = hold_neighbours(star);
-      if (all_held) first = earliest(star, v, other);
+      if (all_held) first = earliest(star, v);
       return all_held && first == v;
     });
     if (!all_held) return false;
@@ -98,24 +98,24 @@ class LocalMinima::Worker {
     return owners_ == nullptr || star.each_neighbour(zone_, [&](Index x) { return hold(x); });
   }
 
-  // The neighbour whose turn comes first of all, if it comes before that of v and other, which is the same; else v.
-  Index earliest(const Star& star, Index v, Index other) const {
+  // Around one end of the pair of v: the neighbour whose turn comes first of all, if it comes before that of the pair;
+  // else v. One neighbour, the other end, has the pair's key; if more do, their whole ties are compared.
+  Index earliest(const Star& star, Index v) const {
     const Key own = zone_.turn_keys[v];
     Key least = own;
     Index first = v;
-    bool equals = star.overflow;
+    std::size_t equals = star.overflow ? 2 : 0;
     for (std::size_t n = 0; n < star.count(); ++n) {
       const Index x = star.neighbour[n];
       const Key key = zone_.turn_keys[x];
       const bool less = key < least;
       first = less ? x : first;
       least = less ? key : least;
-      equals |= (key == own) & (x != v) & (x != other);
+      equals += key == own ? 1 : 0;
     }
-    return equals ? earliest_in_full(star, v) : first;
+    return equals > 1 ? earliest_in_full(star, v) : first;
   }
 
-  // Compares whole ties.
   Index earliest_in_full(const Star& star, Index v) const {
     Index first = v;
     star.each_neighbour(zone_, [&](Index x) {
@@ -155,19 +155,21 @@ class LocalMinima::Worker {
   void settle() {
     const Star& first = decider_.first();
     const Star& second = decider_.second();
-    renew_turn(zone_, first);
-    if (decider_.collapsed()) {
-      end_turns(second.vertex);
-    } else {
+    if (!decider_.collapsed()) {
+      renew_turn(zone_, first);
       renew_turn(zone_, second);
       follow(second.vertex);
+      follow(first.vertex);
+      return;
     }
+    end_turns(second.vertex);
+    renew_turn(zone_, decider_.merged());
     follow(first.vertex);
     // Edges that were the turn of their other end have another key now.
-    for (int n = 0; decider_.collapsed() && n < decider_.changed_count(); ++n) {
+    for (int n = 0; n < decider_.changed_count(); ++n) {
       const auto place = static_cast<std::size_t>(n);
       const Index w = other_end(zone_, decider_.changed()[place], first.vertex);
-      if (!has_turn(zone_, w) || zone_.turn_keys[w] != decider_.key_before(place)) continue;
+      if (zone_.turn_keys[w] != decider_.key_before(place)) continue;
       renew_turn(zone_, w);
       follow(w);
     }

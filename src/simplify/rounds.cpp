@@ -95,7 +95,7 @@ void Rounds::decide_minima() {
           add(decider.first().vertex);
           add(decider.second().vertex);
           if (!decider.collapsed()) continue;
-          decider.first().each_neighbour(zone_, [&](Index w) {
+          decider.merged().each_neighbour(zone_, [&](Index w) {
             if (has_turn(zone_, w)) add(w);
             return true;
           });

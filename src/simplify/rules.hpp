@@ -67,8 +67,16 @@ struct EdgeNumbering {
     // The difference of the ids, made positive, in mixed radix: each digit is below 4 as row, plane / row >= 3.
     const std::uint64_t step = high - low + 2 + 3 * (1 + row + plane);
     const std::uint64_t points = step / 3;
-    const std::uint64_t in_plane = points % plane;
-    return low * 256 + step % 3 + 3 * (in_plane % row + 4 * (in_plane / row + 4 * (points / plane)));
+    const std::uint64_t z = quotient(points, plane);
+    const std::uint64_t y = quotient(points - z * plane, row);
+    const std::uint64_t x = points - z * plane - y * row;
+    return low * 256 + step % 3 + 3 * (x + 4 * (y + 4 * z));
+  }
+
+ private:
+  // a / b where that is below 4: a division takes longer.
+  ISOWEAVE_HD static std::uint64_t quotient(std::uint64_t a, std::uint64_t b) {
+    return std::uint64_t{a >= b} + std::uint64_t{a >= 2 * b} + std::uint64_t{a >= 3 * b};
   }
 };
 

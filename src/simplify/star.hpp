@@ -1,6 +1,7 @@
 // The faces around a vertex.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "simplify/zone.hpp"
@@ -13,7 +14,7 @@ struct Star {
   // Stars with more faces cannot merge within kMaxValence and are gathered up to here only.
   static constexpr int kCapacity = 28;
   static constexpr int kPadding = 16;
-  static constexpr int kRoom = 48;
+  static constexpr int kRoom = 64;
 
   Index vertex = kNone;
   int faces = 0;
@@ -28,11 +29,23 @@ struct Star {
     vertex = v;
     walk(zone, start);
     if (border && start != zone.vertices[v].half_edge) walk(zone, zone.vertices[v].half_edge);
-    if (border)
-      neighbour[static_cast<std::size_t>(faces)] = zone.origin(previous(out[static_cast<std::size_t>(faces - 1)]));
   }
 
   void gather(const Zone& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }
+
+  // The star that is left of two closed ones that start at the edge between them, when that edge collapses into the
+  // vertex of a: from the first opposite vertex around a to the second, and around b back to the first. Copies of fixed
+  // size: how many there are cannot be predicted.
+  void join(const Star& a, const Star& b) {
+    vertex = a.vertex;
+    const int from_a = a.faces - 2;
+    faces = neighbours = from_a + b.faces - 2;
+    border = overflow = false;
+    std::copy_n(a.out.begin() + 1, kCapacity, out.begin());
+    std::copy_n(a.neighbour.begin() + 1, kCapacity, neighbour.begin());
+    std::copy_n(b.out.begin() + 1, kCapacity, out.begin() + from_a);
+    std::copy_n(b.neighbour.begin() + 1, kCapacity, neighbour.begin() + from_a);
+  }
 
   // The neighbour's place in the list.
   std::size_t place_of(Index w) const {
@@ -70,10 +83,12 @@ struct Star {
     const HalfEdge* const halves = &zone.half(0);
     Index h = start;
     std::size_t n = 0;
+    neighbour[0] = halves[next(start)].vertex;
     do {
       out[n] = h;
-      neighbour[n++] = halves[next(h)].vertex;
-      h = halves[previous(h)].twin;
+      const HalfEdge& from_next = halves[previous(h)];
+      neighbour[++n] = from_next.vertex;
+      h = from_next.twin;
     } while (h != start && exists(h) && n < kCapacity);
     faces = static_cast<int>(n);
     overflow = h != start && exists(h);

@@ -149,7 +149,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   executor.for_each(count, kBlock, [&](std::int64_t n) {
     each_side(n, [&](Index a, Index b, Index h) {
       const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
-      sides[place] = {a < b ? b : a | kBackwards, h};
+      sides[place] = {std::max(a, b) | (a > b ? kBackwards : 0), h};
     });
   });
   executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
@@ -265,10 +265,8 @@ Quadric Zone::face_planes(Index v) const {
   star.gather(*this, v);
   if (star.overflow) return face_planes_one_by_one(v, weight);
   Fan fan;
-  FaceSums sums;
   measure(*this, star, fan);
-  kernels().sum_faces(fan, star.count(), weight, sums);
-  return sums.planes;
+  return kernels().sum_faces(fan, star.count(), weight).planes;
 }
 
 Quadric Zone::face_planes_one_by_one(Index v, double weight) const {

@@ -70,8 +70,7 @@ TEST_P(EachSet, FacesAreSummedInTheOrderOfTheirSlots) {
       if (count > 4) vertices[3].position = vertices[2].position;  // a face without area
       Fan fan;
       kernels().measure(vertices.data(), vertices[0].position, ring(count, open).data(), count, fan);
-      FaceSums sums;
-      kernels().sum_faces(fan, count, 0.3, sums);
+      const FaceSums sums = kernels().sum_faces(fan, count, 0.3);
       Quadric planes;
       Vec3 normals;
       for (std::size_t n = 0; n < (open ? count - 1 : count); ++n) {
