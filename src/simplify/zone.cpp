@@ -230,10 +230,29 @@ void Zone::settle_vertices(const Executor& executor) {
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] != VertexState::kIncomplete || is_front[v] != 0) return;
     states[v] = VertexState::kComplete;
-    if (!exists(vertices[v].half_edge)) return;
-    start_at_border(v);
-    initial_quadric(v);
+    if (exists(vertices[v].half_edge)) initial_quadric(v);
   });
+}
+
+// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
+// border, planes through the two border edges perpendicular to their faces, weighted by squared length.
+void Zone::initial_quadric(Index v) {
+  Star star;
+  star.gather(*this, v);
+  if (!star.border && !star.overflow) {
+    vertices[v].quadric = face_planes(star);
+    return;
+  }
+  start_at_border(v);
+  star.gather(*this, v);
+  Quadric q = star.overflow ? face_planes_one_by_one(v) : face_planes(star);
+  const Index first = vertices[v].half_edge;
+  if (twin(first) == kNone) {
+    Index last = first;
+    while (exists(rotate(last))) last = rotate(last);
+    q = q + border_plane(v, destination(first), first) + border_plane(v, origin(previous(last)), last);
+  }
+  vertices[v].quadric = q;
 }
 
 // Turns v's start back to the half-edge without a twin, if v lies on a border.
@@ -246,37 +265,20 @@ void Zone::start_at_border(Index v) {
   }
 }
 
-// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
-// border, planes through the two border edges perpendicular to their faces, weighted by squared length.
-void Zone::initial_quadric(Index v) {
-  Quadric q = face_planes(v);
-  const Index first = vertices[v].half_edge;
-  if (twin(first) == kNone) {
-    Index last = first;
-    while (exists(rotate(last))) last = rotate(last);
-    q = q + border_plane(v, destination(first), first) + border_plane(v, origin(previous(last)), last);
-  }
-  vertices[v].quadric = q;
-}
-
-Quadric Zone::face_planes(Index v) const {
-  const double weight = 1 / (6 * options_.a0 * options_.a0);
-  Star star;
-  star.gather(*this, v);
-  if (star.overflow) return face_planes_one_by_one(v, weight);
+Quadric Zone::face_planes(Star& star) const {
   Fan fan;
   measure(*this, star, fan);
-  return kernels().sum_faces(fan, star.count(), weight).planes;
+  return kernels().sum_faces(fan, star.count(), initial_weight()).planes;
 }
 
-Quadric Zone::face_planes_one_by_one(Index v, double weight) const {
+Quadric Zone::face_planes_one_by_one(Index v) const {
   const Index first = vertices[v].half_edge;
   Quadric sum;
   Index h = first;
   do {
     const Vec3 normal = face_normal(h);
     const double size = std::sqrt(dot(normal, normal));  // twice the area
-    if (size > 0) sum = sum + plane_quadric(normal, weight / size);
+    if (size > 0) sum = sum + plane_quadric(normal, initial_weight() / size);
     h = rotate(h);
   } while (h != first && exists(h));
   return sum;

@@ -103,6 +103,8 @@ struct ZoneOptions {
   CostBits retire = 0;  // edges with a higher cost are retired
 };
 
+struct Star;
+
 class Zone {
  public:
   explicit Zone(const ZoneOptions& options) : options_(options) {}
@@ -184,8 +186,9 @@ class Zone {
   void settle_vertices(const Executor& executor);
   void start_at_border(Index v);
   void initial_quadric(Index v);
-  Quadric face_planes(Index v) const;
-  Quadric face_planes_one_by_one(Index v, double weight) const;
+  Quadric face_planes(Star& star) const;
+  Quadric face_planes_one_by_one(Index v) const;
+  double initial_weight() const { return 1 / (6 * options_.a0 * options_.a0); }  // per twice the area of a face
   Vec3 face_normal(Index h) const;
   Quadric border_plane(Index v, Index other, Index face) const;
   void settle_edges(Index first_triangle, const Executor& executor);
