@@ -90,6 +90,7 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
 }
 
 void run_info(const InfoArguments& arguments) {
+  if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
   exit_on_signal();
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const Histogram histogram = read_histogram(*volume);

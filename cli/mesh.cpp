@@ -1,7 +1,11 @@
 // isoweave mesh: volume in, simplified surface out.
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 #include "isoweave/error.hpp"
 #include "options.hpp"
@@ -19,17 +23,88 @@ Examples:
   isoweave mesh ct.nii.gz -o bone.ply --iso 300
   isoweave mesh foot_256x256x256_uint8.raw -o foot.stl --iso auto --error 0.5vox
   isoweave mesh scan.raw --raw 512x512x300:int16:big --spacing 0.7,0.7,1.5 -o scan.obj --iso 226 --error 0.1mm
-  isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --report gyroid.json
+  isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
+  isoweave mesh --resume gyroid.run
 
 The result does not depend on --threads, --schedule and --slab.)";
+
+std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
 struct MeshArguments {
   InputOptions input;
   RunOptions run;
-  std::string output, iso, error = "0.2vox", quality = "normal", slab = "auto", inside = "above", normals = "none";
-  std::string space;
+  std::string output, iso, error = "0.2vox", quality = "normal", slab, inside = "above", normals = "none";
+  std::string space, checkpoint, every, resume;
   bool open = false, closed = false;
 };
+
+// What a saved state keeps of the command line: the task, with paths that hold wherever it is resumed.
+Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
+  return {{"volume", generated_input(arguments.input) ? arguments.input.path : absolute_path(arguments.input.path)},
+          {"raw", arguments.input.raw},
+          {"spacing", arguments.input.spacing},
+          {"origin", arguments.input.origin},
+          {"output", absolute_path(arguments.output)},
+          {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
+          {"iso", fmt::format("{}", options.iso)},
+          {"error", arguments.error},
+          {"quality", arguments.quality},
+          {"slab", arguments.slab},
+          {"inside", arguments.inside},
+          {"normals", arguments.normals},
+          {"space", arguments.space},
+          {"open", arguments.open},
+          {"every", arguments.every}};
+}
+
+// The arguments of a run that goes on: the task as it was, and how to run as it is said now.
+MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint) {
+  const Json task = Json::parse(checkpoint.note, nullptr, false);
+  if (!task.is_object()) throw BadInput(checkpoint.path + ": expected a state saved by isoweave mesh, found another");
+  MeshArguments arguments = now;
+  arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin")};
+  arguments.output = task.at("output");
+  if (now.run.report.empty()) arguments.run.report = task.at("report");
+  arguments.iso = task.at("iso");
+  arguments.error = task.at("error");
+  arguments.quality = task.at("quality");
+  if (now.slab.empty()) arguments.slab = task.at("slab");
+  arguments.inside = task.at("inside");
+  arguments.normals = task.at("normals");
+  arguments.space = task.at("space");
+  arguments.open = task.at("open");
+  if (now.every.empty()) arguments.every = task.at("every");
+  arguments.checkpoint = now.resume;
+  return arguments;
+}
+
+// "16layers", "90s", "5min" or "2h".
+void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
+  constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{{{"s", 1}, {"min", 60}, {"h", 3600}}};
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+  const std::string_view number = text.substr(0, digits);
+  const std::string_view unit = text.substr(digits);
+  if (unit == "layers") checkpoint.layers = parse_count("--every", number);
+  for (const auto& [name, seconds] : kUnits) {
+    if (unit == name) checkpoint.seconds = seconds * parse_number("--every", number);
+  }
+  const bool known = unit == "layers" || std::ranges::any_of(kUnits, [&](const auto& u) { return u.first == unit; });
+  if (!known || !(checkpoint.seconds > 0)) {
+    wrong_value("--every", "a number of layers or a time such as 16layers, 90s, 5min or 2h", text);
+  }
+}
+
+// Makes the folder for the states of a new run. Another run's are never overwritten.
+void make_checkpoint_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
+  for (const char* name : {"state-0", "state-1", "mesh.part"}) {
+    if (!std::filesystem::exists(std::filesystem::path(folder) / name)) continue;
+    throw CannotWrite(fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it",
+                                  folder, folder));
+  }
+}
 
 // A whole volume is one layer thicker than its slices when it is closed.
 std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
@@ -88,7 +163,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   return json;
 }
 
-void run_mesh(const MeshArguments& arguments) {
+void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const RunOptions& run = arguments.run;
   MeshOptions options = mesh_options(arguments);
   RunControl control = run_control(run);
@@ -109,8 +184,16 @@ void run_mesh(const MeshArguments& arguments) {
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
   }
+  if (!arguments.checkpoint.empty()) {
+    parse_every(arguments.every, control.checkpoint);
+    if (resume == nullptr) make_checkpoint_folder(arguments.checkpoint);
+    control.checkpoint.folder = arguments.checkpoint;
+    control.checkpoint.note = task_json(arguments, options).dump();
+  }
+  control.resume = resume;
   const std::unique_ptr<MeshSink> sink =
-      open_mesh_file(arguments.output, {options.normals, comments(arguments, options)});
+      open_mesh_file(arguments.output, {options.normals, comments(arguments, options), arguments.checkpoint,
+                                        resume != nullptr ? resume->mark : ""});
   if (!run.quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
@@ -125,27 +208,59 @@ void run_mesh(const MeshArguments& arguments) {
   print_summary(report, arguments.output, static_cast<double>(info.slice_samples()) * slices);
 }
 
+void run_mesh(MeshArguments arguments) {
+  if (arguments.resume.empty()) {
+    if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
+    if (arguments.output.empty()) throw CLI::RequiredError("--output");
+    if (arguments.iso.empty()) throw CLI::RequiredError("--iso");
+    if (arguments.slab.empty()) arguments.slab = "auto";
+    if (arguments.every.empty()) arguments.every = "5min";
+    return mesh(arguments, nullptr);
+  }
+  const Checkpoint checkpoint = read_checkpoint(arguments.resume);
+  arguments = resumed_arguments(arguments, checkpoint);
+  if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
+  mesh(arguments, &checkpoint);
+}
+
+// The task of a run that goes on is known; how it runs may be said anew.
+void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
+  constexpr std::array<std::string_view, 9> kRunning{"--help",   "--slab",     "--every",  "--threads", "--device",
+                                                     "--report", "--schedule", "--progress", "--quiet"};
+  for (CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    if (option != &resume && std::ranges::find(kRunning, name) == kRunning.end()) resume.excludes(option);
+  }
+}
+
 }  // namespace
 
 void add_mesh_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("mesh", "Volume to simplified surface");
   const auto arguments = std::make_shared<MeshArguments>();
   add_input_options(*verb, arguments->input);
-  verb->add_option("-o,--output", arguments->output, "Mesh to write: .ply, .stl or .obj")->required();
-  verb->add_option("--iso", arguments->iso, "Value of the surface, or auto (Otsu's threshold)")->required();
+  verb->add_option("-o,--output", arguments->output, "Mesh to write: .ply, .stl or .obj");
+  verb->add_option("--iso", arguments->iso, "Value of the surface, or auto (Otsu's threshold)");
   verb->add_option("--error", arguments->error,
                    "Simplification error: a length in vox, mm, um, nm or the volume's unit; 0: none")
       ->capture_default_str();
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   verb->add_option("--slab", arguments->slab, "Layers per slab: a number, auto or whole; never changes the result")
-      ->capture_default_str();
+      ->default_str("auto");
   CLI::Option* open = verb->add_flag("--open", arguments->open, "Let the surface end at the volume's border");
   verb->add_flag("--closed", arguments->closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb->add_option("--inside", arguments->inside, "Side of --iso that is inside: above or below")
       ->capture_default_str();
   verb->add_option("--normals", arguments->normals, "none or gradient")->capture_default_str();
   verb->add_option("--space", arguments->space, "Coordinates of the output: lps, ras or index (default: the volume's)");
+  verb->add_option("--checkpoint", arguments->checkpoint,
+                   "Save the state of the run in this folder, to go on with after whatever ends it");
+  verb->add_option("--every", arguments->every, "How often: a number of layers or a time: 16layers, 90s, 5min, 2h")
+      ->default_str("5min");
   add_run_options(*verb, arguments->run);
+  CLI::Option* resume =
+      verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
+  exclude_task_options(*verb, *resume);
   verb->footer(kExamples);
   verb->callback([arguments] { run_mesh(*arguments); });
 }

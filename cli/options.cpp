@@ -108,7 +108,7 @@ Quality parse_quality(std::string_view text) {
 }
 
 void add_input_options(CLI::App& verb, InputOptions& input) {
-  verb.add_option("VOLUME", input.path, "Volume file, or generate:KIND:WxHxD[:TYPE[:SEED]]")->required();
+  verb.add_option("VOLUME", input.path, "Volume file, or generate:KIND:WxHxD[:TYPE[:SEED]]");
   verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
@@ -205,8 +205,7 @@ void refuse_unavailable(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--triangles", "--ratio", "--memory", "--checkpoint", "--every", "--resume",
-                                          "--max-distance", "--lods", "--html", "--dry-run"}) {
+    for (const std::string_view option : {"--triangles", "--ratio", "--memory", "--max-distance", "--lods", "--html", "--dry-run"}) {
       if (name == option) not_available(option);
     }
   }

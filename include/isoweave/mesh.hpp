@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,18 +39,27 @@ class MeshSink {
 
   // Completes the mesh. Without it the destructor discards everything.
   virtual void finish() = 0;
+
+  // Makes what has been appended durable and returns a mark to go on from. Throws std::logic_error unless the sink
+  // was opened to keep its parts.
+  virtual std::string mark() { throw std::logic_error("this mesh cannot be continued later"); }
 };
 
 struct MeshFileOptions {
   bool normals = false;               // STL has no place for vertex normals and ignores them
   std::vector<std::string> comments;  // one line each, into the header where the format has comments
+
+  // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process; they leave
+  // it when the mesh is finished. Empty: beside the target, and nothing is kept.
+  std::string parts{};
+  std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 };
 
 // Writes a mesh file, the format by the name's ending: .ply (binary little-endian, 32-bit indices), .stl (binary),
 // .obj. The file appears under its name only when finish() has written, counted, flushed and renamed it;
 // until then it is a temporary file in the same folder, which the destructor removes.
 // Throws CannotWrite when the ending is unknown, the folder is missing or read-only, the disk is full, or the
-// format cannot hold the counts. PLY needs room for its faces twice while finish() runs; STL keeps the positions of all
+// format cannot hold the counts; when there are parts already and no mark, or a mark and no such parts. PLY needs room for its faces twice while finish() runs; STL keeps the positions of all
 // vertices in memory, 12 bytes each.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 

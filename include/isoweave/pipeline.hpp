@@ -42,11 +42,32 @@ struct Progress {
   std::uint64_t bytes = 0;  // held by the slab and the undecided zone
 };
 
+// How the state of a run is saved, to go on with after whatever ends the process.
+struct CheckpointOptions {
+  std::string folder;       // an existing one; empty: nothing is saved. Finished runs leave no state in it
+  std::int64_t layers = 0;  // save after at least so many layers; 0: by time
+  double seconds = 300;     // save after at least so long
+  std::string note;         // comes back with the state: what the caller needs to go on
+};
+
+// A saved state.
+struct Checkpoint {
+  std::string path;  // of its file
+  std::string note;
+  std::string mark;  // of the sink
+  std::int64_t layer = 0, layers = 0;
+};
+
+// The newest state in a folder that is whole. Throws BadInput when there is none.
+Checkpoint read_checkpoint(const std::string& folder);
+
 struct RunControl {
   int threads = 0;  // 0: one per processor
   Schedule schedule = Schedule::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
+  CheckpointOptions checkpoint{};        // mesh_volume only. The sink must be able to give marks
+  const Checkpoint* resume = nullptr;    // go on from there, with the same volume and options and a sink opened at its mark
   bool measure = true;  // digest, components and range of the samples; without it these stay empty in the report
 };
 
@@ -85,6 +106,7 @@ struct MeshReport {
   std::int64_t euler = 0;
   std::uint64_t digest = 0;
   std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
+  std::int64_t resumed_at = 0;        // layers that an earlier process has done
   double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
   std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
   std::vector<SlabRecord> sweep;
@@ -93,7 +115,10 @@ struct MeshReport {
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
 // and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, Interrupted, and
-// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone.
+// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone. With a
+// checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in the
+// middle. Resuming gives the same mesh, for any threads, schedule and slab; throws BadInput when the state was saved by
+// another version, for another volume or with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
 struct SimplifyOptions {

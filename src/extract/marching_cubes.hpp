@@ -38,6 +38,17 @@ class MarchingCubes {
   // goes. Same result for any number of threads. Throws OverMemory when the slab holds 2^32 vertices or more.
   void extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece);
 
+  // The state between two slabs.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    archive.value(next_layer_);
+    archive.value(front_size_);
+    archive.list(slices_.front().inside);
+    archive.list(slices_.front().cross_x);
+    archive.list(slices_.front().cross_y);
+    archive.list(slices_.front().base);
+  }
+
  private:
   // Bits and vertex numbers of one slice; one entry per word, row by row.
   struct Slice {

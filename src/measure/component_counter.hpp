@@ -27,6 +27,15 @@ class ComponentCounter {
   // Renumbers the labels of the vertices still held, in place; all other labels become invalid.
   void compact(std::span<std::uint32_t*> labels);
 
+  template <class Archive>
+  void exchange(Archive& archive) {
+    std::uint64_t joined = joined_;
+    archive.list(parent_);
+    archive.value(added_);
+    archive.value(joined);
+    joined_ = joined;
+  }
+
  private:
   std::uint32_t root(std::uint32_t label);
 

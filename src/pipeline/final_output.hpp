@@ -21,6 +21,14 @@ class FinalOutput {
   // Fills in what has been written so far: counts, Euler number, components, digest.
   void report(MeshReport& report) const { output_.report(open_edges_, report); }
 
+  template <class Archive>
+  void exchange(Archive& archive) {
+    std::uint64_t open_edges = open_edges_;
+    archive.value(open_edges);
+    output_.exchange(archive);
+    open_edges_ = open_edges;
+  }
+
  private:
   void number_vertices(Zone& zone, const std::vector<Index>& triangles);
   void close_sides(Zone& zone, Index triangle);

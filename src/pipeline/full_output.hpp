@@ -19,6 +19,13 @@ class FullOutput {
 
   void report(MeshReport& report) const { output_.report(open_edges_, report); }
 
+  template <class Archive>
+  void exchange(Archive& archive) {
+    archive.list(front_);
+    archive.value(open_edges_);
+    output_.exchange(archive);
+  }
+
  private:
   SurfaceOutput output_;
   std::vector<OutputCorner> front_;  // vertices that the next piece names as well

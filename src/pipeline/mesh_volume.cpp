@@ -1,11 +1,14 @@
 // The one loop: read a slab, extract it, simplify what is safe, write what is final.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "extract/marching_cubes.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
+#include "pipeline/checkpoint.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/full_output.hpp"
 #include "pipeline/sweep.hpp"
@@ -17,6 +20,7 @@ namespace {
 // A slab of this many triangles keeps all threads busy and stays small beside what a scan needs elsewhere.
 constexpr double kSlabTriangles = 160000;
 constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
+constexpr std::uint64_t kAheadBytes = std::uint64_t{64} << 20;
 
 // The surface in stored sample units; a negative slope turns inside and outside around.
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
@@ -35,26 +39,35 @@ class VolumeSweep {
         options_(options),
         control_(control),
         executor_(control.threads),
-        window_(source),
         extractor_(volume_, {stored_rule(volume_, options), options.normals}, executor_),
         voxel_(cube_root(volume_.geometry.spacing[0] * volume_.geometry.spacing[1] * volume_.geometry.spacing[2])),
-        simplifier_(simplifier_options(), executor_, control.stop),
+        // A zone that has been left in the middle cannot be saved.
+        simplifier_(simplifier_options(), executor_, saves() ? nullptr : control.stop),
         world_(volume_.geometry, options.space),
         output_(world_, sink, executor_, control.measure),
         full_output_(world_, sink, executor_, control.measure),
-        sink_(sink) {}
+        sink_(sink),
+        layers_(extractor_.layers_left()) {
+    if (saves()) folder_.emplace(control.checkpoint.folder);
+    if (control.resume != nullptr) load_state();
+    window_.emplace(source, extractor_.slices_for(1).first);
+  }
 
   MeshReport run() {
     Stopwatch total;
     start_report();
-    layers_ = extractor_.layers_left();
+    if (saves() && control_.resume == nullptr) save_state();
     while (extractor_.layers_left() > 0) {
-      check_stop(control_);
-      sweep_slab(next_slab());
+      stop_if_asked();
+      const std::int64_t layers = next_slab();
+      read_slab(layers);
+      sweep_slab(layers);
+      if (state_is_due()) save_state();
     }
     finish_report();
     Stopwatch finishing;
     sink_.finish();
+    if (saves()) folder_->clear();
     finishing.lap(report_.seconds_write);
     total.lap(report_.seconds_total);
     report_.peak_bytes = peak_process_bytes();
@@ -112,14 +125,29 @@ class VolumeSweep {
     return std::min(layers, left);
   }
 
-  void sweep_slab(std::int64_t layers) {
+  void read_slab(std::int64_t layers) {
     const auto [first, end] = extractor_.slices_for(layers);
-    const std::int64_t read = window_.advance(first, end);
+    std::int64_t read = 0;
+    try {
+      read = window_->advance(first, end, slices_ahead(layers));
+    } catch (const BadInput&) {
+      if (saves()) save_state();
+      throw;
+    }
+    if (resumed_slices_ > 0) check_resumed_slices();
     voxels_ += static_cast<std::uint64_t>(read * volume_.slice_samples());
     if (control_.measure) measure_samples(read);
     clock_.lap(report_.seconds_read);
+  }
 
-    extractor_.extract(window_, layers, piece_);
+  // Slices of the next slab, to be read while this one is worked on.
+  std::int64_t slices_ahead(std::int64_t layers) const {
+    const auto most = static_cast<std::int64_t>(kAheadBytes / std::max<std::uint64_t>(volume_.slice_bytes(), 1));
+    return std::clamp<std::int64_t>(most, 1, layers);
+  }
+
+  void sweep_slab(std::int64_t layers) {
+    extractor_.extract(*window_, layers, piece_);
     recent_triangles_ = piece_.triangles.size();
     recent_layers_ = layers;
     report_.cells_crossed += piece_.cells_crossed;
@@ -141,7 +169,7 @@ class VolumeSweep {
   void take_final(SlabRecord& record) {
     simplifier_.append(piece_);
     record.live_triangles = simplifier_.live_triangles();
-    record.bytes = simplifier_.zone().bytes() + window_.bytes();
+    record.bytes = simplifier_.zone().bytes() + window_->bytes();
     simplifier_.decide();
     clock_.lap(report_.seconds_simplify);
     output_.take(simplifier_);
@@ -151,7 +179,7 @@ class VolumeSweep {
 
   void take_all(SlabRecord& record) {
     record.live_triangles = piece_.triangles.size();
-    record.bytes = window_.bytes();
+    record.bytes = window_->bytes();
     full_output_.take(piece_);
     full_output_.report(report_);
   }
@@ -161,7 +189,7 @@ class VolumeSweep {
     std::vector<SampleRange> ranges(static_cast<std::size_t>(slices));
     executor_.for_each(slices, 1, [&](std::int64_t n) {
       ranges[static_cast<std::size_t>(n)] =
-          sample_range(window_.slice(window_.end() - slices + n), volume_.type, volume_.slice_samples());
+          sample_range(window_->slice(window_->end() - slices + n), volume_.type, volume_.slice_samples());
     });
     for (const SampleRange& range : ranges) range_.merge(range);
   }
@@ -184,11 +212,94 @@ class VolumeSweep {
                         : ", samples from " + std::to_string(report_.min) + " to " + std::to_string(report_.max)));
   }
 
+  bool saves() const { return !control_.checkpoint.folder.empty(); }
+
+  void stop_if_asked() {
+    if (control_.stop == nullptr || !control_.stop->load()) return;
+    if (!saves()) throw Interrupted("interrupted");
+    save_state();
+    throw Interrupted("interrupted; the run can be resumed from " + control_.checkpoint.folder);
+  }
+
+  bool state_is_due() const {
+    if (!saves() || extractor_.layers_left() == 0) return false;
+    const CheckpointOptions& options = control_.checkpoint;
+    if (options.layers > 0) return layers_ - extractor_.layers_left() - saved_layer_ >= options.layers;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - saved_time_).count() >= options.seconds;
+  }
+
+  // What the sink has is made durable first: the state must not know more than the mesh has.
+  void save_state() {
+    Checkpoint checkpoint;
+    checkpoint.note = control_.checkpoint.note;
+    checkpoint.mark = sink_.mark();
+    checkpoint.layers = layers_;
+    checkpoint.layer = layers_ - extractor_.layers_left();
+    const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_of(volume_, options_));
+    exchange(*writer);
+    const std::int64_t slices = held_slices();
+    const std::uint32_t crc = crc_of_slices(slices);
+    writer->value(slices);
+    writer->value(crc);
+    writer->commit();
+    saved_layer_ = checkpoint.layer;
+    saved_time_ = std::chrono::steady_clock::now();
+  }
+
+  void load_state() {
+    StateReader reader = open_state(*control_.resume, identity_of(volume_, options_));
+    exchange(reader);
+    reader.value(resumed_slices_);
+    reader.value(resumed_crc_);
+    saved_layer_ = control_.resume->layer;
+    report_.resumed_at = control_.resume->layer;
+  }
+
+  template <class Archive>
+  void exchange(Archive& archive) {
+    extractor_.exchange(archive);
+    simplifier_.exchange(archive);
+    output_.exchange(archive);
+    full_output_.exchange(archive);
+    archive.value(range_);
+    archive.value(recent_layers_);
+    archive.value(recent_triangles_);
+    archive.value(voxels_);
+    archive.value(report_.cells_crossed);
+    archive.value(report_.triangles_extracted);
+    archive.value(report_.vertices_extracted);
+    archive.value(report_.triangles);
+    archive.list(report_.sweep);
+  }
+
+  // Slices of the window that the next slab needs as well.
+  std::int64_t held_slices() const {
+    const std::int64_t first = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
+    return window_ ? std::max<std::int64_t>(window_->end() - first, 0) : 0;
+  }
+
+  std::uint32_t crc_of_slices(std::int64_t slices) const {
+    const std::int64_t first = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
+    std::uint32_t crc = 0;
+    for (std::int64_t k = first; k < first + slices; ++k) {
+      crc = add_to_crc(crc, {window_->slice(k), volume_.slice_bytes()});
+    }
+    return crc;
+  }
+
+  // The slices where the sweep was cut off must be the same as then.
+  void check_resumed_slices() {
+    const std::uint32_t crc = crc_of_slices(resumed_slices_);
+    resumed_slices_ = 0;
+    if (crc == resumed_crc_) return;
+    throw BadInput(volume_.path + ": the volume has changed: expected the samples that " + control_.resume->path +
+                   " was saved with, found others");
+  }
+
   const VolumeInfo volume_;
   const MeshOptions& options_;
   const RunControl& control_;
   const Executor executor_;
-  SliceWindow window_;
   MarchingCubes extractor_;
   double voxel_;  // mean side of a voxel
   Simplifier simplifier_;
@@ -197,14 +308,21 @@ class VolumeSweep {
   FullOutput full_output_;
   bool simplifies_ = true;
   MeshSink& sink_;
+  std::optional<SliceWindow> window_;
   SurfacePiece piece_;
   SampleRange range_;
   MeshReport report_;
   Stopwatch clock_;
-  std::int64_t layers_ = 0;
+  std::int64_t layers_;
   std::int64_t recent_layers_ = 1;
   std::uint64_t recent_triangles_ = 0;
   std::uint64_t voxels_ = 0;
+
+  std::optional<CheckpointFolder> folder_;
+  std::int64_t saved_layer_ = 0;
+  std::chrono::steady_clock::time_point saved_time_ = std::chrono::steady_clock::now();
+  std::int64_t resumed_slices_ = 0;  // held when the state was saved, and
+  std::uint32_t resumed_crc_ = 0;    // their checksum
 };
 
 }  // namespace

@@ -68,6 +68,16 @@ class SurfaceOutput {
   // Fills in counts, Euler number, components and digest of what has been written.
   void report(std::uint64_t open_edges, MeshReport& report) const;
 
+  template <class Archive>
+  void exchange(Archive& archive) {
+    std::uint64_t digest = digest_;
+    archive.value(vertices_);
+    archive.value(triangles_);
+    archive.value(digest);
+    components_.exchange(archive);
+    digest_ = digest;
+  }
+
  private:
   static constexpr std::int64_t kBlock = 4096;
 

@@ -48,10 +48,31 @@ class Simplifier {
   // Those that are held and have not been collapsed.
   std::uint64_t live_triangles() const { return appended_ - counts().removed - dropped_; }
 
-  DecisionCounts counts() const { return driver_->counts(); }
+  DecisionCounts counts() const {
+    DecisionCounts sum = counts_before_;
+    sum += driver_->counts();
+    return sum;
+  }
   Schedule schedule() const { return schedule_; }  // never automatic
-  std::uint64_t rounds() const { return driver_->rounds(); }
+  std::uint64_t rounds() const { return rounds_before_ + driver_->rounds(); }
   const SurfaceDefects& defects() const { return defects_; }
+
+  // The state between two slabs.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    DecisionCounts counted = counts();
+    std::uint64_t passed = rounds();
+    archive.value(counted);
+    archive.value(passed);
+    archive.value(appended_);
+    archive.value(dropped_);
+    archive.value(defects_);
+    zone_.exchange(archive);
+    if constexpr (Archive::kReads) {
+      counts_before_ = counted;
+      rounds_before_ = passed;
+    }
+  }
 
  private:
   std::vector<Index> name_final_vertices();
@@ -67,6 +88,8 @@ class Simplifier {
   std::uint64_t appended_ = 0;           // triangles
   std::uint64_t dropped_ = 0;
   SurfaceDefects defects_;
+  DecisionCounts counts_before_;  // by the process that saved the state
+  std::uint64_t rounds_before_ = 0;
 };
 
 }  // namespace isoweave

@@ -60,12 +60,23 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   settle_edges(first_triangle, executor);
 }
 
+void Zone::forget_turns() {
+  turn_keys.resize(vertices.size());
+  turns.resize(vertices.size());
+  std::fill(turns.begin(), turns.end(), Turn());
+  turns_forgotten_ = true;
+}
+
 // The vertices that were incomplete, those beside them, and the new ones up to `end`.
 void Zone::list_settled(Index end) {
   settled.old = front_;
   for (const Index h : unkeyed_edges_) {
     settled.old.push_back(origin(h));
     settled.old.push_back(destination(h));
+  }
+  if (turns_forgotten_) {
+    for (Index v = 0; v < vertices.size(); ++v) settled.old.push_back(v);
+    turns_forgotten_ = false;
   }
   std::sort(settled.old.begin(), settled.old.end());
   settled.old.erase(std::unique(settled.old.begin(), settled.old.end()), settled.old.end());

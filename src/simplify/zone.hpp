@@ -164,6 +164,18 @@ class Zone {
 
   std::uint64_t bytes() const;
 
+  // The state between two appends. Turns are not part of it: with the next append all vertices count as settled.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    archive.list(vertices);
+    archive.list(states);
+    archive.list(normals);
+    archive.list(triangles);
+    archive.list(front_);
+    archive.list(unkeyed_edges_);
+    if constexpr (Archive::kReads) forget_turns();
+  }
+
  private:
   struct EdgeBatch;
 
@@ -173,6 +185,7 @@ class Zone {
     Index half_edge;
   };
 
+  void forget_turns();
   void list_settled(Index end);
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
@@ -198,6 +211,7 @@ class Zone {
   ZoneOptions options_;
   std::vector<Index> front_;          // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;  // an end incomplete
+  bool turns_forgotten_ = false;
 };
 
 }  // namespace isoweave

@@ -5,22 +5,91 @@
 #include <span>
 
 namespace isoweave {
+namespace {
 
-std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end) {
-  const VolumeInfo& volume = source_.info();
-  first = std::clamp(first, first_, end_);
-  end = std::clamp(end, end_, volume.dims[2]);
-  const std::size_t bytes = volume.slice_bytes();
-  const std::size_t kept = static_cast<std::size_t>(end_ - first) * bytes;
-  if (first > first_ && kept > 0) {
-    std::memmove(buffer_.data(), buffer_.data() + static_cast<std::size_t>(first - first_) * bytes, kept);
+// The reader looks up after so many bytes: nobody waits longer than that for it to end.
+constexpr std::size_t kRunBytes = std::size_t{8} << 20;
+
+}  // namespace
+
+SliceWindow::SliceWindow(SliceSource& source, std::int64_t first)
+    : source_(source),
+      slice_bytes_(source.info().slice_bytes()),
+      slices_(source.info().dims[2]),
+      first_(std::clamp<std::int64_t>(first, 0, slices_)),
+      end_(first_),
+      filled_(first_) {}
+
+SliceWindow::~SliceWindow() {
+  if (!reader_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
   }
-  const std::int64_t count = end - end_;
-  buffer_.resize(kept + static_cast<std::size_t>(count) * bytes);
-  if (count > 0) source_.read(end_, count, std::span(buffer_.data(), buffer_.size()).subspan(kept));
-  first_ = first;
-  end_ = end;
+  changed_.notify_all();
+  reader_.join();
+}
+
+std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int64_t ahead) {
+  std::unique_lock lock(mutex_);
+  const std::int64_t new_end = std::clamp(end, end_, slices_);
+  const std::int64_t last = std::clamp(new_end + ahead, new_end, slices_);
+  first_ = std::clamp(first, first_, end_);
+  if (last - first_ > room_ || buffer_.empty()) make_room(std::max<std::int64_t>(last - first_, 1), lock);
+  wanted_ = last;
+  if (!reader_.joinable() && filled_ < wanted_) reader_ = std::thread([this] { read_on(); });
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return filled_ >= new_end || failure_; });
+  if (filled_ < new_end) std::rethrow_exception(failure_);
+  const std::int64_t count = new_end - end_;
+  end_ = new_end;
   return count;
+}
+
+// Moves what the ring holds into a larger one.
+void SliceWindow::make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock) {
+  growing_ = true;
+  changed_.wait(lock, [&] { return !reading_; });
+  Array<std::byte> larger;
+  larger.resize(static_cast<std::size_t>(slices) * slice_bytes_);
+  for (std::int64_t k = first_; k < filled_; ++k) {
+    std::memcpy(larger.data() + static_cast<std::size_t>(k % slices) * slice_bytes_, place(k), slice_bytes_);
+  }
+  buffer_ = std::move(larger);
+  room_ = slices;
+  growing_ = false;
+}
+
+bool SliceWindow::can_read() const { return filled_ < wanted_ && filled_ < first_ + room_ && !growing_ && !failure_; }
+
+void SliceWindow::read_on() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [&] { return stop_ || can_read(); });
+    if (stop_) return;
+    read_run(lock);
+    changed_.notify_all();
+  }
+}
+
+// Reads the next slices as far as they lie side by side in the ring.
+void SliceWindow::read_run(std::unique_lock<std::mutex>& lock) {
+  const auto most = std::max<std::int64_t>(static_cast<std::int64_t>(kRunBytes / slice_bytes_), 1);
+  const std::int64_t end = std::min({wanted_, first_ + room_, filled_ + most, filled_ + room_ - filled_ % room_});
+  const std::int64_t count = end - filled_;
+  const std::span<std::byte> run(place(filled_), static_cast<std::size_t>(count) * slice_bytes_);
+  reading_ = true;
+  lock.unlock();
+  std::exception_ptr failure;
+  try {
+    source_.read(filled_, count, run);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  lock.lock();
+  reading_ = false;
+  failure_ = failure;
+  if (!failure) filled_ += count;
 }
 
 }  // namespace isoweave

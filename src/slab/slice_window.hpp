@@ -1,38 +1,69 @@
-// The run of consecutive slices that a slab needs, read forward from a source.
+// The run of consecutive slices that a slab needs, read forward from a source by a thread of its own.
 #pragma once
 
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <mutex>
+#include <thread>
 
 #include "isoweave/volume.hpp"
 #include "parallel/array.hpp"
 
 namespace isoweave {
 
-// Holds slices [first, end) in the file's own sample type. Memory: (end - first) * slice_bytes.
+// Holds slices [first, end) in the file's own sample type, and has some more read behind them meanwhile. Slices lie in a
+// ring. Memory: bytes().
 class SliceWindow {
  public:
-  explicit SliceWindow(SliceSource& source) : source_(source), slice_bytes_(source.info().slice_bytes()) {}
+  // The source is read from slice `first` on.
+  explicit SliceWindow(SliceSource& source, std::int64_t first = 0);
+  ~SliceWindow();
+  SliceWindow(const SliceWindow&) = delete;
+  SliceWindow& operator=(const SliceWindow&) = delete;
 
   const VolumeInfo& info() const { return source_.info(); }
   std::int64_t end() const { return end_; }
   std::uint64_t bytes() const { return buffer_.capacity(); }
 
-  // Drops slices before `first` and reads on up to `end`, both clipped to the volume. Windows only move forward.
-  // Returns the number of slices read; they are the last ones held.
-  std::int64_t advance(std::int64_t first, std::int64_t end);
+  // Drops slices before `first` and waits for those up to `end`, both clipped to the volume; after that `ahead` slices
+  // more are read while the caller works. Windows only move forward. Returns the number of slices that are new in the
+  // window; they are the last ones held. Throws what the source threw, once slices that it concerns are asked for; then
+  // only the new ones are missing.
+  std::int64_t advance(std::int64_t first, std::int64_t end, std::int64_t ahead = 0);
 
   // Samples of slice k, which must be held.
-  const std::byte* slice(std::int64_t k) const {
-    return buffer_.data() + static_cast<std::size_t>(k - first_) * slice_bytes_;
-  }
+  const std::byte* slice(std::int64_t k) const { return place(k); }
 
  private:
+  std::byte* place(std::int64_t k) const {
+    return const_cast<std::byte*>(buffer_.data()) + static_cast<std::size_t>(k % room_) * slice_bytes_;
+  }
+  void make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock);
+  void read_on();
+  bool can_read() const;
+  void read_run(std::unique_lock<std::mutex>& lock);
+
   SliceSource& source_;
   std::size_t slice_bytes_;
+  std::int64_t slices_;  // of the volume
+
+  // Changed under the mutex; buffer and room only while the reader does not read.
   Array<std::byte> buffer_;
-  std::int64_t first_ = 0;
-  std::int64_t end_ = 0;
+  std::int64_t room_ = 1;    // slices in the ring
+  std::int64_t first_;       // held
+  std::int64_t end_;         // of the window
+  std::int64_t filled_;      // slices below are in the ring
+  std::int64_t wanted_ = 0;  // slices below are to be read
+  bool reading_ = false;
+  bool growing_ = false;
+  bool stop_ = false;
+  std::exception_ptr failure_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::thread reader_;
 };
 
 }  // namespace isoweave

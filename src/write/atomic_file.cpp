@@ -104,7 +104,14 @@ void sync_folder(const std::string& path, const std::string& target) {
 
 }  // namespace
 
-OutputDescriptor::OutputDescriptor(int fd, std::string path) : fd_(fd), path_(std::move(path)) {}
+OutputDescriptor::OutputDescriptor(int fd, std::string path, std::uint64_t size)
+    : fd_(fd), path_(std::move(path)), size_(size) {}
+
+OutputDescriptor::OutputDescriptor(OutputDescriptor&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)),
+      path_(std::move(other.path_)),
+      size_(other.size_),
+      buffer_(std::move(other.buffer_)) {}
 
 OutputDescriptor::~OutputDescriptor() {
   if (fd_ >= 0) ::close(fd_);
@@ -193,9 +200,13 @@ std::uint64_t OutputDescriptor::append_in_kernel(const OutputDescriptor& source)
   return static_cast<std::uint64_t>(offset);
 }
 
-void OutputDescriptor::close() {
+void OutputDescriptor::sync() {
   flush();
   if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
+}
+
+void OutputDescriptor::close() {
+  sync();
   struct stat status {};
   if (::fstat(fd_, &status) != 0) fail("cannot be looked up", errno);
   if (static_cast<std::uint64_t>(status.st_size) != size_) {
@@ -209,16 +220,55 @@ void OutputDescriptor::close() {
 AtomicFile::AtomicFile(const std::string& path)
     : path_(path), target_(checked_target(path)), file_(open_temporary(path_, target_, temporary_), path_) {}
 
+AtomicFile::AtomicFile(const std::string& path, const PartFile& part)
+    : path_(path), target_(checked_target(path)), temporary_(part.path), kept_(true), file_(open_part(part)) {}
+
 AtomicFile::~AtomicFile() {
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty() && !kept_) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::commit() {
   file_.close();
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) cannot_write(path_, "cannot be renamed into place", errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    if (errno != EXDEV) cannot_write(path_, "cannot be renamed into place", errno);
+    copy_into_place();
+  }
   temporary_.clear();
   sync_folder(path_, target_);
 }
+
+// A part file may lie on another file system than the target.
+void AtomicFile::copy_into_place() {
+  AtomicFile copy(path_);
+  OutputDescriptor part = open_part({temporary_, file_.size()});
+  copy.append(part);
+  copy.commit();
+  ::unlink(temporary_.c_str());
+}
+
+OutputDescriptor open_part(const PartFile& part) {
+  const int flags = part.size ? O_RDWR : O_RDWR | O_CREAT | O_EXCL;
+  const int fd = ::open(part.path.c_str(), flags | O_CLOEXEC, kNewFileMode);
+  if (fd < 0 && errno == EEXIST) {
+    throw CannotWrite(part.path + ": is there already: resume the unfinished run that it belongs to, or remove it");
+  }
+  if (fd < 0) cannot_write(part.path, part.size ? "cannot be opened again" : "cannot be created", errno);
+  OutputDescriptor file(fd, part.path, part.size.value_or(0));
+  if (!part.size) return file;
+  struct stat status {};
+  if (::fstat(fd, &status) != 0) cannot_write(part.path, "cannot be looked up", errno);
+  if (static_cast<std::uint64_t>(status.st_size) < *part.size) {
+    throw CannotWrite(part.path + ": expected at least " + std::to_string(*part.size) + " bytes, found " +
+                      std::to_string(status.st_size));
+  }
+  const auto size = static_cast<off_t>(*part.size);
+  if (::ftruncate(fd, size) != 0 || ::lseek(fd, size, SEEK_SET) != size) {
+    cannot_write(part.path, "cannot be cut off", errno);
+  }
+  return file;
+}
+
+void remove_part(const PartFile& part) { ::unlink(part.path.c_str()); }
 
 int open_scratch(const std::string& path) {
   std::string temporary;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,11 +15,12 @@ namespace isoweave {
 // An open file descriptor with a write buffer; closes it when destroyed.
 class OutputDescriptor {
  public:
-  // `path` is the name used in messages.
-  OutputDescriptor(int fd, std::string path);
+  // `path` is the name used in messages. Writes on from byte `size`, where the file must end and stand.
+  OutputDescriptor(int fd, std::string path, std::uint64_t size = 0);
   ~OutputDescriptor();
   OutputDescriptor(const OutputDescriptor&) = delete;
   OutputDescriptor& operator=(const OutputDescriptor&) = delete;
+  OutputDescriptor(OutputDescriptor&& other) noexcept;
 
   void write(std::span<const std::byte> bytes);
   void flush();
@@ -29,6 +31,9 @@ class OutputDescriptor {
 
   // Appends all that was written to `source`.
   void append(OutputDescriptor& source);
+
+  // Makes what was written durable.
+  void sync();
 
   // Flushes, makes the data durable, compares the size on disk with what was written, and closes.
   void close();
@@ -46,12 +51,19 @@ class OutputDescriptor {
   std::vector<std::byte> buffer_;
 };
 
+// An unfinished file under a name of its own, to be continued by another process.
+struct PartFile {
+  std::string path;
+  std::optional<std::uint64_t> size;  // to go on from; none: there is no such file yet
+};
+
 // A file that appears under its name only on commit(): until then it is `.NAME.XXXXXX.partial` in the same folder,
-// which the destructor removes. A file that had the name before stays untouched until then. Opening fails at once
+// which the destructor removes, or a part file, which stays. A file that had the name before stays untouched until then. Opening fails at once
 // when the name is empty, a folder or not a regular file, or when the folder is missing or read-only.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
+  AtomicFile(const std::string& path, const PartFile& part);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -62,6 +74,7 @@ class AtomicFile {
   void overwrite(std::uint64_t offset, std::span<const std::byte> bytes) { file_.overwrite(offset, bytes); }
   void read_back(std::uint64_t offset, std::span<std::byte> bytes) { file_.read_back(offset, bytes); }
   void append(OutputDescriptor& source) { file_.append(source); }
+  void sync() { file_.sync(); }
 
   // Bytes written so far.
   std::uint64_t size() const { return file_.size(); }
@@ -70,11 +83,21 @@ class AtomicFile {
   void commit();
 
  private:
+  void copy_into_place();
+
   std::string path_;
   std::string target_;     // path_ with symbolic links resolved: a link stays a link
   std::string temporary_;  // set by open_temporary; empty once renamed
+  bool kept_ = false;      // a part file
   OutputDescriptor file_;
 };
+
+// Creates a part file, or opens one and cuts it off at its size. Throws CannotWrite when the first is there already or
+// the second is missing or shorter.
+OutputDescriptor open_part(const PartFile& part);
+
+// Removes a part file that is no longer needed.
+void remove_part(const PartFile& part);
 
 // Opens a scratch file beside `path`, already without a name: the system frees it however the process ends.
 int open_scratch(const std::string& path);

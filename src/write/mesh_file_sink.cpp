@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -10,6 +11,8 @@
 
 namespace isoweave {
 namespace {
+
+const std::string kMeshPart = "mesh.part";
 
 bool all_finite(std::span<const Point> points) {
   return std::all_of(points.begin(), points.end(),
@@ -30,7 +33,46 @@ std::string lower_case_ending(const std::string& path) {
 }  // namespace
 
 MeshFileSink::MeshFileSink(const std::string& path, const MeshFileOptions& options)
-    : path_(path), options_(options), file_(path) {}
+    : path_(path),
+      options_(options),
+      begin_(parse_mark(options)),
+      file_(options.parts.empty() ? AtomicFile(path) : AtomicFile(path, part(kMeshPart, begin_.bytes))),
+      vertices_(begin_.vertices),
+      triangles_(begin_.triangles) {}
+
+MeshFileSink::Mark MeshFileSink::parse_mark(const MeshFileOptions& options) {
+  Mark mark;
+  if (options.mark.empty()) return mark;
+  std::istringstream text(options.mark);
+  std::string rest;
+  const bool read = static_cast<bool>(text >> mark.vertices >> mark.triangles >> mark.bytes >> mark.side_bytes);
+  if (!read || text >> rest || options.parts.empty()) {
+    throw std::invalid_argument("expected the mark of a mesh and the folder of its parts, found '" + options.mark +
+                                "' and '" + options.parts + "'");
+  }
+  return mark;
+}
+
+PartFile MeshFileSink::part(const std::string& name, std::uint64_t size) const {
+  return {options_.parts + "/" + name, continued() ? std::optional(size) : std::nullopt};
+}
+
+OutputDescriptor& MeshFileSink::open_side(const std::string& name) {
+  side_name_ = name;
+  return options_.parts.empty() ? side_.emplace(open_scratch(path_), path_)
+                                : side_.emplace(open_part(part(name, begin_.side_bytes)));
+}
+
+std::string MeshFileSink::mark() {
+  require_open();
+  if (options_.parts.empty()) return MeshSink::mark();
+  write_held_back();
+  file_.sync();
+  if (side_) side_->sync();
+  const std::uint64_t side_bytes = side_ ? side_->size() : 0;
+  return std::to_string(vertices_) + " " + std::to_string(triangles_) + " " + std::to_string(file_.size()) + " " +
+         std::to_string(side_bytes);
+}
 
 void MeshFileSink::require_open() const {
   if (state_ == State::kFinished) throw std::logic_error(path_ + ": the mesh is already finished");
@@ -68,6 +110,7 @@ void MeshFileSink::finish() {
   state_ = State::kFailed;
   complete();
   file_.commit();
+  if (side_ && !options_.parts.empty()) remove_part(part(side_name_, 0));
   state_ = State::kFinished;
 }
 

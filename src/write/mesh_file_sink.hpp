@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -22,14 +23,25 @@ class MeshFileSink : public MeshSink {
   void append(std::span<const Point> vertices, std::span<const Point> normals,
               std::span<const Triangle64> triangles) final;
   void finish() final;
+  std::string mark() final;
 
  protected:
   MeshFileSink(const std::string& path, const MeshFileOptions& options);
+
+  // Whether the mesh goes on from a mark.
+  bool continued() const { return !options_.mark.empty(); }
+
+  // A second file that pieces are written to: beside the mesh's own part, or, where no parts are kept, without a name.
+  // To be opened by the constructor or never.
+  OutputDescriptor& open_side(const std::string& name);
 
   // Writes a checked piece; `normals` is empty unless the options ask for them. vertices() and triangles() still
   // count what came before it.
   virtual void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
                            std::span<const Triangle64> triangles) = 0;
+
+  // Writes what pieces have left in buffers of the format's own.
+  virtual void write_held_back() {}
 
   // Writes what can only be written at the end, and checks the file against the counts.
   virtual void complete() = 0;
@@ -46,15 +58,26 @@ class MeshFileSink : public MeshSink {
  private:
   enum class State { kOpen, kFailed, kFinished };
 
+  PartFile part(const std::string& name, std::uint64_t size) const;
   void check_piece(std::span<const Point> vertices, std::span<const Point> normals,
                    std::span<const Triangle64> triangles) const;
   void require_open() const;
 
+  // How far a mesh has come; as text it is the mark.
+  struct Mark {
+    std::uint64_t vertices = 0, triangles = 0, bytes = 0, side_bytes = 0;
+  };
+
+  static Mark parse_mark(const MeshFileOptions& options);
+
   std::string path_;
   MeshFileOptions options_;
+  Mark begin_;
   AtomicFile file_;
-  std::uint64_t vertices_ = 0;
-  std::uint64_t triangles_ = 0;
+  std::string side_name_;
+  std::optional<OutputDescriptor> side_;
+  std::uint64_t vertices_;
+  std::uint64_t triangles_;
   State state_ = State::kOpen;
 };
 

@@ -18,6 +18,8 @@ void print(std::string& text, Number number) {
 class ObjSink final : public MeshFileSink {
  public:
   ObjSink(const std::string& path, const MeshFileOptions& options) : MeshFileSink(path, options) {
+    text_bytes_ = file().size();
+    if (continued()) return;
     for (const std::string& comment : options.comments) text_ += "# " + one_line(comment) + "\n";
   }
 
@@ -55,6 +57,8 @@ class ObjSink final : public MeshFileSink {
     text_ += '\n';
     if (text_.size() >= kTextAtOnce) drain();
   }
+
+  void write_held_back() override { drain(); }
 
   void drain() {
     file().write(std::as_bytes(std::span(text_)));

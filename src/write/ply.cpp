@@ -29,10 +29,10 @@ std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, 
 class PlySink final : public MeshFileSink {
  public:
   PlySink(const std::string& path, const MeshFileOptions& options)
-      : MeshFileSink(path, options), faces_(open_scratch(path), path) {
+      : MeshFileSink(path, options), faces_(open_side("faces.part")) {
     const std::string header = header_text(options, 0, 0);
     header_bytes_ = header.size();
-    file().write(std::as_bytes(std::span(header)));
+    if (!continued()) file().write(std::as_bytes(std::span(header)));
   }
 
  private:
@@ -79,7 +79,7 @@ class PlySink final : public MeshFileSink {
                   std::as_bytes(std::span(header)));
   }
 
-  OutputDescriptor faces_;
+  OutputDescriptor& faces_;
   std::vector<std::byte> records_;
   std::uint64_t header_bytes_ = 0;
 };

@@ -1,5 +1,6 @@
 // STL, binary. Each triangle repeats its corners, and may refer to any vertex appended so far: the positions of all
-// vertices stay in memory, 12 bytes each. (PLY and OBJ keep none.)
+// vertices stay in memory, 12 bytes each, and in a file beside the part where the mesh may be continued later. (PLY and
+// OBJ keep none.)
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -42,7 +43,8 @@ Point facet_normal(const Point& a, const Point& b, const Point& c) {
 class StlSink final : public MeshFileSink {
  public:
   StlSink(const std::string& path, const MeshFileOptions& options) : MeshFileSink(path, without_normals(options)) {
-    file().write(header_bytes(0));
+    if (!options.parts.empty()) kept_positions_ = &open_side("positions.part");
+    continued() ? read_positions_back() : file().write(header_bytes(0));
   }
 
  private:
@@ -55,6 +57,7 @@ class StlSink final : public MeshFileSink {
                    std::span<const Triangle64> triangles) override {
     check_count_fits(path(), "triangles", this->triangles(), triangles.size());
     positions_.insert(positions_.end(), vertices.begin(), vertices.end());
+    if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(vertices));
     records_.resize(kTrianglesAtOnce * kTriangleBytes);
     for (std::size_t first = 0; first < triangles.size(); first += kTrianglesAtOnce) {
       const std::size_t end = std::min(triangles.size(), first + kTrianglesAtOnce);
@@ -79,7 +82,13 @@ class StlSink final : public MeshFileSink {
     check_written(kHeaderBytes + triangles() * kTriangleBytes, header);
   }
 
+  void read_positions_back() {
+    positions_.resize(vertices());
+    kept_positions_->read_back(0, std::as_writable_bytes(std::span(positions_)));
+  }
+
   std::vector<Point> positions_;
+  OutputDescriptor* kept_positions_ = nullptr;
   std::vector<std::byte> records_;
 };
 

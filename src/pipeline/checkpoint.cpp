@@ -1,0 +1,148 @@
+#include "pipeline/checkpoint.hpp"
+
+#include <sys/stat.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
+constexpr std::string_view kFormat = "isoweave state 1\n";  // the number changes with the fields
+
+struct Header {
+  std::uint64_t number = 0;
+  RunIdentity identity;
+  Checkpoint checkpoint;
+
+  template <class Archive>
+  void exchange(Archive& archive) {
+    archive.value(number);
+    archive.list(identity.volume);
+    archive.list(identity.options);
+    archive.list(checkpoint.note);
+    archive.list(checkpoint.mark);
+    archive.value(checkpoint.layer);
+    archive.value(checkpoint.layers);
+  }
+};
+
+std::string state_path(const std::string& folder, std::uint64_t number) {
+  return folder + "/state-" + std::to_string(number % 2);
+}
+
+Header read_header(StateReader& reader) {
+  std::string format;
+  reader.list(format);
+  if (format != kFormat) {
+    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found another file");
+  }
+  std::string version;
+  reader.list(version);
+  if (version != ISOWEAVE_VERSION) {
+    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION
+                                   ", found one of version " +
+                   version);
+  }
+  Header header;
+  header.exchange(reader);
+  header.checkpoint.path = reader.path();
+  return header;
+}
+
+// The newest state of a folder that is whole; nothing if there is none, and then why not, if there is one that is not.
+std::optional<Header> newest_state(const std::string& folder, std::string& why) {
+  std::optional<Header> newest;
+  for (const std::uint64_t number : kNumbers) {
+    const std::string path = state_path(folder, number);
+    if (!std::filesystem::exists(path)) continue;
+    try {
+      StateReader reader(path);
+      const Header header = read_header(reader);
+      if (!newest || header.number > newest->number) newest = header;
+    } catch (const BadInput& error) {
+      why = error.what();
+    }
+  }
+  return newest;
+}
+
+std::string numbers_text(std::span<const double> numbers) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const double number : numbers) text << ' ' << number;
+  return text.str();
+}
+
+// Size and time of change of the file that was opened, if it is one.
+std::string file_text(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return "";
+  return ", " + std::to_string(status.st_size) + " bytes changed at " + std::to_string(status.st_mtim.tv_sec) + "." +
+         std::to_string(status.st_mtim.tv_nsec);
+}
+
+void require_same(const std::string& path, const char* what, const std::string& saved, const std::string& now) {
+  if (saved == now) return;
+  throw BadInput(path + ": the " + what + " has changed: expected " + saved + ", found " + now);
+}
+
+}  // namespace
+
+RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
+  RunIdentity identity;
+  std::ostringstream text;
+  text << volume.dims[0] << " x " << volume.dims[1] << " x " << volume.dims[2] << ' ' << sample_type_name(volume.type)
+       << ", spacing" << numbers_text(volume.geometry.spacing) << ", origin" << numbers_text(volume.geometry.origin)
+       << ", axes" << numbers_text(volume.geometry.direction) << ", scale"
+       << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume.path);
+  identity.volume = text.str();
+  text.str("");
+  text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")
+       << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
+       << (options.error.voxels ? " voxels" : "") << ", quality " << static_cast<int>(options.quality) << ", space "
+       << static_cast<int>(options.space) << (options.normals ? ", normals" : "");
+  identity.options = text.str();
+  return identity;
+}
+
+Checkpoint read_checkpoint(const std::string& folder) {
+  std::string why = folder + ": expected a folder with a saved state, found none";
+  const std::optional<Header> newest = newest_state(folder, why);
+  if (!newest) throw BadInput(why);
+  return newest->checkpoint;
+}
+
+StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity) {
+  StateReader reader(checkpoint.path);
+  const Header header = read_header(reader);
+  require_same(checkpoint.path, "volume", header.identity.volume, identity.volume);
+  require_same(checkpoint.path, "task", header.identity.options, identity.options);
+  return reader;
+}
+
+CheckpointFolder::CheckpointFolder(const std::string& folder) : folder_(folder) {
+  std::string why;
+  if (const std::optional<Header> newest = newest_state(folder_, why)) number_ = newest->number;
+}
+
+std::unique_ptr<StateWriter> CheckpointFolder::begin_state(const Checkpoint& checkpoint, const RunIdentity& identity) {
+  ++number_;
+  auto writer = std::make_unique<StateWriter>(state_path(folder_, number_));
+  writer->list(kFormat);
+  writer->list(std::string_view(ISOWEAVE_VERSION));
+  Header{number_, identity, checkpoint}.exchange(*writer);
+  return writer;
+}
+
+void CheckpointFolder::clear() {
+  for (const std::uint64_t number : kNumbers) std::remove(state_path(folder_, number).c_str());
+}
+
+}  // namespace isoweave

@@ -1,0 +1,41 @@
+// Where the states of an unfinished run are kept: two files in a folder, written in turn, so that one is always whole.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "isoweave/pipeline.hpp"
+#include "pipeline/state_file.hpp"
+
+namespace isoweave {
+
+// What a state is good for: everything that the result depends on, as text.
+struct RunIdentity {
+  std::string volume;
+  std::string options;
+};
+
+RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options);
+
+// Opens a saved state behind its header. Throws BadInput when it was saved by another version or in a run with another
+// identity.
+StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity);
+
+class CheckpointFolder {
+ public:
+  // Goes on with the numbers of the states that are there.
+  explicit CheckpointFolder(const std::string& folder);
+
+  // A file in place of the older state, with a header. It counts once it is committed.
+  std::unique_ptr<StateWriter> begin_state(const Checkpoint& checkpoint, const RunIdentity& identity);
+
+  // Removes all states: the run is finished.
+  void clear();
+
+ private:
+  std::string folder_;
+  std::uint64_t number_ = 0;  // of the newest state
+};
+
+}  // namespace isoweave
