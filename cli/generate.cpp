@@ -29,7 +29,7 @@ class WatchedSource final : public SliceSource {
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const std::size_t slice = info().slice_bytes();
     for (std::int64_t k = first; k < first + count; ++k) {
-      if (stop_) throw Interrupted("interrupted");
+      if (stop_) throw Interrupted("interrupted, nothing was written");
       source_.read(k, 1, out.subspan(static_cast<std::size_t>(k - first) * slice));
       Progress progress;
       progress.layer = k + 1;

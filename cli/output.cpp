@@ -43,7 +43,7 @@ int report_error(const std::exception& error) {
   if (is(static_cast<CannotWrite*>(nullptr))) return fail(kExitCannotWrite, error.what());
   if (is(static_cast<OverMemory*>(nullptr))) return fail(kExitOverMemory, error.what());
   if (is(static_cast<DeviceError*>(nullptr))) return fail(kExitDevice, error.what());
-  if (is(static_cast<Interrupted*>(nullptr))) return fail(kExitInterrupted, "interrupted, nothing was written");
+  if (is(static_cast<Interrupted*>(nullptr))) return fail(kExitInterrupted, error.what());
   if (is(static_cast<std::bad_alloc*>(nullptr)) || is(static_cast<std::length_error*>(nullptr))) {
     return fail(kExitOverMemory, "not enough memory");
   }

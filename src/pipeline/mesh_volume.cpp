@@ -56,7 +56,7 @@ class VolumeSweep {
   MeshReport run() {
     Stopwatch total;
     start_report();
-    if (saves() && control_.resume == nullptr) save_state();
+    if (saves()) save_state();
     while (extractor_.layers_left() > 0) {
       stop_if_asked();
       const std::int64_t layers = next_slab();
@@ -216,7 +216,7 @@ class VolumeSweep {
 
   void stop_if_asked() {
     if (control_.stop == nullptr || !control_.stop->load()) return;
-    if (!saves()) throw Interrupted("interrupted");
+    if (!saves()) throw Interrupted("interrupted, nothing was written");
     save_state();
     throw Interrupted("interrupted; the run can be resumed from " + control_.checkpoint.folder);
   }
@@ -231,10 +231,11 @@ class VolumeSweep {
   // What the sink has is made durable first: the state must not know more than the mesh has.
   void save_state() {
     Checkpoint checkpoint;
-    checkpoint.note = control_.checkpoint.note;
-    checkpoint.mark = sink_.mark();
     checkpoint.layers = layers_;
     checkpoint.layer = layers_ - extractor_.layers_left();
+    if (checkpoint.layer == saved_layer_) return;
+    checkpoint.note = control_.checkpoint.note;
+    checkpoint.mark = sink_.mark();
     const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_of(volume_, options_));
     exchange(*writer);
     const std::int64_t slices = held_slices();
@@ -319,7 +320,7 @@ class VolumeSweep {
   std::uint64_t voxels_ = 0;
 
   std::optional<CheckpointFolder> folder_;
-  std::int64_t saved_layer_ = 0;
+  std::int64_t saved_layer_ = -1;
   std::chrono::steady_clock::time_point saved_time_ = std::chrono::steady_clock::now();
   std::int64_t resumed_slices_ = 0;  // held when the state was saved, and
   std::uint32_t resumed_crc_ = 0;    // their checksum

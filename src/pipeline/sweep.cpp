@@ -37,7 +37,7 @@ CostBits retire_cost(double error, double a0) {
 }
 
 void check_stop(const RunControl& control) {
-  if (control.stop != nullptr && control.stop->load()) throw Interrupted("interrupted");
+  if (control.stop != nullptr && control.stop->load()) throw Interrupted("interrupted, nothing was written");
 }
 
 void report_simplifier(const Simplifier& simplifier, MeshReport& report) {

@@ -36,7 +36,7 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
 
 void Simplifier::decide() {
   driver_->run(stop_);
-  if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted");
+  if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
 }
 
 std::vector<Index> Simplifier::final_triangles() {

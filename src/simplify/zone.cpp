@@ -63,6 +63,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
 void Zone::forget_turns() {
   turn_keys.resize(vertices.size());
   turns.resize(vertices.size());
+  std::fill(turn_keys.begin(), turn_keys.end(), make_key(kRetiredCost, 0));
   std::fill(turns.begin(), turns.end(), Turn());
   turns_forgotten_ = true;
 }
@@ -75,7 +76,9 @@ void Zone::list_settled(Index end) {
     settled.old.push_back(destination(h));
   }
   if (turns_forgotten_) {
-    for (Index v = 0; v < vertices.size(); ++v) settled.old.push_back(v);
+    for (Index v = 0; v < vertices.size(); ++v) {
+      if (states[v] == VertexState::kComplete) settled.old.push_back(v);
+    }
     turns_forgotten_ = false;
   }
   std::sort(settled.old.begin(), settled.old.end());

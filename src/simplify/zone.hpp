@@ -164,7 +164,8 @@ class Zone {
 
   std::uint64_t bytes() const;
 
-  // The state between two appends. Turns are not part of it: with the next append all vertices count as settled.
+  // The state between two appends. Turns are not part of it: with the next append all undecided vertices count as
+  // settled.
   template <class Archive>
   void exchange(Archive& archive) {
     archive.list(vertices);

@@ -141,7 +141,7 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
   HistogramCounter counter(info.type);
   std::vector<std::byte> slice(info.slice_bytes());
   for (std::int64_t k = 0; k < info.dims[2]; ++k) {
-    if (stop != nullptr && stop->load()) throw Interrupted("interrupted");
+    if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
     volume.read(k, 1, slice);
     counter.add(slice.data(), info.slice_samples());
   }

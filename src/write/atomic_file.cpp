@@ -75,8 +75,20 @@ std::string temporary_name(const std::string& target, std::random_device& random
   return name + ".partial";
 }
 
-// Creates a new file beside `target`; says its name in `temporary`.
+std::string descriptor_name(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
+
+// A file without a name, which the system frees however the process ends; -1 where there is no such thing, or no way to
+// give it a name later.
+int open_unnamed(const std::string& folder) {
+  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kNewFileMode);
+  if (fd < 0 || ::access(descriptor_name(fd).c_str(), F_OK) == 0) return fd;
+  ::close(fd);
+  return -1;
+}
+
+// Creates a new file in the folder of `target`; says its name in `temporary` if it has one.
 int open_temporary(const std::string& path, const std::string& target, std::string& temporary) {
+  if (const int fd = open_unnamed(folder_of(target)); fd >= 0) return fd;
   std::random_device random;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::string name = temporary_name(target, random);
@@ -205,6 +217,10 @@ void OutputDescriptor::sync() {
   if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
 }
 
+bool OutputDescriptor::link_as(const std::string& name) const {
+  return ::linkat(AT_FDCWD, descriptor_name(fd_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
 void OutputDescriptor::close() {
   sync();
   struct stat status {};
@@ -228,6 +244,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+  if (temporary_.empty()) name_file();
   file_.close();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
     if (errno != EXDEV) cannot_write(path_, "cannot be renamed into place", errno);
@@ -235,6 +252,21 @@ void AtomicFile::commit() {
   }
   temporary_.clear();
   sync_folder(path_, target_);
+}
+
+// A name can be given to a file, but not in place of another file's: that takes a second step.
+void AtomicFile::name_file() {
+  file_.sync();
+  std::random_device random;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::string name = temporary_name(target_, random);
+    if (file_.link_as(name)) {
+      temporary_ = std::move(name);
+      return;
+    }
+    if (errno != EEXIST) cannot_write(path_, "cannot be given a name", errno);
+  }
+  throw CannotWrite(path_ + ": no free temporary name in '" + folder_of(target_) + "'");
 }
 
 // A part file may lie on another file system than the target.
@@ -273,7 +305,7 @@ void remove_part(const PartFile& part) { ::unlink(part.path.c_str()); }
 int open_scratch(const std::string& path) {
   std::string temporary;
   const int fd = open_temporary(path, checked_target(path), temporary);
-  ::unlink(temporary.c_str());
+  if (!temporary.empty()) ::unlink(temporary.c_str());
   return fd;
 }
 

@@ -35,6 +35,9 @@ class OutputDescriptor {
   // Makes what was written durable.
   void sync();
 
+  // Gives a file without a name this one. False, with errno set, when that cannot be done.
+  bool link_as(const std::string& name) const;
+
   // Flushes, makes the data durable, compares the size on disk with what was written, and closes.
   void close();
 
@@ -57,8 +60,9 @@ struct PartFile {
   std::optional<std::uint64_t> size;  // to go on from; none: there is no such file yet
 };
 
-// A file that appears under its name only on commit(): until then it is `.NAME.XXXXXX.partial` in the same folder,
-// which the destructor removes, or a part file, which stays. A file that had the name before stays untouched until then. Opening fails at once
+// A file that appears under its name only on commit(). Until then it lies in the same folder without a name, and is gone
+// when the process ends in whatever way; where the file system cannot do that it is `.NAME.XXXXXX.partial`, which the
+// destructor removes; or it is a part file, which stays. A file that had the name before stays untouched until then. Opening fails at once
 // when the name is empty, a folder or not a regular file, or when the folder is missing or read-only.
 class AtomicFile {
  public:
@@ -83,11 +87,12 @@ class AtomicFile {
   void commit();
 
  private:
+  void name_file();
   void copy_into_place();
 
   std::string path_;
   std::string target_;     // path_ with symbolic links resolved: a link stays a link
-  std::string temporary_;  // set by open_temporary; empty once renamed
+  std::string temporary_;  // set by open_temporary; empty while the file has no name, and once renamed
   bool kept_ = false;      // a part file
   OutputDescriptor file_;
 };

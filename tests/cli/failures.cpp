@@ -98,8 +98,8 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
 
 TEST(CliUsage, WhatIsPromisedForLaterIsRefusedNotIgnored) {
   const files::Folder folder;
-  for (const std::string option : {"--triangles", "--ratio", "--memory", "--checkpoint", "--every", "--resume",
-                                   "--max-distance", "--lods", "--html", "--dry-run"}) {
+  for (const std::string option : {"--triangles", "--ratio", "--memory", "--max-distance", "--lods", "--html",
+                                   "--dry-run"}) {
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, "isoweave: " + option + " is not available in version 0.");
     expect_failure(folder, mesh(kSmall, {option + "=1"}), 2, option + " is not available");
   }
@@ -234,7 +234,7 @@ void expect_interrupted(const std::vector<std::string>& arguments, int signal) {
   const files::Folder folder;
   program::Setup setup;
   setup.signal = signal;
-  setup.ready = [&] { return !folder.entries().empty(); };
+  setup.ready = [&](pid_t process) { return program::has_file_open_in(process, folder); };
   expect_failure(folder, arguments, 130, "interrupted", setup);
   EXPECT_EQ(listing(folder), std::vector<std::string>{});
 }
@@ -253,7 +253,7 @@ TEST(CliInterrupted, AnOlderFileStays) {
   files::write_bytes(folder / "out.ply", "precious");
   program::Setup setup;
   setup.signal = SIGINT;
-  setup.ready = [&] { return folder.entries().size() > 1; };
+  setup.ready = [&](pid_t process) { return program::has_file_open_in(process, folder); };
   expect_failure(folder, {"mesh", kEndless, "-o", "out.ply", "--iso", "127"}, 130, "interrupted", setup);
   EXPECT_EQ(files::read_bytes(folder / "out.ply"), "precious");
 }
@@ -264,7 +264,7 @@ TEST(CliInterrupted, InfoEndsAtOnce) {
   program::Setup setup;
   setup.signal = SIGTERM;
   // It leaves no trace to wait for; long enough to have begun under a sanitizer, too.
-  setup.ready = [&] { return std::chrono::steady_clock::now() - start > std::chrono::seconds(2); };
+  setup.ready = [&](pid_t) { return std::chrono::steady_clock::now() - start > std::chrono::seconds(2); };
   expect_failure(folder, {"info", kEndless}, 130, "interrupted", setup);
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
 
@@ -37,12 +38,21 @@ void become_program(const std::string& folder, char* const* arguments, const std
 void send_when_ready(pid_t child, const Setup& setup) {
   using namespace std::chrono_literals;
   const auto give_up = std::chrono::steady_clock::now() + 60s;
-  while (!setup.ready() && std::chrono::steady_clock::now() < give_up) std::this_thread::sleep_for(5ms);
+  while (!setup.ready(child) && std::chrono::steady_clock::now() < give_up) std::this_thread::sleep_for(5ms);
   std::this_thread::sleep_for(50ms);
   ::kill(child, setup.signal);
 }
 
 }  // namespace
+
+bool has_file_open_in(pid_t process, const files::Folder& folder) {
+  std::error_code error;
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", error)) {
+    if (std::filesystem::read_symlink(entry, error).string().starts_with(folder.path() + "/")) return true;
+  }
+  return false;
+}
 
 Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup) {
   const files::Folder streams;
@@ -73,8 +83,11 @@ bool is_one_line(const std::string& text) {
   return text.starts_with("isoweave: ") && text.find('\n') + 1 == text.size();
 }
 
-std::vector<std::string> listing(const files::Folder& folder) {
-  std::vector<std::string> names = folder.entries();
+std::vector<std::string> listing(const files::Folder& folder) { return listing(folder.path()); }
+
+std::vector<std::string> listing(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -1,6 +1,8 @@
 // Runs the real program in a folder of the test's own.
 #pragma once
 
+#include <sys/types.h>
+
 #include <csignal>
 #include <functional>
 #include <optional>
@@ -22,8 +24,11 @@ struct Setup {
   std::optional<std::size_t> file_limit;  // bytes, as RLIMIT_FSIZE
   std::string out_path;                   // standard output goes here instead
   int signal = 0;                         // sent once `ready`
-  std::function<bool()> ready;
+  std::function<bool(pid_t)> ready;
 };
+
+// The process has a file of this folder open, with a name or without.
+bool has_file_open_in(pid_t process, const files::Folder& folder);
 
 // Runs `isoweave ARGUMENTS` in `folder`.
 Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup = {});
@@ -32,6 +37,7 @@ Result run(const std::string& folder, const std::vector<std::string>& arguments,
 bool is_one_line(const std::string& text);
 
 // Names of all entries, hidden ones too, sorted.
+std::vector<std::string> listing(const std::string& folder);
 std::vector<std::string> listing(const files::Folder& folder);
 
 }  // namespace isoweave::program

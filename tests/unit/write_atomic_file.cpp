@@ -53,9 +53,10 @@ TEST(AtomicFile, AppearsOnCommitOnly) {
     AtomicFile file(folder / "a.txt");
     file.write(bytes_of("hello"));
     EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
-    ASSERT_EQ(folder.entries().size(), 1U);
-    const std::string temporary = folder.entries()[0];
-    EXPECT_TRUE(temporary.starts_with(".a.txt.") && temporary.ends_with(".partial")) << temporary;
+    // Where the file system has no files without names, there is one that says what it is.
+    for (const std::string& temporary : folder.entries()) {
+      EXPECT_TRUE(temporary.starts_with(".a.txt.") && temporary.ends_with(".partial")) << temporary;
+    }
     file.commit();
   }
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.txt"});
@@ -101,7 +102,7 @@ TEST(AtomicFile, AppendsAScratchFileThatHasNoName) {
   const std::string block((3 << 20) + 1, 'y');
   AtomicFile file(folder / "a.txt");
   OutputDescriptor scratch(open_scratch(folder / "a.txt"), folder / "a.txt");
-  EXPECT_EQ(folder.entries().size(), 1U) << "only the temporary file of `file` has a name";
+  EXPECT_LE(folder.entries().size(), 1U) << "no more than the temporary file of `file` has a name";
   scratch.write(bytes_of(block));
   scratch.write(bytes_of("tail"));
   file.write(bytes_of("head"));
@@ -214,7 +215,6 @@ TEST(AtomicFile, MeshWritersLeaveNothingWithoutFinish) {
   for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
     const auto sink = open_mesh_file(folder / name);
     sink->append(meshes::cube().vertices, {}, {});
-    EXPECT_FALSE(folder.entries().empty());
   }
   EXPECT_TRUE(folder.entries().empty());
 }

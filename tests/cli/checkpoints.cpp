@@ -1,0 +1,140 @@
+// Runs that are killed, interrupted or stopped by a full disk, and go on.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace isoweave {
+namespace {
+
+using program::listing;
+using program::Result;
+using program::run;
+
+constexpr const char* kVolume = "generate:gyroid:96x96x160:uint8";
+
+std::vector<std::string> mesh(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"mesh", kVolume, "-o", "out.ply", "--iso", "127.5", "--report", "out.json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+std::string digest(const std::string& report) {
+  return nlohmann::json::parse(files::read_bytes(report)).at("digest").get<std::string>();
+}
+
+// Of a run that nothing disturbs.
+std::string undisturbed_digest() {
+  const files::Folder folder;
+  EXPECT_EQ(run(folder.path(), mesh({"--quiet"})).code, 0);
+  return digest(folder / "out.json");
+}
+
+program::Setup after(int signal, std::chrono::milliseconds delay) {
+  program::Setup setup;
+  setup.signal = signal;
+  const auto start = std::chrono::steady_clock::now();
+  setup.ready = [=](pid_t) { return std::chrono::steady_clock::now() - start > delay; };
+  return setup;
+}
+
+TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
+  const std::string expected = undisturbed_digest();
+  std::mt19937 random(11);
+  int kills = 0;
+  for (int trial = 0; trial < 5; ++trial) {
+    const files::Folder folder;
+    std::vector<std::string> arguments = mesh({"--checkpoint", "run", "--every", "4layers", "--slab", "4"});
+    for (int part = 0; part < 100; ++part) {
+      const Result result =
+          run(folder.path(), arguments, after(SIGKILL, std::chrono::milliseconds(20 + random() % 250)));
+      if (result.code == 0) break;
+      ASSERT_EQ(result.signal, SIGKILL) << result.err;
+      ++kills;
+      if (std::filesystem::exists(folder / "out.ply")) break;  // killed when the mesh was complete
+      const std::vector<std::string> left = listing(folder);
+      ASSERT_TRUE(left == std::vector<std::string>{} || left == std::vector<std::string>{"run"}) << left[0];
+      if (left.empty() || listing(folder / "run").empty()) continue;
+      arguments = {"mesh", "--resume", "run", "--threads", std::to_string(1 + random() % 4)};
+    }
+    const Result check = run(folder.path(), {"check", "out.ply", "--json"});
+    ASSERT_EQ(check.code, 0) << check.err;
+    EXPECT_EQ(nlohmann::json::parse(check.out).at("digest").get<std::string>(), expected);
+  }
+  EXPECT_GT(kills, 0);
+}
+
+TEST(CliCheckpoint, InterruptedRunsSayHowToGoOn) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const files::Folder folder;
+    const Result result = run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
+                              after(signal, std::chrono::milliseconds(150)));
+    ASSERT_EQ(result.code, 130) << result.err;
+    EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
+    EXPECT_NE(result.err.find("can be resumed from run"), std::string::npos) << result.err;
+    EXPECT_EQ(listing(folder), std::vector<std::string>{"run"});
+    ASSERT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
+    EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
+    EXPECT_EQ(listing(folder), (std::vector<std::string>{"out.json", "out.ply", "run"}));
+  }
+}
+
+TEST(CliCheckpoint, AFullDiskIsNoLoss) {
+  const files::Folder folder;
+  program::Setup setup;
+  setup.file_limit = 900 << 10;
+  const Result result =
+      run(folder.path(), mesh({"--checkpoint", "run", "--every", "1layers", "--error", "0", "--slab", "2"}), setup);
+  ASSERT_EQ(result.code, 4) << result.err;
+  EXPECT_EQ(listing(folder), std::vector<std::string>{"run"});
+  ASSERT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
+  const files::Folder other;
+  ASSERT_EQ(run(other.path(), mesh({"--error", "0", "--quiet"})).code, 0);
+  EXPECT_EQ(digest(folder / "out.json"), digest(other / "out.json"));
+}
+
+TEST(CliCheckpoint, ResumesFromAnywhere) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
+                after(SIGINT, std::chrono::milliseconds(150)))
+                .code,
+            130);
+  ASSERT_EQ(run("/", {"mesh", "--resume", folder / "run", "--quiet"}).code, 0);
+  EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
+}
+
+void expect_refused(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
+                    const std::string& says) {
+  const std::vector<std::string> before = listing(folder);
+  const Result result = run(folder.path(), arguments);
+  EXPECT_EQ(result.code, code) << result.err;
+  EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
+  EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+  EXPECT_EQ(listing(folder), before);
+}
+
+TEST(CliCheckpoint, WrongUseIsRefused) {
+  const files::Folder folder;
+  expect_refused(folder, {"mesh", "--resume", "run"}, 3, "run: expected a folder with a saved state");
+  expect_refused(folder, {"mesh", "--resume", "run", "--iso", "3"}, 2, "--iso");
+  expect_refused(folder, {"mesh", kVolume, "--resume", "run"}, 2, "VOLUME");
+  expect_refused(folder, mesh({"--checkpoint", "run", "--every", "5"}), 2, "--every: expected a number of layers");
+  expect_refused(folder, mesh({"--checkpoint", "run", "--every", "0min"}), 2, "--every");
+  files::write_bytes(folder / "file", "x");
+  expect_refused(folder, mesh({"--checkpoint", "file/run"}), 4, "cannot be created");
+  ASSERT_EQ(run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
+                after(SIGINT, std::chrono::milliseconds(150)))
+                .code,
+            130);
+  expect_refused(folder, mesh({"--checkpoint", "run"}), 4, "holds an unfinished run");
+}
+
+}  // namespace
+}  // namespace isoweave
