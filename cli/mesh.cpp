@@ -1,10 +1,12 @@
 // isoweave mesh: volume in, simplified surface out.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "isoweave/error.hpp"
@@ -34,8 +36,8 @@ struct MeshArguments {
   InputOptions input;
   RunOptions run;
   std::string output, iso, error = "0.2vox", quality = "normal", slab, inside = "above", normals = "none";
-  std::string space, checkpoint, every, resume;
-  bool open = false, closed = false;
+  std::string space, memory, checkpoint, every, resume;
+  bool open = false, closed = false, dry_run = false;
 };
 
 // What a saved state keeps of the command line: the task, with paths that hold wherever it is resumed.
@@ -54,6 +56,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"normals", arguments.normals},
           {"space", arguments.space},
           {"open", arguments.open},
+          {"memory", arguments.memory},
           {"every", arguments.every}};
 }
 
@@ -73,6 +76,7 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
   arguments.normals = task.at("normals");
   arguments.space = task.at("space");
   arguments.open = task.at("open");
+  if (now.memory.empty()) arguments.memory = task.at("memory");
   if (now.every.empty()) arguments.every = task.at("every");
   arguments.checkpoint = now.resume;
   return arguments;
@@ -150,11 +154,39 @@ std::vector<std::string> comments(const MeshArguments& arguments, const MeshOpti
                       options.closed ? "closed" : "open", arguments.error, arguments.quality)};
 }
 
+std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshOptions& options) {
+  return mesh_file_bytes(arguments.output, forecast.vertices, forecast.triangles, options.normals);
+}
+
+std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int threads) {
+  return fmt::format(
+      "triangles  about {}, {} of them left\noutput     about {}\nmemory     about {}, with --memory at least {}\n"
+      "time       about {:.2g} s on {} thread{}\n",
+      short_count(static_cast<double>(forecast.triangles_extracted)),
+      short_count(static_cast<double>(forecast.triangles)), byte_text(bytes), byte_text(forecast.peak_bytes),
+      byte_text(forecast.least_bytes), forecast.seconds, threads, threads == 1 ? "" : "s");
+}
+
+// What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
+Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control) {
+  const Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
+  output_bytes(forecast, arguments, options);
+  if (control.memory > 0 && forecast.least_bytes > control.memory) {
+    throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more, found {}", arguments.input.path,
+                                 std::ceil(static_cast<double>(forecast.least_bytes) * 1e-6), arguments.memory));
+  }
+  return forecast;
+}
+
 Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
-                 const MeshOptions& options) {
+                 const MeshOptions& options, const std::optional<Forecast>& forecast) {
   Json input = volume_json(info, arguments.input.path);
   add_range(input, report.min, report.max, report.nan);
   Json json = run_json(report, std::move(input));
+  if (forecast) {
+    json["memory"]["predicted_bytes"] = forecast->peak_bytes;
+    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, options));
+  }
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
   json["closed"] = options.closed;
@@ -176,6 +208,8 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   options.error = parse_error_length("--error", arguments.error, info.geometry.unit);
   options.slab = parse_slab(arguments.slab, info.dims[2]);
 
+  if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
+
   control.stop = &stop_on_signal();
   std::optional<AtomicFile> report_file;
   if (!run.report.empty()) report_file.emplace(run.report);
@@ -183,6 +217,15 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     open_mesh_file(arguments.output);  // finds out now what would stop the run after the first pass
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
+  }
+  std::optional<Forecast> forecast;
+  if (resume == nullptr) forecast = checked_forecast(arguments, options, control);
+  if (arguments.dry_run) {
+    const std::uint64_t bytes = output_bytes(*forecast, arguments, options);
+    const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
+    print_out(forecast_text(*forecast, bytes, threads));
+    if (report_file) write_report(*report_file, {{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
+    return;
   }
   if (!arguments.checkpoint.empty()) {
     parse_every(arguments.every, control.checkpoint);
@@ -201,11 +244,12 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = mesh_volume(*volume, *sink, options, control);
   printer.finish();
-  if (report_file) write_report(*report_file, report_json(report, info, arguments, options));
+  if (report_file) write_report(*report_file, report_json(report, info, arguments, options, forecast));
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   const auto slices = static_cast<double>(info.dims[2]);
-  print_summary(report, arguments.output, static_cast<double>(info.slice_samples()) * slices);
+  print_summary(report, arguments.output, static_cast<double>(info.slice_samples()) * slices,
+                forecast ? &*forecast : nullptr);
 }
 
 void run_mesh(MeshArguments arguments) {
@@ -225,8 +269,8 @@ void run_mesh(MeshArguments arguments) {
 
 // The task of a run that goes on is known; how it runs may be said anew.
 void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
-  constexpr std::array<std::string_view, 9> kRunning{"--help",   "--slab",     "--every",  "--threads", "--device",
-                                                     "--report", "--schedule", "--progress", "--quiet"};
+  constexpr std::array<std::string_view, 10> kRunning{"--help",     "--slab",   "--memory",   "--every",    "--threads",
+                                                      "--device",   "--report", "--schedule", "--progress", "--quiet"};
   for (CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
     if (option != &resume && std::ranges::find(kRunning, name) == kRunning.end()) resume.excludes(option);
@@ -253,6 +297,8 @@ void add_mesh_verb(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--normals", arguments->normals, "none or gradient")->capture_default_str();
   verb->add_option("--space", arguments->space, "Coordinates of the output: lps, ras or index (default: the volume's)");
+  verb->add_option("--memory", arguments->memory, "Cap on the memory of the process, such as 800M or 2G");
+  verb->add_flag("--dry-run", arguments->dry_run, "Say what the run would take, from a sample of the volume");
   verb->add_option("--checkpoint", arguments->checkpoint,
                    "Save the state of the run in this folder, to go on with after whatever ends it");
   verb->add_option("--every", arguments->every, "How often: a number of layers or a time: 16layers, 90s, 5min, 2h")

@@ -67,6 +67,27 @@ std::int64_t parse_count(std::string_view option, std::string_view text) {
   return *value;
 }
 
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"", 1},
+                                                                       {"K", 1e3},
+                                                                       {"M", 1e6},
+                                                                       {"G", 1e9},
+                                                                       {"T", 1e12},
+                                                                       {"Ki", 1024.0},
+                                                                       {"Mi", 1024.0 * 1024},
+                                                                       {"Gi", 1024.0 * 1024 * 1024},
+                                                                       {"Ti", 1024.0 * 1024 * 1024 * 1024}}};
+  std::string_view unit = text.substr(std::min(text.find_first_not_of("0123456789."), text.size()));
+  const std::optional<double> number = to_finite(text.substr(0, text.size() - unit.size()));
+  if (unit.ends_with('B')) unit.remove_suffix(1);
+  for (const auto& [name, bytes] : kUnits) {
+    if (name == unit && number && *number * bytes >= 1 && *number * bytes < 1e18) {
+      return static_cast<std::uint64_t>(*number * bytes);
+    }
+  }
+  wrong_value(option, "an amount of memory such as 800M or 2G", text);
+}
+
 std::array<double, 3> parse_triple(std::string_view option, std::string_view text) {
   const std::vector<std::string_view> parts = split(text, ',');
   std::array<double, 3> values{};
@@ -205,7 +226,7 @@ void refuse_unavailable(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--triangles", "--ratio", "--memory", "--max-distance", "--lods", "--html", "--dry-run"}) {
+    for (const std::string_view option : {"--triangles", "--ratio", "--max-distance", "--lods", "--html"}) {
       if (name == option) not_available(option);
     }
   }

@@ -83,6 +83,16 @@ Json run_json(const MeshReport& report, Json input) {
           {"warnings", report.warnings}};
 }
 
+Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
+  return {{"triangles_extracted", forecast.triangles_extracted},
+          {"triangles", forecast.triangles},
+          {"vertices", forecast.vertices},
+          {"output_bytes", output_bytes},
+          {"peak_bytes", forecast.peak_bytes},
+          {"least_bytes", forecast.least_bytes},
+          {"seconds", forecast.seconds}};
+}
+
 std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, nlohmann::detail::error_handler_t::replace) + "\n";
 }
@@ -100,7 +110,7 @@ std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges
                             grouped(nonmanifold_vertices));
 }
 
-void print_summary(const MeshReport& report, const std::string& output, double voxels) {
+void print_summary(const MeshReport& report, const std::string& output, double voxels, const Forecast* forecast) {
   print_note(fmt::format("{}: {} of {} triangles, {} vertices, {}", output, grouped(report.triangles),
                          grouped(report.triangles_extracted), grouped(report.vertices),
                          state_text(report.open_edges, report.nonmanifold_edges, report.nonmanifold_vertices)));
@@ -110,6 +120,11 @@ void print_summary(const MeshReport& report, const std::string& output, double v
   }
   print_note(fmt::format("{}, peak memory {}, {} thread{}", speed, byte_text(report.peak_bytes), report.threads,
                          report.threads == 1 ? "" : "s"));
+  if (forecast != nullptr) {
+    print_note(fmt::format("predicted: {} triangles, {:.2f} s, peak memory {}",
+                           short_count(static_cast<double>(forecast->triangles)), forecast->seconds,
+                           byte_text(forecast->peak_bytes)));
+  }
   print_note(fmt::format("digest {}", digest_text(report.digest)));
 }
 

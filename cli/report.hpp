@@ -26,6 +26,9 @@ void add_range(Json& input, double min, double max, std::uint64_t nan);
 // What every run reports; `input` is the first part that differs between runs on volumes and on meshes.
 Json run_json(const MeshReport& report, Json input);
 
+// What a run was expected to take.
+Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
+
 // JSON text that ends with a line feed. Names that are not UTF-8 do not stop it.
 std::string json_text(const Json& json);
 
@@ -36,7 +39,8 @@ void write_report(AtomicFile& file, const Json& json);
 std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices);
 
 // A few lines on standard error about a run that is done.
-void print_summary(const MeshReport& report, const std::string& output, double voxels);
+void print_summary(const MeshReport& report, const std::string& output, double voxels,
+                   const Forecast* forecast = nullptr);
 
 std::string_view space_name(Space space);
 std::string_view schedule_name(Schedule schedule);

@@ -63,4 +63,9 @@ struct MeshFileOptions {
 // vertices in memory, 12 bytes each.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
+// Size of a mesh file of this name with so many vertices and triangles; of text about. Throws CannotWrite when the format
+// cannot hold them, or when the ending is unknown.
+std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
+                              bool normals = false);
+
 }  // namespace isoweave

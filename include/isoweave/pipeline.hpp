@@ -66,6 +66,9 @@ struct RunControl {
   Schedule schedule = Schedule::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
+  // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it, unless
+  // MeshOptions name the slab. OverMemory is thrown when not even one layer more would fit.
+  std::uint64_t memory = 0;
   CheckpointOptions checkpoint{};        // mesh_volume only. The sink must be able to give marks
   const Checkpoint* resume = nullptr;    // go on from there, with the same volume and options and a sink opened at its mark
   bool measure = true;  // digest, components and range of the samples; without it these stay empty in the report
@@ -125,6 +128,21 @@ struct SimplifyOptions {
   Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
   Quality quality = Quality::kNormal;
 };
+
+// What a run will take, from a sample of the volume.
+struct Forecast {
+  std::uint64_t triangles_extracted = 0;
+  std::uint64_t triangles = 0, vertices = 0;  // written
+  std::uint64_t peak_bytes = 0;               // of the process
+  std::uint64_t least_bytes = 0;              // the smallest RunControl::memory that should do
+  double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
+};
+
+// Reads up to eight blocks of thirteen slices, extracts them and simplifies a part of them, in a small part of the time
+// of the run. A source can be read once only: this one is of no use afterwards. Where skipping slices means to
+// decompress them, no more than the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what
+// mesh_volume throws.
+Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 // Simplifies a mesh with the same rules. Vertices on non-manifold or badly oriented edges, and vertices whose triangles
 // form more than one fan, are locked: they stay where they are. Normals of the input are not kept.

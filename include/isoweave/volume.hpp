@@ -66,6 +66,9 @@ class SliceSource {
   // `out` holds at least count * slice_bytes() bytes. Throws BadInput when the data end early, are
   // corrupt or cannot be read; std::invalid_argument for a range outside the volume or behind.
   virtual void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) = 0;
+
+  // Whether slices that are skipped cost next to nothing. Not so in a compressed stream.
+  virtual bool skips() const { return true; }
 };
 
 // Layout of a headerless file.

@@ -11,26 +11,13 @@
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/full_output.hpp"
+#include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
+#include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
 namespace {
-
-// A slab of this many triangles keeps all threads busy and stays small beside what a scan needs elsewhere.
-constexpr double kSlabTriangles = 160000;
-constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
-constexpr std::uint64_t kAheadBytes = std::uint64_t{64} << 20;
-
-// The surface in stored sample units; a negative slope turns inside and outside around.
-IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
-  if (!std::isfinite(options.iso)) throw std::invalid_argument("iso: expected a finite number");
-  IsoRule rule;
-  rule.iso = (options.iso - volume.intercept) / volume.slope;
-  rule.above = options.inside_above == (volume.slope > 0);
-  rule.closed = options.closed;
-  return rule;
-}
 
 class VolumeSweep {
  public:
@@ -40,7 +27,7 @@ class VolumeSweep {
         control_(control),
         executor_(control.threads),
         extractor_(volume_, {stored_rule(volume_, options), options.normals}, executor_),
-        voxel_(cube_root(volume_.geometry.spacing[0] * volume_.geometry.spacing[1] * volume_.geometry.spacing[2])),
+        voxel_(mean_voxel(volume_.geometry)),
         // A zone that has been left in the middle cannot be saved.
         simplifier_(simplifier_options(), executor_, saves() ? nullptr : control.stop),
         world_(volume_.geometry, options.space),
@@ -109,27 +96,39 @@ class VolumeSweep {
   // An open volume of one sample along an axis has crossings and no triangles.
   bool has_cells() const { return options_.closed || std::ranges::min(volume_.dims) > 1; }
 
-  // Layers of the next slab: as asked, or as many as hold kSlabTriangles going by what has been extracted so far.
-  std::int64_t next_slab() const {
+  // Layers of the next slab: as asked, or as many as are good to hold going by what has been extracted so far.
+  std::int64_t next_slab() {
     const std::int64_t left = extractor_.layers_left();
-    if (options_.slab > 0) return std::min(options_.slab, left);
-    const std::int64_t done = layers_ - left;
-    const auto bytes = static_cast<std::int64_t>(volume_.slice_bytes());
-    std::int64_t layers = std::clamp(kSlabBytes / std::max<std::int64_t>(bytes, 1), std::int64_t{4}, std::int64_t{64});
-    if (done > 0) {
-      const double per_layer = static_cast<double>(recent_triangles_ + 1) / static_cast<double>(recent_layers_);
-      layers = std::min(layers, static_cast<std::int64_t>(kSlabTriangles / per_layer) + 1);
-    } else {
-      layers = std::min<std::int64_t>(layers, 8);
-    }
+    const bool first = left == layers_;
+    const double per_layer = static_cast<double>(recent_triangles_) / static_cast<double>(recent_layers_);
+    std::int64_t layers = options_.slab;
+    if (layers == 0) layers = first ? std::min<std::int64_t>(most_layers(volume_), 8) : automatic_slab(volume_, per_layer);
+    if (control_.memory > 0) layers = std::min(layers, first ? 1 : layers_within_cap(per_layer));
     return std::min(layers, left);
+  }
+
+  // Half as many as the cap has room for, as the next layers may be twice as full. Throws OverMemory when there is no
+  // room for one.
+  std::int64_t layers_within_cap(double per_layer) {
+    const MemoryModel model{volume_.slice_bytes(), executor_.threads(), simplifies_, options_.normals};
+    const auto undecided = static_cast<double>(simplifier_.live_triangles());
+    const double fitting = model.layers_within(kUsedPart * static_cast<double>(control_.memory), per_layer, undecided);
+    if (fitting >= 1) return std::max<std::int64_t>(1, static_cast<std::int64_t>(fitting / 2));
+    const auto needed = static_cast<std::uint64_t>(model.peak(1, 1, per_layer, undecided) / kUsedPart);
+    std::string message = volume_.path + ": the next layer of " + std::to_string(layers_) + " needs a memory cap of " +
+                          std::to_string(needed) + " bytes, found " + std::to_string(control_.memory);
+    if (saves()) {
+      save_state();
+      message += "; the run can be resumed from " + control_.checkpoint.folder;
+    }
+    throw OverMemory(message);
   }
 
   void read_slab(std::int64_t layers) {
     const auto [first, end] = extractor_.slices_for(layers);
     std::int64_t read = 0;
     try {
-      read = window_->advance(first, end, slices_ahead(layers));
+      read = window_->advance(first, end, slices_ahead(volume_, layers));
     } catch (const BadInput&) {
       if (saves()) save_state();
       throw;
@@ -138,12 +137,6 @@ class VolumeSweep {
     voxels_ += static_cast<std::uint64_t>(read * volume_.slice_samples());
     if (control_.measure) measure_samples(read);
     clock_.lap(report_.seconds_read);
-  }
-
-  // Slices of the next slab, to be read while this one is worked on.
-  std::int64_t slices_ahead(std::int64_t layers) const {
-    const auto most = static_cast<std::int64_t>(kAheadBytes / std::max<std::uint64_t>(volume_.slice_bytes(), 1));
-    return std::clamp<std::int64_t>(most, 1, layers);
   }
 
   void sweep_slab(std::int64_t layers) {

@@ -28,6 +28,19 @@ double cube_root(double x) {
   return std::ldexp(root, exponent / 3);
 }
 
+double mean_voxel(const Geometry& geometry) {
+  return cube_root(geometry.spacing[0] * geometry.spacing[1] * geometry.spacing[2]);
+}
+
+IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
+  if (!std::isfinite(options.iso)) throw std::invalid_argument("iso: expected a finite number");
+  IsoRule rule;
+  rule.iso = (options.iso - volume.intercept) / volume.slope;
+  rule.above = options.inside_above == (volume.slope > 0);
+  rule.closed = options.closed;
+  return rule;
+}
+
 CostBits retire_cost(double error, double a0) {
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
 #include "simplify/simplifier.hpp"
 
@@ -27,6 +28,13 @@ std::uint64_t peak_process_bytes();
 
 // Cube root by Newton's method: additions, multiplications and divisions only, so equal on every machine.
 double cube_root(double x);
+
+// Mean side of a voxel.
+double mean_voxel(const Geometry& geometry);
+
+// The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument for
+// an iso-value that is not finite.
+IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 
 // The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN.
 CostBits retire_cost(double error, double a0);

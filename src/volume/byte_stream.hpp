@@ -22,6 +22,9 @@ class ByteStream {
 
   // Skips up to `count` bytes and returns how many there were to skip. Reads and drops them unless overridden.
   virtual std::uint64_t skip(std::uint64_t count);
+
+  // Whether skipping costs next to nothing.
+  virtual bool skips() const { return false; }
 };
 
 // Bytes [begin, end) of a file, read straight into the caller's memory.
@@ -31,6 +34,7 @@ class FileStream final : public ByteStream {
 
   std::size_t read(std::span<std::byte> out) override;
   std::uint64_t skip(std::uint64_t count) override;
+  bool skips() const override { return true; }
 
  private:
   std::shared_ptr<const InputFile> file_;

@@ -24,6 +24,7 @@ class StreamSource final : public SliceSource {
 
   const VolumeInfo& info() const override { return volume_.info; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+  bool skips() const override { return volume_.samples->skips(); }
 
  private:
   OpenedVolume volume_;

@@ -142,12 +142,46 @@ std::string one_line(const std::string& comment) {
   return line;
 }
 
-std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options) {
+namespace {
+
+enum class MeshFormat { kPly, kStl, kObj };
+
+MeshFormat format_of(const std::string& path) {
   const std::string ending = lower_case_ending(path);
-  if (ending == ".ply") return open_ply(path, options);
-  if (ending == ".stl") return open_stl(path, options);
-  if (ending == ".obj") return open_obj(path, options);
+  if (ending == ".ply") return MeshFormat::kPly;
+  if (ending == ".stl") return MeshFormat::kStl;
+  if (ending == ".obj") return MeshFormat::kObj;
   throw CannotWrite(path + ": expected a name that ends in .ply, .stl or .obj");
+}
+
+}  // namespace
+
+std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options) {
+  switch (format_of(path)) {
+    case MeshFormat::kPly:
+      return open_ply(path, options);
+    case MeshFormat::kStl:
+      return open_stl(path, options);
+    case MeshFormat::kObj:
+      break;
+  }
+  return open_obj(path, options);
+}
+
+std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles, bool normals) {
+  constexpr std::uint64_t kObjVertexBytes = 32;  // a line of text
+  constexpr std::uint64_t kObjFaceBytes = 24;
+  switch (format_of(path)) {
+    case MeshFormat::kPly:
+      check_count_fits(path, "vertices", 0, vertices);
+      return vertices * (normals ? 24 : 12) + triangles * 13;
+    case MeshFormat::kStl:
+      check_count_fits(path, "triangles", 0, triangles);
+      return triangles * 50;
+    case MeshFormat::kObj:
+      break;
+  }
+  return vertices * kObjVertexBytes * (normals ? 2 : 1) + triangles * kObjFaceBytes * (normals ? 2 : 1);
 }
 
 }  // namespace isoweave

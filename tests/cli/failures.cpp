@@ -98,8 +98,7 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
 
 TEST(CliUsage, WhatIsPromisedForLaterIsRefusedNotIgnored) {
   const files::Folder folder;
-  for (const std::string option : {"--triangles", "--ratio", "--memory", "--max-distance", "--lods", "--html",
-                                   "--dry-run"}) {
+  for (const std::string option : {"--triangles", "--ratio", "--max-distance", "--lods", "--html"}) {
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, "isoweave: " + option + " is not available in version 0.");
     expect_failure(folder, mesh(kSmall, {option + "=1"}), 2, option + " is not available");
   }

@@ -1,0 +1,260 @@
+// Forecasts: a few blocks of the volume are meshed, and the rest is taken to be like them.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "extract/rules.hpp"
+#include "isoweave/pipeline.hpp"
+#include "parallel/parallel.hpp"
+#include "pipeline/slab_plan.hpp"
+#include "pipeline/sweep.hpp"
+#include "slab/memory_model.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::int64_t kBlocks = 8;
+constexpr std::int64_t kBlockSlices = 9;
+constexpr double kSampledPart = 0.02;  // of the volume's bytes, and of its triangles that are simplified
+constexpr double kLeastBytes = 4e6;
+constexpr double kMostBytes = 128e6;
+constexpr double kLeastTile = 2000;  // triangles of a block that are simplified
+constexpr double kMostTile = 20000;
+constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
+
+// How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
+// flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
+double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
+constexpr double kCapDepth = 20;
+
+// Some slices of a volume, cut to a tile.
+class Block final : public SliceSource {
+ public:
+  Block(const VolumeInfo& volume, std::int64_t slices) : info_(volume) {
+    info_.dims[2] = slices;
+    samples_.resize(static_cast<std::size_t>(slices) * info_.slice_bytes());
+  }
+
+  const VolumeInfo& info() const override { return info_; }
+  std::span<std::byte> samples() { return samples_; }
+
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    const std::size_t bytes = info_.slice_bytes();
+    std::memcpy(out.data(), samples_.data() + static_cast<std::size_t>(first) * bytes,
+                static_cast<std::size_t>(count) * bytes);
+  }
+
+  // The middle of it, with this part of both sides.
+  Block tile(double part) const {
+    Block cut(info_, info_.dims[2]);
+    std::array<std::int64_t, 2> from{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const auto side = static_cast<std::int64_t>(part * static_cast<double>(info_.dims[axis]));
+      cut.info_.dims[axis] = std::clamp<std::int64_t>(side, std::min<std::int64_t>(2, info_.dims[axis]), info_.dims[axis]);
+      from[axis] = (info_.dims[axis] - cut.info_.dims[axis]) / 2;
+    }
+    const std::size_t each = sample_bytes(info_.type);
+    const std::size_t row = static_cast<std::size_t>(cut.info_.dims[0]) * each;
+    cut.samples_.resize(static_cast<std::size_t>(info_.dims[2]) * cut.info_.slice_bytes());
+    std::byte* out = cut.samples_.data();
+    for (std::int64_t k = 0; k < info_.dims[2]; ++k) {
+      for (std::int64_t j = 0; j < cut.info_.dims[1]; ++j, out += row) {
+        const std::int64_t at = (k * info_.dims[1] + from[1] + j) * info_.dims[0] + from[0];
+        std::memcpy(out, samples_.data() + static_cast<std::size_t>(at) * each, row);
+      }
+    }
+    return cut;
+  }
+
+ private:
+  VolumeInfo info_;
+  std::vector<std::byte> samples_;
+};
+
+// Counts triangles, and those in the middle third of the layers, which the block's ends hardly disturb.
+class CountingSink final : public MeshSink {
+ public:
+  CountingSink(double from, double to) : from_(from), to_(to) {}
+
+  void append(std::span<const Point> vertices, std::span<const Point> /*normals*/,
+              std::span<const std::array<std::uint64_t, 3>> triangles) override {
+    for (const Point& vertex : vertices) heights_.push_back(vertex[2]);
+    total += triangles.size();
+    for (const auto& t : triangles) {
+      const double height = (double{heights_[t[0]]} + double{heights_[t[1]]} + double{heights_[t[2]]}) / 3;
+      middle += height >= from_ && height < to_ ? 1 : 0;
+    }
+  }
+  void finish() override {}
+
+  std::uint64_t total = 0, middle = 0;
+
+ private:
+  double from_, to_;
+  std::vector<float> heights_;
+};
+
+struct BlockFacts {
+  double per_layer = 0;  // triangles of the open surface
+  double caps = 0;       // triangles per layer on the four sides of a closed one
+};
+
+class Forecaster {
+ public:
+  Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
+      : volume_(volume), info_(volume.info()), options_(options) {
+    control_.threads = control.threads;
+    control_.measure = false;
+    control_.stop = control.stop;
+    error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
+    plan_blocks(control.memory);
+  }
+
+  Forecast run() {
+    for (std::int64_t n = 0; n < blocks_; ++n) {
+      Block block(info_, slices_each_);
+      volume_.read((slices_ - slices_each_) * (2 * n + 1) / (2 * blocks_), slices_each_, block.samples());
+      look_at(block);
+    }
+    if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
+    return conclude();
+  }
+
+ private:
+  // How many blocks there are and how thick: a small part of the volume, and of the memory there is.
+  void plan_blocks(std::uint64_t memory) {
+    const auto slice = static_cast<double>(info_.slice_bytes());
+    slices_ = info_.dims[2];
+    const std::int64_t thickest = memory > 0 ? static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice) : kBlockSlices;
+    slices_each_ = std::clamp<std::int64_t>(thickest, std::min<std::int64_t>(2, slices_), std::min(kBlockSlices, slices_));
+    if (!volume_.skips()) {
+      const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / slice);
+      slices_ = std::clamp<std::int64_t>(most, slices_each_, slices_);
+    }
+    const double budget = std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
+    const auto affordable = static_cast<std::int64_t>(budget / (slice * static_cast<double>(slices_each_)));
+    blocks_ = std::clamp<std::int64_t>(std::min(affordable, slices_ / slices_each_), 1, kBlocks);
+  }
+
+  void look_at(Block& block) {
+    BlockFacts facts;
+    Stopwatch watch;
+    facts.per_layer = static_cast<double>(count(block, 0).total) / layers(block);
+    watch.lap(seconds_extracting_);
+    facts.caps = options_.closed ? 2.0 * static_cast<double>(inside_on_sides(block)) / layers(block) : 0;
+    facts_.push_back(facts);
+    if (error_ > 0 && facts.per_layer > 0) simplify_tile(block, facts.per_layer);
+  }
+
+  void simplify_tile(const Block& block, double per_layer) {
+    const double expected = per_layer * static_cast<double>(info_.dims[2]);
+    const double wanted = std::clamp(kSampledPart * expected / static_cast<double>(blocks_), kLeastTile, kMostTile);
+    Block tile = block.tile(std::min(1.0, std::sqrt(wanted / (per_layer * layers(block)))));
+    const CountingSink full = count(tile, 0);
+    Stopwatch watch;
+    const CountingSink left = count(tile, error_);
+    watch.lap(seconds_simplifying_);
+    simplified_ += static_cast<double>(full.total);
+    before_ += full.middle;
+    after_ += left.middle;
+  }
+
+  static double layers(const Block& block) {
+    return static_cast<double>(std::max<std::int64_t>(block.info().dims[2] - 1, 1));
+  }
+
+  CountingSink count(Block& block, double error) const {
+    const double height = info_.geometry.spacing[2] * layers(block);
+    CountingSink sink(height / 3, 2 * height / 3);
+    MeshOptions options = options_;
+    options.closed = false;
+    options.normals = false;
+    options.space = OutputSpace::kIndex;
+    options.error = {error, false};
+    options.slab = 0;
+    mesh_volume(block, sink, options, control_);
+    return sink;
+  }
+
+  std::uint64_t inside_on_sides(Block& block) const {
+    const IsoRule rule = stored_rule(info_, options_);
+    const std::int64_t nx = info_.dims[0];
+    const std::int64_t ny = info_.dims[1];
+    return visit_sample_type(info_.type, [&]<class T>() {
+      const T* const samples = reinterpret_cast<const T*>(block.samples().data());
+      std::uint64_t inside = 0;
+      const auto add = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+        const auto value = static_cast<double>(samples[(k * ny + j) * nx + i]);
+        inside += (rule.above ? value >= rule.iso : value <= rule.iso) ? 1 : 0;
+      };
+      for (std::int64_t k = 0; k < block.info().dims[2]; ++k) {
+        for (std::int64_t i = 0; i < nx; ++i) add(i, 0, k), add(i, ny - 1, k);
+        for (std::int64_t j = 0; j < ny; ++j) add(0, j, k), add(nx - 1, j, k);
+      }
+      return inside;
+    });
+  }
+
+  Forecast conclude() const {
+    double mean = 0;
+    double caps = 0;
+    double most = 0;
+    double most_caps = 0;
+    for (const BlockFacts& facts : facts_) {
+      mean += facts.per_layer / static_cast<double>(facts_.size());
+      caps += facts.caps / static_cast<double>(facts_.size());
+      most = std::max(most, facts.per_layer);
+      most_caps = std::max(most_caps, facts.caps);
+    }
+    const auto slices = static_cast<double>(info_.dims[2]);
+    const double extracted = (mean + caps) * slices;
+    const double written = mean * slices * left_ + (error_ > 0 ? 0 : caps * slices);
+    const double depth = error_ > 0 ? undecided_layers(left_) : 0;
+    const double undecided = std::min(extracted, depth * (most + kCapDepth * most_caps));
+
+    const int threads = Executor(control_.threads).threads();
+    const MemoryModel model{info_.slice_bytes(), threads, error_ > 0, options_.normals};
+    const double per_layer = most + most_caps;
+    const double slab = options_.slab > 0 ? std::min(static_cast<double>(options_.slab), slices + 1)
+                                          : static_cast<double>(automatic_slab(info_, per_layer));
+    const auto ahead = static_cast<double>(slices_ahead(info_, static_cast<std::int64_t>(slab)));
+    const double largest = std::min(extracted, slab * per_layer);
+
+    Forecast forecast;
+    forecast.triangles_extracted = to_count(extracted);
+    forecast.triangles = to_count(written);
+    forecast.vertices = to_count(written / 2);
+    forecast.peak_bytes = to_count(model.peak(std::min(slab, slices), std::min(ahead, slices), largest, undecided));
+    forecast.least_bytes = to_count(model.peak(1, 1, std::min(extracted, per_layer), undecided) / kUsedPart);
+    const auto sampled = static_cast<double>(blocks_ * std::max<std::int64_t>(slices_each_ - 1, 1));
+    forecast.seconds = seconds_extracting_ / sampled * slices;
+    if (simplified_ > 0) forecast.seconds += seconds_simplifying_ / simplified_ * extracted;
+    return forecast;
+  }
+
+  static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
+
+  SliceSource& volume_;
+  const VolumeInfo info_;
+  const MeshOptions& options_;
+  RunControl control_;
+  double error_ = 0;             // length
+  std::int64_t slices_ = 0;      // that are looked at
+  std::int64_t slices_each_ = 0;  // in a block
+  std::int64_t blocks_ = 0;
+  std::vector<BlockFacts> facts_;
+  double simplified_ = 0;                   // triangles of tiles
+  std::uint64_t before_ = 0, after_ = 0;    // of them in the middle
+  double left_ = 1;                         // share of the triangles that is left
+  double seconds_extracting_ = 0, seconds_simplifying_ = 0;
+};
+
+}  // namespace
+
+Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  return Forecaster(volume, options, control).run();
+}
+
+}  // namespace isoweave

@@ -1,0 +1,35 @@
+// How thick the next slab is: a matter of memory and speed, never of the result.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+// A slab of this many triangles keeps all threads busy and stays small beside what a scan needs elsewhere.
+inline constexpr double kSlabTriangles = 160000;
+inline constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
+
+// Of a memory cap, what slabs are planned for: the formula is not exact, and the next layers may be fuller.
+inline constexpr double kUsedPart = 0.8;
+
+// Layers whose slices are worth holding at a time.
+inline std::int64_t most_layers(const VolumeInfo& volume) {
+  const auto bytes = static_cast<std::int64_t>(volume.slice_bytes());
+  return std::clamp(kSlabBytes / std::max<std::int64_t>(bytes, 1), std::int64_t{4}, std::int64_t{64});
+}
+
+// As many layers as hold kSlabTriangles.
+inline std::int64_t automatic_slab(const VolumeInfo& volume, double triangles_per_layer) {
+  return std::min(most_layers(volume), static_cast<std::int64_t>(kSlabTriangles / (triangles_per_layer + 0.01)) + 1);
+}
+
+// Slices of the next slab, to be read while one of `layers` layers is worked on.
+inline std::int64_t slices_ahead(const VolumeInfo& volume, std::int64_t layers) {
+  const std::int64_t most = kSlabBytes / std::max<std::int64_t>(static_cast<std::int64_t>(volume.slice_bytes()), 1);
+  return std::clamp<std::int64_t>(most, 1, layers);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,45 @@
+// What a run holds, in bytes: the formula behind forecasts and the memory cap.
+//
+// The figures per triangle are fits to runs (docs/memory.md has the runs). They hold within a tenth for zones of more
+// than some ten thousand triangles.
+#pragma once
+
+#include <cstdint>
+
+namespace isoweave {
+
+struct MemoryModel {
+  std::uint64_t slice_bytes = 0;
+  int threads = 1;
+  bool simplifies = true;
+  bool normals = false;
+
+  // The program, its libraries and what does not grow.
+  double fixed() const { return 14.5e6 + 0.4e6 * threads; }
+
+  // A slab of `layers` layers, `triangles` of them extracted, on `undecided` ones that were there before; `ahead` slices
+  // are read meanwhile.
+  double peak(double layers, double ahead, double triangles, double undecided) const {
+    return fixed() + window(layers, ahead) + per_new() * triangles + per_held() * (triangles + undecided);
+  }
+
+  // Layers that fit into `bytes` if each holds `per_layer` triangles and one slice is read ahead for each; may be less
+  // than one.
+  double layers_within(double bytes, double per_layer, double undecided) const {
+    const double rest = bytes - fixed() - 2 * static_cast<double>(slice_bytes) - per_held() * undecided;
+    return rest / (2 * static_cast<double>(slice_bytes) + (per_new() + per_held()) * per_layer);
+  }
+
+ private:
+  double window(double layers, double ahead) const {
+    return (layers + 1 + ahead + (normals ? 2 : 0)) * static_cast<double>(slice_bytes);
+  }
+
+  // On the way from extraction to the zone, or straight to the file.
+  double per_new() const { return (simplifies ? 45 : 69) + (normals ? 12 : 0); }
+
+  // In the zone, with half a vertex each.
+  double per_held() const { return simplifies ? 160 + (normals ? 6 : 0) : 0; }
+};
+
+}  // namespace isoweave
