@@ -138,8 +138,8 @@ struct Forecast {
   double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
 };
 
-// Reads up to eight blocks of thirteen slices, extracts them and simplifies a part of them, in a small part of the time
-// of the run. A source can be read once only: this one is of no use afterwards. Where skipping slices means to
+// Reads slices at up to 24 places, extracts what lies between and simplifies a part of that, in a small part of the
+// time of the run. A source can be read once only: this one is of no use afterwards. Where skipping slices means to
 // decompress them, no more than the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what
 // mesh_volume throws.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});

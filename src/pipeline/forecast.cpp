@@ -15,19 +15,25 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlocks = 8;
-constexpr std::int64_t kBlockSlices = 9;
+// Thin blocks tell how many triangles there are, thick ones what simplification leaves of them.
+constexpr std::int64_t kThin = 2;  // slices
+constexpr std::int64_t kThick = 15;
+constexpr std::int64_t kThickBlocks = 3;
+constexpr std::int64_t kMostBlocks = 24;
 constexpr double kSampledPart = 0.02;  // of the volume's bytes, and of its triangles that are simplified
-constexpr double kLeastBytes = 4e6;
-constexpr double kMostBytes = 128e6;
-constexpr double kLeastTile = 2000;  // triangles of a block that are simplified
-constexpr double kMostTile = 20000;
+constexpr double kLeastBytes = 12e6;
+constexpr double kMostBytes = 256e6;
+constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
+constexpr double kMostTile = 40000;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 
 // How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
 // flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
 double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
+constexpr double kCapWeight = 1.25;  // with what lies beside a cap and waits for it
+constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
+constexpr double kSeenDepth = 4;  // layers: where a thick block has fewer undecided ones, that is what there is
 
 // Some slices of a volume, cut to a tile.
 class Block final : public SliceSource {
@@ -90,6 +96,7 @@ class CountingSink final : public MeshSink {
   void finish() override {}
 
   std::uint64_t total = 0, middle = 0;
+  std::uint64_t undecided = 0;  // most of them after a slab
 
  private:
   double from_, to_;
@@ -106,7 +113,7 @@ class Forecaster {
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
       : volume_(volume), info_(volume.info()), options_(options) {
     control_.threads = control.threads;
-    control_.measure = false;
+    control_.measure = true;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
     plan_blocks(control.memory);
@@ -114,51 +121,63 @@ class Forecaster {
 
   Forecast run() {
     for (std::int64_t n = 0; n < blocks_; ++n) {
-      Block block(info_, slices_each_);
-      volume_.read((slices_ - slices_each_) * (2 * n + 1) / (2 * blocks_), slices_each_, block.samples());
-      look_at(block);
+      const bool thick = n % every_ == every_ / 2;
+      Block block(info_, thick ? thick_ : std::min(kThin, thick_));
+      const std::int64_t room = slices_ * (n + 1) / blocks_ - slices_ * n / blocks_;
+      volume_.read(slices_ * n / blocks_ + (room - block.info().dims[2]) / 2, block.info().dims[2], block.samples());
+      look_at(block, thick);
     }
     if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
     return conclude();
   }
 
  private:
-  // How many blocks there are and how thick: a small part of the volume, and of the memory there is.
+  // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of the
+  // volume, and of the memory there is.
   void plan_blocks(std::uint64_t memory) {
     const auto slice = static_cast<double>(info_.slice_bytes());
     slices_ = info_.dims[2];
-    const std::int64_t thickest = memory > 0 ? static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice) : kBlockSlices;
-    slices_each_ = std::clamp<std::int64_t>(thickest, std::min<std::int64_t>(2, slices_), std::min(kBlockSlices, slices_));
     if (!volume_.skips()) {
       const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / slice);
-      slices_ = std::clamp<std::int64_t>(most, slices_each_, slices_);
+      slices_ = std::clamp<std::int64_t>(most, std::min(kThick, slices_), slices_);
     }
     const double budget = std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
-    const auto affordable = static_cast<std::int64_t>(budget / (slice * static_cast<double>(slices_each_)));
-    blocks_ = std::clamp<std::int64_t>(std::min(affordable, slices_ / slices_each_), 1, kBlocks);
+    const auto affordable = static_cast<std::int64_t>(budget / slice);
+    thick_ = std::min(kThick, slices_);
+    if (memory > 0) thick_ = std::min(thick_, static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice));
+    thick_ = std::max(thick_, std::min(kThin, slices_));
+    blocks_ = std::clamp<std::int64_t>((affordable - kThickBlocks * thick_) / kThin + kThickBlocks, 1, kMostBlocks);
+    blocks_ = std::clamp<std::int64_t>(slices_ / thick_, 1, blocks_);
+    every_ = (blocks_ + kThickBlocks - 1) / kThickBlocks;
   }
 
-  void look_at(Block& block) {
+  void look_at(Block& block, bool thick) {
     BlockFacts facts;
     Stopwatch watch;
     facts.per_layer = static_cast<double>(count(block, 0).total) / layers(block);
     watch.lap(seconds_extracting_);
     facts.caps = options_.closed ? 2.0 * static_cast<double>(inside_on_sides(block)) / layers(block) : 0;
     facts_.push_back(facts);
-    if (error_ > 0 && facts.per_layer > 0) simplify_tile(block, facts.per_layer);
+    layers_ += layers(block);
+    if (thick && error_ > 0 && facts.per_layer > 0) simplify_tile(block, facts.per_layer);
   }
 
   void simplify_tile(const Block& block, double per_layer) {
     const double expected = per_layer * static_cast<double>(info_.dims[2]);
-    const double wanted = std::clamp(kSampledPart * expected / static_cast<double>(blocks_), kLeastTile, kMostTile);
+    const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
     Block tile = block.tile(std::min(1.0, std::sqrt(wanted / (per_layer * layers(block)))));
-    const CountingSink full = count(tile, 0);
+    CountingSink full = count(tile, 0);
+    if (static_cast<double>(full.total) < wanted / 4) {  // the surface is elsewhere
+      tile = block.tile(1);
+      full = count(tile, 0);
+    }
     Stopwatch watch;
     const CountingSink left = count(tile, error_);
     watch.lap(seconds_simplifying_);
     simplified_ += static_cast<double>(full.total);
     before_ += full.middle;
     after_ += left.middle;
+    depth_ = std::max(depth_, static_cast<double>(left.undecided) * layers(tile) / static_cast<double>(full.total + 1));
   }
 
   static double layers(const Block& block) {
@@ -173,8 +192,10 @@ class Forecaster {
     options.normals = false;
     options.space = OutputSpace::kIndex;
     options.error = {error, false};
-    options.slab = 0;
-    mesh_volume(block, sink, options, control_);
+    options.slab = error > 0 ? 3 : 0;
+    for (const SlabRecord& record : mesh_volume(block, sink, options, control_).sweep) {
+      sink.undecided = std::max(sink.undecided, record.undecided_triangles);
+    }
     return sink;
   }
 
@@ -198,40 +219,64 @@ class Forecaster {
   }
 
   Forecast conclude() const {
-    double mean = 0;
-    double caps = 0;
-    double most = 0;
-    double most_caps = 0;
-    for (const BlockFacts& facts : facts_) {
-      mean += facts.per_layer / static_cast<double>(facts_.size());
-      caps += facts.caps / static_cast<double>(facts_.size());
-      most = std::max(most, facts.per_layer);
-      most_caps = std::max(most_caps, facts.caps);
-    }
-    const auto slices = static_cast<double>(info_.dims[2]);
-    const double extracted = (mean + caps) * slices;
-    const double written = mean * slices * left_ + (error_ > 0 ? 0 : caps * slices);
-    const double depth = error_ > 0 ? undecided_layers(left_) : 0;
-    const double undecided = std::min(extracted, depth * (most + kCapDepth * most_caps));
-
-    const int threads = Executor(control_.threads).threads();
-    const MemoryModel model{info_.slice_bytes(), threads, error_ > 0, options_.normals};
-    const double per_layer = most + most_caps;
-    const double slab = options_.slab > 0 ? std::min(static_cast<double>(options_.slab), slices + 1)
-                                          : static_cast<double>(automatic_slab(info_, per_layer));
-    const auto ahead = static_cast<double>(slices_ahead(info_, static_cast<std::int64_t>(slab)));
-    const double largest = std::min(extracted, slab * per_layer);
-
+    const Profile profile = make_profile();
+    const double extracted = profile.open.back() + profile.caps.back();
     Forecast forecast;
     forecast.triangles_extracted = to_count(extracted);
-    forecast.triangles = to_count(written);
-    forecast.vertices = to_count(written / 2);
-    forecast.peak_bytes = to_count(model.peak(std::min(slab, slices), std::min(ahead, slices), largest, undecided));
-    forecast.least_bytes = to_count(model.peak(1, 1, std::min(extracted, per_layer), undecided) / kUsedPart);
-    const auto sampled = static_cast<double>(blocks_ * std::max<std::int64_t>(slices_each_ - 1, 1));
-    forecast.seconds = seconds_extracting_ / sampled * slices;
-    if (simplified_ > 0) forecast.seconds += seconds_simplifying_ / simplified_ * extracted;
+    forecast.triangles = to_count(profile.open.back() * left_ + (error_ > 0 ? 0 : profile.caps.back()));
+    forecast.vertices = forecast.triangles / 2;
+    forecast.peak_bytes = to_count(peak(profile, options_.slab));
+    forecast.least_bytes = to_count(peak(profile, 1) / kUsedPart);
+    forecast.seconds = seconds_extracting_ / layers_ * static_cast<double>(info_.dims[2]);
+    if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
+  }
+
+  // Triangles below each layer.
+  struct Profile {
+    std::vector<double> open, caps;
+  };
+
+  // Layers between two blocks are taken to lie between them in their facts, too.
+  Profile make_profile() const {
+    const auto layers = static_cast<std::size_t>(info_.dims[2]);
+    Profile profile{std::vector<double>(layers + 1, 0), std::vector<double>(layers + 1, 0)};
+    const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
+    for (std::size_t k = 0; k < layers; ++k) {
+      const double place = (static_cast<double>(k) + 0.5) / distance - 0.5;
+      const double within = std::clamp(place, 0.0, static_cast<double>(facts_.size() - 1));
+      const auto n = static_cast<std::size_t>(within);
+      const double part = within - static_cast<double>(n);
+      const BlockFacts& a = facts_[n];
+      const BlockFacts& b = facts_[std::min(n + 1, facts_.size() - 1)];
+      profile.open[k + 1] = profile.open[k] + a.per_layer + part * (b.per_layer - a.per_layer);
+      profile.caps[k + 1] = profile.caps[k] + a.caps + part * (b.caps - a.caps);
+    }
+    return profile;
+  }
+
+  // Goes through the slabs of a run.
+  double peak(const Profile& profile, std::int64_t asked) const {
+    const MemoryModel model{info_.slice_bytes(), Executor(control_.threads).threads(), error_ > 0, options_.normals};
+    const double depth = error_ == 0 ? 0 : depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
+    const auto sum = [](const std::vector<double>& below, double from, std::int64_t to) {
+      const auto first = static_cast<std::size_t>(std::max(from, 0.0));
+      return below[static_cast<std::size_t>(to)] - below[first];
+    };
+    double most = model.fixed();
+    std::int64_t recent = 0;
+    double per_layer = 0;
+    for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
+      recent = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
+      const auto at = static_cast<double>(done);
+      const double undecided =
+          sum(profile.open, at - depth, done) + kCapWeight * sum(profile.caps, at - kCapDepth * depth, done);
+      const double triangles = sum(profile.open, at, done + recent) + sum(profile.caps, at, done + recent);
+      const auto ahead = static_cast<double>(std::min(slices_ahead(info_, recent), info_.dims[2] - done - recent));
+      most = std::max(most, model.peak(static_cast<double>(recent), ahead, triangles, undecided));
+      per_layer = triangles / static_cast<double>(recent);
+    }
+    return most;
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
@@ -242,12 +287,15 @@ class Forecaster {
   RunControl control_;
   double error_ = 0;             // length
   std::int64_t slices_ = 0;      // that are looked at
-  std::int64_t slices_each_ = 0;  // in a block
+  std::int64_t thick_ = 0;       // slices of a thick block
   std::int64_t blocks_ = 0;
+  std::int64_t every_ = 1;  // so many blocks one is thick
   std::vector<BlockFacts> facts_;
-  double simplified_ = 0;                   // triangles of tiles
-  std::uint64_t before_ = 0, after_ = 0;    // of them in the middle
-  double left_ = 1;                         // share of the triangles that is left
+  double layers_ = 0;                     // of all blocks
+  double simplified_ = 0;                 // triangles of tiles
+  std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
+  double left_ = 1;                       // share of the triangles that is left
+  double depth_ = 0;                      // layers seen undecided
   double seconds_extracting_ = 0, seconds_simplifying_ = 0;
 };
 

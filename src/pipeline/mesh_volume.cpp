@@ -96,14 +96,13 @@ class VolumeSweep {
   // An open volume of one sample along an axis has crossings and no triangles.
   bool has_cells() const { return options_.closed || std::ranges::min(volume_.dims) > 1; }
 
-  // Layers of the next slab: as asked, or as many as are good to hold going by what has been extracted so far.
+  // Layers of the next slab, going by the one before and by the memory there is.
   std::int64_t next_slab() {
     const std::int64_t left = extractor_.layers_left();
-    const bool first = left == layers_;
-    const double per_layer = static_cast<double>(recent_triangles_) / static_cast<double>(recent_layers_);
-    std::int64_t layers = options_.slab;
-    if (layers == 0) layers = first ? std::min<std::int64_t>(most_layers(volume_), 8) : automatic_slab(volume_, per_layer);
-    if (control_.memory > 0) layers = std::min(layers, first ? 1 : layers_within_cap(per_layer));
+    const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
+    const double per_layer = static_cast<double>(recent_triangles_) / recent;
+    std::int64_t layers = isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer);
+    if (control_.memory > 0) layers = std::min(layers, recent_layers_ == 0 ? 1 : layers_within_cap(per_layer));
     return std::min(layers, left);
   }
 
@@ -308,7 +307,7 @@ class VolumeSweep {
   MeshReport report_;
   Stopwatch clock_;
   std::int64_t layers_;
-  std::int64_t recent_layers_ = 1;
+  std::int64_t recent_layers_ = 0;
   std::uint64_t recent_triangles_ = 0;
   std::uint64_t voxels_ = 0;
 

@@ -26,6 +26,14 @@ inline std::int64_t automatic_slab(const VolumeInfo& volume, double triangles_pe
   return std::min(most_layers(volume), static_cast<std::int64_t>(kSlabTriangles / (triangles_per_layer + 0.01)) + 1);
 }
 
+// Layers of the next slab, `recent` after the one before (0: it is the first), which had so many triangles per layer.
+// Slabs that are not asked for at most double, as the next layers may be much fuller.
+inline std::int64_t next_slab(const VolumeInfo& volume, std::int64_t asked, std::int64_t recent,
+                              double triangles_per_layer) {
+  if (asked > 0) return asked;
+  return std::min(recent > 0 ? 2 * recent : 8, automatic_slab(volume, triangles_per_layer));
+}
+
 // Slices of the next slab, to be read while one of `layers` layers is worked on.
 inline std::int64_t slices_ahead(const VolumeInfo& volume, std::int64_t layers) {
   const std::int64_t most = kSlabBytes / std::max<std::int64_t>(static_cast<std::int64_t>(volume.slice_bytes()), 1);

@@ -15,7 +15,7 @@ struct MemoryModel {
   bool normals = false;
 
   // The program, its libraries and what does not grow.
-  double fixed() const { return 14.5e6 + 0.4e6 * threads; }
+  double fixed() const { return 13.2e6 + 0.15e6 * threads; }
 
   // A slab of `layers` layers, `triangles` of them extracted, on `undecided` ones that were there before; `ahead` slices
   // are read meanwhile.
