@@ -1,5 +1,6 @@
 #include "extract/marching_cubes.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <limits>
@@ -73,10 +74,11 @@ std::pair<std::int64_t, std::int64_t> MarchingCubes::slices_for(std::int64_t lay
   return {next_layer_ - margin, next_layer_ + layers + 1 + margin};
 }
 
-void MarchingCubes::extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece) {
+std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece,
+                                    std::uint64_t most_vertices) {
   piece.clear();
   piece.inherited = front_size_;
-  const auto count = static_cast<std::size_t>(layers);
+  auto count = static_cast<std::size_t>(layers);
   slices_.resize(count + 1);
   layers_.resize(count);
   const std::int64_t jobs = layers * static_cast<std::int64_t>(rows_);
@@ -92,11 +94,14 @@ void MarchingCubes::extract(const SliceWindow& window, std::int64_t layers, Surf
     classify(window, next_layer_ + static_cast<std::int64_t>(n) + 1, static_cast<std::size_t>(job) % rows_,
              slices_[n + 1]);
   });
+  count = layers_within(count, most_vertices);
   number_vertices(count, piece);
   visit_sample_type(type_, [&]<class T>() { emit_vertices<T>(window, count, piece); });
   emit_triangles(count, piece);
-  next_layer_ += layers;
+  next_layer_ += static_cast<std::int64_t>(count);
+  std::swap(slices_.front(), slices_[count]);
   list_front(piece);
+  return static_cast<std::int64_t>(count);
 }
 
 // Inside bits of one padded row of slice k.
@@ -156,15 +161,25 @@ void MarchingCubes::number_row(std::size_t n, std::size_t row, std::uint32_t bas
   }
 }
 
-// Counts crossings, numbers them row by row (z below the slice, then x and y on it) after the inherited ones, and makes
-// room for them.
-void MarchingCubes::number_vertices(std::size_t layers, SurfacePiece& piece) {
+// Counts crossings row by row; returns how many layers hold no more than `most_vertices`, one at least.
+std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_vertices) {
   row_counts_.resize(layers * rows_);
-  const auto jobs = static_cast<std::int64_t>(row_counts_.size());
-  executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
+  executor_.for_each(static_cast<std::int64_t>(row_counts_.size()), kRowsPerBlock, [&](std::int64_t job) {
     const auto at = static_cast<std::size_t>(job);
     find_crossings(at / rows_, at % rows_, row_counts_[at]);
   });
+  std::uint64_t sum = 0;
+  for (std::size_t n = 0; n < layers; ++n) {
+    for (std::size_t row = 0; row < rows_; ++row) sum += row_counts_[n * rows_ + row];
+    if (sum > most_vertices) return std::max<std::size_t>(n, 1);
+  }
+  return layers;
+}
+
+// Numbers crossings row by row (z below the slice, then x and y on it) after the inherited ones, and makes room for them.
+void MarchingCubes::number_vertices(std::size_t layers, SurfacePiece& piece) {
+  row_counts_.resize(layers * rows_);
+  const auto jobs = static_cast<std::int64_t>(row_counts_.size());
   const std::uint64_t total = exclusive_scan(row_counts_);
   if (total + front_size_ >= std::numeric_limits<std::uint32_t>::max()) {
     throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(total) +
@@ -324,7 +339,6 @@ void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) cons
 
 // The crossings of the last slice are incomplete; they become the numbers 0, 1, ... of the next slab, in this order.
 void MarchingCubes::list_front(SurfacePiece& piece) {
-  std::swap(slices_.front(), slices_.back());
   front_size_ = 0;
   if (layers_left() == 0) return;
   Slice& front = slices_.front();

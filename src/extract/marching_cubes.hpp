@@ -34,9 +34,11 @@ class MarchingCubes {
   // Slices [first, end) that the next `layers` layers read, unclipped.
   std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const;
 
-  // Extracts the next `layers` layers into `piece`. The window holds what slices_for() names, as far as the volume
-  // goes. Same result for any number of threads. Throws OverMemory when the slab holds 2^32 vertices or more.
-  void extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece);
+  // Extracts the next `layers` layers into `piece`, or fewer, though at least one, where they would make more than
+  // `most_vertices`. Returns how many. The window holds what slices_for() names, as far as the volume goes. Same result
+  // for any number of threads. Throws OverMemory when the slab holds 2^32 vertices or more.
+  std::int64_t extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece,
+                       std::uint64_t most_vertices = ~std::uint64_t{0});
 
   // The state between two slabs.
   template <class Archive>
@@ -72,6 +74,7 @@ class MarchingCubes {
   void find_crossings(std::size_t n, std::size_t row, std::uint32_t& count);
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
   void number_row(std::size_t n, std::size_t row, std::uint32_t base);
+  std::size_t layers_within(std::size_t layers, std::uint64_t most_vertices);
   void number_vertices(std::size_t layers, SurfacePiece& piece);
   template <class T>
   void emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) const;

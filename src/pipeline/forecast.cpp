@@ -32,6 +32,7 @@ constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
 constexpr double kCapWeight = 1.25;  // with what lies beside a cap and waits for it
+constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kSeenDepth = 4;  // layers: where a thick block has fewer undecided ones, that is what there is
 
@@ -226,7 +227,7 @@ class Forecaster {
     forecast.triangles = to_count(profile.open.back() * left_ + (error_ > 0 ? 0 : profile.caps.back()));
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profile, options_.slab));
-    forecast.least_bytes = to_count(peak(profile, 1) / kUsedPart);
+    forecast.least_bytes = to_count(kCapMargin * peak(profile, 1) / kUsedPart);
     forecast.seconds = seconds_extracting_ / layers_ * static_cast<double>(info_.dims[2]);
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
@@ -268,10 +269,15 @@ class Forecaster {
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       recent = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
+      const auto extracted = [&] {
+        const auto from = static_cast<double>(done);
+        return sum(profile.open, from, done + recent) + sum(profile.caps, from, done + recent);
+      };
+      while (asked == 0 && recent > 1 && extracted() > 2 * kMostSlabVertices) --recent;
       const auto at = static_cast<double>(done);
       const double undecided =
           sum(profile.open, at - depth, done) + kCapWeight * sum(profile.caps, at - kCapDepth * depth, done);
-      const double triangles = sum(profile.open, at, done + recent) + sum(profile.caps, at, done + recent);
+      const double triangles = extracted();
       const auto ahead = static_cast<double>(std::min(slices_ahead(info_, recent), info_.dims[2] - done - recent));
       most = std::max(most, model.peak(static_cast<double>(recent), ahead, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);

@@ -46,9 +46,9 @@ class VolumeSweep {
     if (saves()) save_state();
     while (extractor_.layers_left() > 0) {
       stop_if_asked();
-      const std::int64_t layers = next_slab();
-      read_slab(layers);
-      sweep_slab(layers);
+      const SlabPlan plan = next_slab();
+      read_slab(plan);
+      sweep_slab(plan);
       if (state_is_due()) save_state();
     }
     finish_report();
@@ -96,26 +96,47 @@ class VolumeSweep {
   // An open volume of one sample along an axis has crossings and no triangles.
   bool has_cells() const { return options_.closed || std::ranges::min(volume_.dims) > 1; }
 
-  // Layers of the next slab, going by the one before and by the memory there is.
-  std::int64_t next_slab() {
-    const std::int64_t left = extractor_.layers_left();
+  // What the next slab may be: layers, going by the one before and by the memory there is, slices to be read ahead, and
+  // vertices that it may turn out to hold.
+  struct SlabPlan {
+    std::int64_t layers = 0;
+    std::int64_t ahead = 0;
+    std::uint64_t most_vertices = 0;
+  };
+
+  SlabPlan next_slab() {
     const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
-    std::int64_t layers = isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer);
-    if (control_.memory > 0) layers = std::min(layers, recent_layers_ == 0 ? 1 : layers_within_cap(per_layer));
-    return std::min(layers, left);
+    SlabPlan plan;
+    plan.layers = std::min(isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer),
+                           extractor_.layers_left());
+    plan.ahead = slices_ahead(volume_, plan.layers);
+    plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : kMostSlabVertices;
+    if (control_.memory > 0) fit_into_cap(plan, per_layer);
+    return plan;
   }
 
-  // Half as many as the cap has room for, as the next layers may be twice as full. Throws OverMemory when there is no
-  // room for one.
-  std::int64_t layers_within_cap(double per_layer) {
+  // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
+  void fit_into_cap(SlabPlan& plan, double per_layer) {
     const MemoryModel model{volume_.slice_bytes(), executor_.threads(), simplifies_, options_.normals};
-    const auto undecided = static_cast<double>(simplifier_.live_triangles());
-    const double fitting = model.layers_within(kUsedPart * static_cast<double>(control_.memory), per_layer, undecided);
-    if (fitting >= 1) return std::max<std::int64_t>(1, static_cast<std::int64_t>(fitting / 2));
+    const auto undecided = static_cast<double>(simplifies_ ? simplifier_.live_triangles() : 0);
+    const double usable = kUsedPart * static_cast<double>(control_.memory);
+    const auto room = [&] {
+      return model.triangles_within(usable, static_cast<double>(plan.layers), static_cast<double>(plan.ahead), undecided);
+    };
+    while (plan.layers > 1 && room() < per_layer * static_cast<double>(plan.layers)) {
+      plan.layers = (plan.layers + 1) / 2;
+      plan.ahead = std::min(plan.ahead, plan.layers);
+    }
+    if (room() < per_layer || room() <= 0) refuse_layer(model, per_layer, undecided);
+    plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(room() / 2));
+  }
+
+  [[noreturn]] void refuse_layer(const MemoryModel& model, double per_layer, double undecided) {
     const auto needed = static_cast<std::uint64_t>(model.peak(1, 1, per_layer, undecided) / kUsedPart);
-    std::string message = volume_.path + ": the next layer of " + std::to_string(layers_) + " needs a memory cap of " +
-                          std::to_string(needed) + " bytes, found " + std::to_string(control_.memory);
+    std::string message = volume_.path + ": layer " + std::to_string(layers_ - extractor_.layers_left() + 1) + " of " +
+                          std::to_string(layers_) + " needs a memory cap of " + std::to_string(needed) +
+                          " bytes, found " + std::to_string(control_.memory);
     if (saves()) {
       save_state();
       message += "; the run can be resumed from " + control_.checkpoint.folder;
@@ -123,23 +144,23 @@ class VolumeSweep {
     throw OverMemory(message);
   }
 
-  void read_slab(std::int64_t layers) {
-    const auto [first, end] = extractor_.slices_for(layers);
+  void read_slab(const SlabPlan& plan) {
+    const auto [first, end] = extractor_.slices_for(plan.layers);
     std::int64_t read = 0;
     try {
-      read = window_->advance(first, end, slices_ahead(volume_, layers));
+      read = window_->advance(first, end, plan.ahead);
     } catch (const BadInput&) {
       if (saves()) save_state();
       throw;
     }
-    if (resumed_slices_ > 0) check_resumed_slices();
+    if (resumed_crc_) check_resumed_slice();
     voxels_ += static_cast<std::uint64_t>(read * volume_.slice_samples());
     if (control_.measure) measure_samples(read);
     clock_.lap(report_.seconds_read);
   }
 
-  void sweep_slab(std::int64_t layers) {
-    extractor_.extract(*window_, layers, piece_);
+  void sweep_slab(const SlabPlan& plan) {
+    const std::int64_t layers = extractor_.extract(*window_, plan.layers, piece_, plan.most_vertices);
     recent_triangles_ = piece_.triangles.size();
     recent_layers_ = layers;
     report_.cells_crossed += piece_.cells_crossed;
@@ -230,10 +251,9 @@ class VolumeSweep {
     checkpoint.mark = sink_.mark();
     const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_of(volume_, options_));
     exchange(*writer);
-    const std::int64_t slices = held_slices();
-    const std::uint32_t crc = crc_of_slices(slices);
-    writer->value(slices);
-    writer->value(crc);
+    const std::optional<std::uint32_t> crc = crc_of_next_slice();
+    writer->value(crc.has_value());
+    writer->value(crc.value_or(0));
     writer->commit();
     saved_layer_ = checkpoint.layer;
     saved_time_ = std::chrono::steady_clock::now();
@@ -242,8 +262,11 @@ class VolumeSweep {
   void load_state() {
     StateReader reader = open_state(*control_.resume, identity_of(volume_, options_));
     exchange(reader);
-    reader.value(resumed_slices_);
-    reader.value(resumed_crc_);
+    bool has_crc = false;
+    std::uint32_t crc = 0;
+    reader.value(has_crc);
+    reader.value(crc);
+    if (has_crc) resumed_crc_ = crc;
     saved_layer_ = control_.resume->layer;
     report_.resumed_at = control_.resume->layer;
   }
@@ -265,26 +288,18 @@ class VolumeSweep {
     archive.list(report_.sweep);
   }
 
-  // Slices of the window that the next slab needs as well.
-  std::int64_t held_slices() const {
-    const std::int64_t first = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
-    return window_ ? std::max<std::int64_t>(window_->end() - first, 0) : 0;
+  // The first slice that the next slab needs, if the window holds it: its checksum, or nothing.
+  std::optional<std::uint32_t> crc_of_next_slice() const {
+    const std::int64_t k = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
+    if (!window_ || k >= window_->end()) return std::nullopt;
+    return add_to_crc(0, {window_->slice(k), volume_.slice_bytes()});
   }
 
-  std::uint32_t crc_of_slices(std::int64_t slices) const {
-    const std::int64_t first = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
-    std::uint32_t crc = 0;
-    for (std::int64_t k = first; k < first + slices; ++k) {
-      crc = add_to_crc(crc, {window_->slice(k), volume_.slice_bytes()});
-    }
-    return crc;
-  }
-
-  // The slices where the sweep was cut off must be the same as then.
-  void check_resumed_slices() {
-    const std::uint32_t crc = crc_of_slices(resumed_slices_);
-    resumed_slices_ = 0;
-    if (crc == resumed_crc_) return;
+  // The slice where the sweep was cut off must be the same as then.
+  void check_resumed_slice() {
+    const bool same = !resumed_crc_ || resumed_crc_ == crc_of_next_slice();
+    resumed_crc_.reset();
+    if (same) return;
     throw BadInput(volume_.path + ": the volume has changed: expected the samples that " + control_.resume->path +
                    " was saved with, found others");
   }
@@ -314,8 +329,7 @@ class VolumeSweep {
   std::optional<CheckpointFolder> folder_;
   std::int64_t saved_layer_ = -1;
   std::chrono::steady_clock::time_point saved_time_ = std::chrono::steady_clock::now();
-  std::int64_t resumed_slices_ = 0;  // held when the state was saved, and
-  std::uint32_t resumed_crc_ = 0;    // their checksum
+  std::optional<std::uint32_t> resumed_crc_;  // of the next slice when the state was saved
 };
 
 }  // namespace

@@ -12,6 +12,9 @@ namespace isoweave {
 inline constexpr double kSlabTriangles = 160000;
 inline constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
 
+// A slab that turns out to be fuller is cut, where no thickness is asked for.
+inline constexpr std::uint64_t kMostSlabVertices = 120000;
+
 // Of a memory cap, what slabs are planned for: the formula is not exact, and the next layers may be fuller.
 inline constexpr double kUsedPart = 0.8;
 

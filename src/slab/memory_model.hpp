@@ -23,11 +23,9 @@ struct MemoryModel {
     return fixed() + window(layers, ahead) + per_new() * triangles + per_held() * (triangles + undecided);
   }
 
-  // Layers that fit into `bytes` if each holds `per_layer` triangles and one slice is read ahead for each; may be less
-  // than one.
-  double layers_within(double bytes, double per_layer, double undecided) const {
-    const double rest = bytes - fixed() - 2 * static_cast<double>(slice_bytes) - per_held() * undecided;
-    return rest / (2 * static_cast<double>(slice_bytes) + (per_new() + per_held()) * per_layer);
+  // Triangles that fit into `bytes` with a slab of so many layers; may be negative.
+  double triangles_within(double bytes, double layers, double ahead, double undecided) const {
+    return (bytes - peak(layers, ahead, 0, undecided)) / (per_new() + per_held());
   }
 
  private:
