@@ -105,8 +105,8 @@ void make_checkpoint_folder(const std::string& folder) {
   if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
   for (const char* name : {"state-0", "state-1", "mesh.part"}) {
     if (!std::filesystem::exists(std::filesystem::path(folder) / name)) continue;
-    throw CannotWrite(fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it",
-                                  folder, folder));
+    throw CannotWrite(
+        fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
 }
 
@@ -224,7 +224,8 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     const std::uint64_t bytes = output_bytes(*forecast, arguments, options);
     const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_out(forecast_text(*forecast, bytes, threads));
-    if (report_file) write_report(*report_file, {{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
+    if (report_file)
+      write_report(*report_file, {{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
     return;
   }
   if (!arguments.checkpoint.empty()) {
@@ -234,9 +235,9 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     control.checkpoint.note = task_json(arguments, options).dump();
   }
   control.resume = resume;
-  const std::unique_ptr<MeshSink> sink =
-      open_mesh_file(arguments.output, {options.normals, comments(arguments, options), arguments.checkpoint,
-                                        resume != nullptr ? resume->mark : ""});
+  const std::unique_ptr<MeshSink> sink = open_mesh_file(
+      arguments.output,
+      {options.normals, comments(arguments, options), arguments.checkpoint, resume != nullptr ? resume->mark : ""});
   if (!run.quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
@@ -269,8 +270,8 @@ void run_mesh(MeshArguments arguments) {
 
 // The task of a run that goes on is known; how it runs may be said anew.
 void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
-  constexpr std::array<std::string_view, 10> kRunning{"--help",     "--slab",   "--memory",   "--every",    "--threads",
-                                                      "--device",   "--report", "--schedule", "--progress", "--quiet"};
+  constexpr std::array<std::string_view, 10> kRunning{"--help",   "--slab",   "--memory",   "--every",    "--threads",
+                                                      "--device", "--report", "--schedule", "--progress", "--quiet"};
   for (CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
     if (option != &resume && std::ranges::find(kRunning, name) == kRunning.end()) resume.excludes(option);

@@ -49,8 +49,8 @@ struct MeshFileOptions {
   bool normals = false;               // STL has no place for vertex normals and ignores them
   std::vector<std::string> comments;  // one line each, into the header where the format has comments
 
-  // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process; they leave
-  // it when the mesh is finished. Empty: beside the target, and nothing is kept.
+  // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process; they
+  // leave it when the mesh is finished. Empty: beside the target, and nothing is kept.
   std::string parts{};
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 };
@@ -59,12 +59,12 @@ struct MeshFileOptions {
 // .obj. The file appears under its name only when finish() has written, counted, flushed and renamed it;
 // until then it is a temporary file in the same folder, which the destructor removes.
 // Throws CannotWrite when the ending is unknown, the folder is missing or read-only, the disk is full, or the
-// format cannot hold the counts; when there are parts already and no mark, or a mark and no such parts. PLY needs room for its faces twice while finish() runs; STL keeps the positions of all
-// vertices in memory, 12 bytes each.
+// format cannot hold the counts; when there are parts already and no mark, or a mark and no such parts. PLY needs room
+// for its faces twice while finish() runs; STL keeps the positions of all vertices in memory, 12 bytes each.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
-// Size of a mesh file of this name with so many vertices and triangles; of text about. Throws CannotWrite when the format
-// cannot hold them, or when the ending is unknown.
+// Size of a mesh file of this name with so many vertices and triangles; of text about. Throws CannotWrite when the
+// format cannot hold them, or when the ending is unknown.
 std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                               bool normals = false);
 

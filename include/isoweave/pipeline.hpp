@@ -66,11 +66,12 @@ struct RunControl {
   Schedule schedule = Schedule::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
-  // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it, unless
-  // MeshOptions name the slab. OverMemory is thrown when not even one layer more would fit.
+  // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it,
+  // unless MeshOptions name the slab. OverMemory is thrown when not even one layer more would fit.
   std::uint64_t memory = 0;
-  CheckpointOptions checkpoint{};        // mesh_volume only. The sink must be able to give marks
-  const Checkpoint* resume = nullptr;    // go on from there, with the same volume and options and a sink opened at its mark
+  CheckpointOptions checkpoint{};  // mesh_volume only. The sink must be able to give marks
+  const Checkpoint* resume =
+      nullptr;          // go on from there, with the same volume and options and a sink opened at its mark
   bool measure = true;  // digest, components and range of the samples; without it these stay empty in the report
 };
 
@@ -118,10 +119,10 @@ struct MeshReport {
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
 // and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, Interrupted, and
-// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone. With a
-// checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in the
-// middle. Resuming gives the same mesh, for any threads, schedule and slab; throws BadInput when the state was saved by
-// another version, for another volume or with other options.
+// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone. With
+// a checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in
+// the middle. Resuming gives the same mesh, for any threads, schedule and slab; throws BadInput when the state was
+// saved by another version, for another volume or with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
 struct SimplifyOptions {

@@ -176,7 +176,8 @@ std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_
   return layers;
 }
 
-// Numbers crossings row by row (z below the slice, then x and y on it) after the inherited ones, and makes room for them.
+// Numbers crossings row by row (z below the slice, then x and y on it) after the inherited ones, and makes room for
+// them.
 void MarchingCubes::number_vertices(std::size_t layers, SurfacePiece& piece) {
   row_counts_.resize(layers * rows_);
   const auto jobs = static_cast<std::int64_t>(row_counts_.size());

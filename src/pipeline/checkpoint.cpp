@@ -46,8 +46,7 @@ Header read_header(StateReader& reader) {
   std::string version;
   reader.list(version);
   if (version != ISOWEAVE_VERSION) {
-    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION
-                                   ", found one of version " +
+    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found one of version " +
                    version);
   }
   Header header;

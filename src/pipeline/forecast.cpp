@@ -31,10 +31,10 @@ constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 // flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
 double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
-constexpr double kCapWeight = 1.25;  // with what lies beside a cap and waits for it
+constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
 constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
-constexpr double kSeenDepth = 4;  // layers: where a thick block has fewer undecided ones, that is what there is
+constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
 
 // Some slices of a volume, cut to a tile.
 class Block final : public SliceSource {
@@ -59,7 +59,8 @@ class Block final : public SliceSource {
     std::array<std::int64_t, 2> from{};
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto side = static_cast<std::int64_t>(part * static_cast<double>(info_.dims[axis]));
-      cut.info_.dims[axis] = std::clamp<std::int64_t>(side, std::min<std::int64_t>(2, info_.dims[axis]), info_.dims[axis]);
+      cut.info_.dims[axis] =
+          std::clamp<std::int64_t>(side, std::min<std::int64_t>(2, info_.dims[axis]), info_.dims[axis]);
       from[axis] = (info_.dims[axis] - cut.info_.dims[axis]) / 2;
     }
     const std::size_t each = sample_bytes(info_.type);
@@ -133,8 +134,8 @@ class Forecaster {
   }
 
  private:
-  // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of the
-  // volume, and of the memory there is.
+  // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of
+  // the volume, and of the memory there is.
   void plan_blocks(std::uint64_t memory) {
     const auto slice = static_cast<double>(info_.slice_bytes());
     slices_ = info_.dims[2];
@@ -142,7 +143,8 @@ class Forecaster {
       const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / slice);
       slices_ = std::clamp<std::int64_t>(most, std::min(kThick, slices_), slices_);
     }
-    const double budget = std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
+    const double budget =
+        std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
     const auto affordable = static_cast<std::int64_t>(budget / slice);
     thick_ = std::min(kThick, slices_);
     if (memory > 0) thick_ = std::min(thick_, static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice));
@@ -258,7 +260,8 @@ class Forecaster {
 
   // Goes through the slabs of a run.
   double peak(const Profile& profile, std::int64_t asked) const {
-    const MemoryModel model{info_.slice_bytes(), Executor(control_.threads).threads(), error_ > 0, options_.normals};
+    const MemoryModel model{info_.slice_bytes(), static_cast<std::uint64_t>(info_.slice_samples()),
+                            Executor(control_.threads).threads(), error_ > 0, options_.normals};
     const double depth = error_ == 0 ? 0 : depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
     const auto sum = [](const std::vector<double>& below, double from, std::int64_t to) {
       const auto first = static_cast<std::size_t>(std::max(from, 0.0));
@@ -291,9 +294,9 @@ class Forecaster {
   const VolumeInfo info_;
   const MeshOptions& options_;
   RunControl control_;
-  double error_ = 0;             // length
-  std::int64_t slices_ = 0;      // that are looked at
-  std::int64_t thick_ = 0;       // slices of a thick block
+  double error_ = 0;         // length
+  std::int64_t slices_ = 0;  // that are looked at
+  std::int64_t thick_ = 0;   // slices of a thick block
   std::int64_t blocks_ = 0;
   std::int64_t every_ = 1;  // so many blocks one is thick
   std::vector<BlockFacts> facts_;

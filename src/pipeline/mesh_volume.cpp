@@ -108,8 +108,8 @@ class VolumeSweep {
     const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
     SlabPlan plan;
-    plan.layers = std::min(isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer),
-                           extractor_.layers_left());
+    plan.layers =
+        std::min(isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer), extractor_.layers_left());
     plan.ahead = slices_ahead(volume_, plan.layers);
     plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : kMostSlabVertices;
     if (control_.memory > 0) fit_into_cap(plan, per_layer);
@@ -118,11 +118,13 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{volume_.slice_bytes(), executor_.threads(), simplifies_, options_.normals};
+    const MemoryModel model{volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
+                            executor_.threads(), simplifies_, options_.normals};
     const auto undecided = static_cast<double>(simplifies_ ? simplifier_.live_triangles() : 0);
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
-      return model.triangles_within(usable, static_cast<double>(plan.layers), static_cast<double>(plan.ahead), undecided);
+      return model.triangles_within(usable, static_cast<double>(plan.layers), static_cast<double>(plan.ahead),
+                                    undecided);
     };
     while (plan.layers > 1 && room() < per_layer * static_cast<double>(plan.layers)) {
       plan.layers = (plan.layers + 1) / 2;

@@ -32,8 +32,8 @@ double cube_root(double x);
 // Mean side of a voxel.
 double mean_voxel(const Geometry& geometry);
 
-// The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument for
-// an iso-value that is not finite.
+// The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument
+// for an iso-value that is not finite.
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 
 // The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN.

@@ -10,6 +10,7 @@ namespace isoweave {
 
 struct MemoryModel {
   std::uint64_t slice_bytes = 0;
+  std::uint64_t slice_samples = 0;
   int threads = 1;
   bool simplifies = true;
   bool normals = false;
@@ -17,8 +18,8 @@ struct MemoryModel {
   // The program, its libraries and what does not grow.
   double fixed() const { return 13.2e6 + 0.15e6 * threads; }
 
-  // A slab of `layers` layers, `triangles` of them extracted, on `undecided` ones that were there before; `ahead` slices
-  // are read meanwhile.
+  // A slab of `layers` layers, `triangles` of them extracted, on `undecided` ones that were there before; `ahead`
+  // slices are read meanwhile.
   double peak(double layers, double ahead, double triangles, double undecided) const {
     return fixed() + window(layers, ahead) + per_new() * triangles + per_held() * (triangles + undecided);
   }
@@ -30,7 +31,9 @@ struct MemoryModel {
 
  private:
   double window(double layers, double ahead) const {
-    return (layers + 1 + ahead + (normals ? 2 : 0)) * static_cast<double>(slice_bytes);
+    constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
+    return (layers + 1 + ahead + (normals ? 2 : 0)) * static_cast<double>(slice_bytes) +
+           (layers + 1) * kBits * static_cast<double>(slice_samples);
   }
 
   // On the way from extraction to the zone, or straight to the file.

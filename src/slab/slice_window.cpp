@@ -1,7 +1,6 @@
 #include "slab/slice_window.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
 namespace isoweave {
@@ -16,7 +15,8 @@ SliceWindow::SliceWindow(SliceSource& source, std::int64_t first)
     : source_(source),
       slice_bytes_(source.info().slice_bytes()),
       slices_(source.info().dims[2]),
-      first_(std::clamp<std::int64_t>(first, 0, slices_)),
+      base_(std::clamp<std::int64_t>(first, 0, slices_)),
+      first_(base_),
       end_(first_),
       filled_(first_) {}
 
@@ -36,6 +36,7 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int
   const std::int64_t last = std::clamp(new_end + ahead, new_end, slices_);
   first_ = std::clamp(first, first_, end_);
   if (last - first_ > room_ || buffer_.empty()) make_room(std::max<std::int64_t>(last - first_, 1), lock);
+  needed_ = new_end;
   wanted_ = last;
   if (!reader_.joinable() && filled_ < wanted_) reader_ = std::thread([this] { read_on(); });
   changed_.notify_all();
@@ -46,16 +47,13 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int
   return count;
 }
 
-// Moves what the ring holds into a larger one.
+// Enlarges the ring in place: two of them would be the peak of a run.
 void SliceWindow::make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock) {
   growing_ = true;
   changed_.wait(lock, [&] { return !reading_; });
-  Array<std::byte> larger;
-  larger.resize(static_cast<std::size_t>(slices) * slice_bytes_);
-  for (std::int64_t k = first_; k < filled_; ++k) {
-    std::memcpy(larger.data() + static_cast<std::size_t>(k % slices) * slice_bytes_, place(k), slice_bytes_);
-  }
-  buffer_ = std::move(larger);
+  if (filled_ > first_) std::rotate(buffer_.begin(), place(first_), buffer_.end());
+  base_ = first_;
+  buffer_.resize(static_cast<std::size_t>(slices) * slice_bytes_);
   room_ = slices;
   growing_ = false;
 }
@@ -72,10 +70,13 @@ void SliceWindow::read_on() {
   }
 }
 
-// Reads the next slices as far as they lie side by side in the ring.
+// Reads the next slices as far as they lie side by side in the ring; those that somebody waits for by themselves, so
+// that nothing behind them can keep them back.
 void SliceWindow::read_run(std::unique_lock<std::mutex>& lock) {
   const auto most = std::max<std::int64_t>(static_cast<std::int64_t>(kRunBytes / slice_bytes_), 1);
-  const std::int64_t end = std::min({wanted_, first_ + room_, filled_ + most, filled_ + room_ - filled_ % room_});
+  const std::int64_t wanted = filled_ < needed_ ? needed_ : wanted_;
+  const std::int64_t end =
+      std::min({wanted, first_ + room_, filled_ + most, filled_ + room_ - (filled_ - base_) % room_});
   const std::int64_t count = end - filled_;
   const std::span<std::byte> run(place(filled_), static_cast<std::size_t>(count) * slice_bytes_);
   reading_ = true;

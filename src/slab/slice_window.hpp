@@ -13,8 +13,8 @@
 
 namespace isoweave {
 
-// Holds slices [first, end) in the file's own sample type, and has some more read behind them meanwhile. Slices lie in a
-// ring. Memory: bytes().
+// Holds slices [first, end) in the file's own sample type, and has some more read behind them meanwhile. Slices lie in
+// a ring. Memory: bytes().
 class SliceWindow {
  public:
   // The source is read from slice `first` on.
@@ -38,7 +38,7 @@ class SliceWindow {
 
  private:
   std::byte* place(std::int64_t k) const {
-    return const_cast<std::byte*>(buffer_.data()) + static_cast<std::size_t>(k % room_) * slice_bytes_;
+    return const_cast<std::byte*>(buffer_.data()) + static_cast<std::size_t>((k - base_) % room_) * slice_bytes_;
   }
   void make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock);
   void read_on();
@@ -52,9 +52,11 @@ class SliceWindow {
   // Changed under the mutex; buffer and room only while the reader does not read.
   Array<std::byte> buffer_;
   std::int64_t room_ = 1;    // slices in the ring
+  std::int64_t base_;        // a slice that lies at its beginning
   std::int64_t first_;       // held
   std::int64_t end_;         // of the window
   std::int64_t filled_;      // slices below are in the ring
+  std::int64_t needed_ = 0;  // slices below are waited for
   std::int64_t wanted_ = 0;  // slices below are to be read
   bool reading_ = false;
   bool growing_ = false;

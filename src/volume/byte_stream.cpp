@@ -34,6 +34,9 @@ FileStream::FileStream(std::shared_ptr<const InputFile> file, std::uint64_t begi
 std::size_t FileStream::read(std::span<std::byte> out) {
   const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), end_ - position_));
   const std::size_t got = file_->read_at(position_, out.first(wanted));
+  // A file larger than this would push everything else out of the system's cache, and itself before it is read again.
+  constexpr std::uint64_t kHuge = std::uint64_t{8} << 30;
+  if (file_->size() > kHuge) file_->forget(position_, got);
   position_ += got;
   return got;
 }

@@ -31,6 +31,7 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   const int error = errno;
   if (known && S_ISREG(status.st_mode) && status.st_size > 0) {
     size_ = static_cast<std::uint64_t>(status.st_size);
+    static_cast<void>(::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL));  // advice: nothing depends on it
     return;
   }
   // The destructor does not run for a constructor that throws.
@@ -42,6 +43,11 @@ InputFile::InputFile(const std::string& path) : path_(path) {
 }
 
 InputFile::~InputFile() { ::close(descriptor_); }
+
+void InputFile::forget(std::uint64_t offset, std::uint64_t bytes) const {
+  static_cast<void>(
+      ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes), POSIX_FADV_DONTNEED));
+}
 
 std::size_t InputFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {
   if (offset >= size_) return 0;

@@ -60,10 +60,11 @@ struct PartFile {
   std::optional<std::uint64_t> size;  // to go on from; none: there is no such file yet
 };
 
-// A file that appears under its name only on commit(). Until then it lies in the same folder without a name, and is gone
-// when the process ends in whatever way; where the file system cannot do that it is `.NAME.XXXXXX.partial`, which the
-// destructor removes; or it is a part file, which stays. A file that had the name before stays untouched until then. Opening fails at once
-// when the name is empty, a folder or not a regular file, or when the folder is missing or read-only.
+// A file that appears under its name only on commit(). Until then it lies in the same folder without a name, and is
+// gone when the process ends in whatever way; where the file system cannot do that it is `.NAME.XXXXXX.partial`, which
+// the destructor removes; or it is a part file, which stays. A file that had the name before stays untouched until
+// then. Opening fails at once when the name is empty, a folder or not a regular file, or when the folder is missing or
+// read-only.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);

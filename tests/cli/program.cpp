@@ -47,8 +47,7 @@ void send_when_ready(pid_t child, const Setup& setup) {
 
 bool has_file_open_in(pid_t process, const files::Folder& folder) {
   std::error_code error;
-  for (const auto& entry :
-       std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", error)) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", error)) {
     if (std::filesystem::read_symlink(entry, error).string().starts_with(folder.path() + "/")) return true;
   }
   return false;

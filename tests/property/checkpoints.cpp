@@ -279,7 +279,11 @@ TEST_F(SavedState, ShortOrMissingPartsAreRefused) {
 }
 
 TEST_F(SavedState, PartsOfAnotherRunAreNotWrittenOver) {
-  expect_refused<CannotWrite>([&] { open_mesh_file(folder_ / "b.ply", {false, {}, folder_.path()}); }, "unfinished run");
+  expect_refused<CannotWrite>(
+      [&] {
+        open_mesh_file(folder_ / "b.ply", {false, {}, folder_.path()});
+      },
+      "unfinished run");
 }
 
 TEST(Checkpoints, AStateSaysHowMuchItHolds) {
