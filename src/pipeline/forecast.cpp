@@ -268,6 +268,7 @@ class Forecaster {
       return below[static_cast<std::size_t>(to)] - below[first];
     };
     double most = model.fixed();
+    double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
@@ -282,7 +283,8 @@ class Forecaster {
           sum(profile.open, at - depth, done) + kCapWeight * sum(profile.caps, at - kCapDepth * depth, done);
       const double triangles = extracted();
       const auto ahead = static_cast<double>(std::min(slices_ahead(info_, recent), info_.dims[2] - done - recent));
-      most = std::max(most, model.peak(static_cast<double>(recent), ahead, triangles, undecided));
+      ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(recent), ahead, options_.normals));
+      most = std::max(most, model.peak(static_cast<double>(recent), ring, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);
     }
     return most;

@@ -123,8 +123,9 @@ class VolumeSweep {
     const auto undecided = static_cast<double>(simplifies_ ? simplifier_.live_triangles() : 0);
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
-      return model.triangles_within(usable, static_cast<double>(plan.layers), static_cast<double>(plan.ahead),
-                                    undecided);
+      const auto layers = static_cast<double>(plan.layers);
+      const double ring = MemoryModel::ring_for(layers, static_cast<double>(plan.ahead), options_.normals);
+      return model.triangles_within(usable, layers, std::max(ring, static_cast<double>(window_->room())), undecided);
     };
     while (plan.layers > 1 && room() < per_layer * static_cast<double>(plan.layers)) {
       plan.layers = (plan.layers + 1) / 2;
@@ -135,7 +136,8 @@ class VolumeSweep {
   }
 
   [[noreturn]] void refuse_layer(const MemoryModel& model, double per_layer, double undecided) {
-    const auto needed = static_cast<std::uint64_t>(model.peak(1, 1, per_layer, undecided) / kUsedPart);
+    const auto needed = static_cast<std::uint64_t>(
+        model.peak(1, static_cast<double>(window_->room()), per_layer, undecided) / kUsedPart);
     std::string message = volume_.path + ": layer " + std::to_string(layers_ - extractor_.layers_left() + 1) + " of " +
                           std::to_string(layers_) + " needs a memory cap of " + std::to_string(needed) +
                           " bytes, found " + std::to_string(control_.memory);

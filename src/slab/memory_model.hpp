@@ -18,22 +18,24 @@ struct MemoryModel {
   // The program, its libraries and what does not grow.
   double fixed() const { return 13.2e6 + 0.15e6 * threads; }
 
-  // A slab of `layers` layers, `triangles` of them extracted, on `undecided` ones that were there before; `ahead`
-  // slices are read meanwhile.
-  double peak(double layers, double ahead, double triangles, double undecided) const {
-    return fixed() + window(layers, ahead) + per_new() * triangles + per_held() * (triangles + undecided);
+  // A slab of `layers` layers with `triangles`, on `undecided` ones that were there before. The ring of slices has room
+  // for `ring` of them, and never shrinks.
+  double peak(double layers, double ring, double triangles, double undecided) const {
+    return fixed() + slices(layers, ring) + per_new() * triangles + per_held() * (triangles + undecided);
   }
 
   // Triangles that fit into `bytes` with a slab of so many layers; may be negative.
-  double triangles_within(double bytes, double layers, double ahead, double undecided) const {
-    return (bytes - peak(layers, ahead, 0, undecided)) / (per_new() + per_held());
+  double triangles_within(double bytes, double layers, double ring, double undecided) const {
+    return (bytes - peak(layers, ring, 0, undecided)) / (per_new() + per_held());
   }
 
+  // Slices in the ring for a slab and for those read ahead.
+  static double ring_for(double layers, double ahead, bool normals) { return layers + 1 + ahead + (normals ? 2 : 0); }
+
  private:
-  double window(double layers, double ahead) const {
+  double slices(double layers, double ring) const {
     constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
-    return (layers + 1 + ahead + (normals ? 2 : 0)) * static_cast<double>(slice_bytes) +
-           (layers + 1) * kBits * static_cast<double>(slice_samples);
+    return ring * static_cast<double>(slice_bytes) + (layers + 1) * kBits * static_cast<double>(slice_samples);
   }
 
   // On the way from extraction to the zone, or straight to the file.

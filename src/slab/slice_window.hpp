@@ -26,6 +26,7 @@ class SliceWindow {
   const VolumeInfo& info() const { return source_.info(); }
   std::int64_t end() const { return end_; }
   std::uint64_t bytes() const { return buffer_.capacity(); }
+  std::int64_t room() const { return room_; }  // slices
 
   // Drops slices before `first` and waits for those up to `end`, both clipped to the volume; after that `ahead` slices
   // more are read while the caller works. Windows only move forward. Returns the number of slices that are new in the

@@ -119,5 +119,16 @@ TEST(WriteMesh, CountsThatDoNotFitAreErrors) {
   EXPECT_THROW(check_count_fits("a.ply", "vertices", 1, ~std::uint64_t{0}), CannotWrite) << "the sum wraps around";
 }
 
+TEST(MeshFiles, SizesAreKnownBeforehandAndLimitsToo) {
+  EXPECT_EQ(mesh_file_bytes("a.ply", 100, 200), 100U * 12 + 200U * 13);
+  EXPECT_EQ(mesh_file_bytes("a.stl", 100, 200), 200U * 50);
+  constexpr std::uint64_t kMany = std::uint64_t{1} << 33;
+  EXPECT_THROW(mesh_file_bytes("a.ply", kMany, 1), CannotWrite);
+  EXPECT_THROW(mesh_file_bytes("a.stl", 1, kMany), CannotWrite);
+  EXPECT_GT(mesh_file_bytes("a.obj", kMany, kMany), kMany);
+  EXPECT_GT(mesh_file_bytes("a.ply", 1, kMany), kMany) << "faces are not indices";
+  EXPECT_THROW(mesh_file_bytes("a.xyz", 1, 1), CannotWrite);
+}
+
 }  // namespace
 }  // namespace isoweave
