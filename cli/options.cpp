@@ -108,7 +108,10 @@ Quality parse_quality(std::string_view text) {
 }
 
 void add_input_options(CLI::App& verb, InputOptions& input) {
-  verb.add_option("VOLUME", input.path, "Volume file, or generate:KIND:WxHxD[:TYPE[:SEED]]")->required();
+  verb.add_option(
+          "VOLUME", input.path,
+          "Volume file, folder of slices, quoted pattern such as 'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]")
+      ->required();
   verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");

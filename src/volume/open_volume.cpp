@@ -1,12 +1,16 @@
 // Tells the format of a file by its content, then by its name, and hands it to the format's reader.
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "isoweave/error.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/slice_files.hpp"
+#include "volume/slice_series.hpp"
 
 namespace isoweave {
 namespace {
@@ -28,7 +32,9 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".nii") || name.ends_with(".nii.gz") || name.ends_with(".hdr")) return "a NIfTI header";
   if (name.ends_with(".pvm")) return "the magic PVM, PVM2, PVM3, DDS v3d or DDS v3e";
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
-  return "NRRD, MetaImage, NIfTI, PVM, or raw with a layout";
+  if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
+  if (name.ends_with(".png")) return "the magic of PNG";
+  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
@@ -54,6 +60,8 @@ OpenedVolume open_by_name(const FilePtr& file) {
 OpenedVolume open_by_content(const FilePtr& file) {
   const std::string head = file->head(kHeadBytes);
   if (head.starts_with("NRRD")) return open_nrrd(file);
+  if (is_tiff(head)) return open_tiff(file, false);
+  if (is_png(head)) return open_png(file);
   if (is_pvm(head)) return open_pvm(file);
   if (is_metaimage(head)) return open_metaimage(file);
   if (is_nifti(head)) return open_nifti(file, false);
@@ -61,11 +69,21 @@ OpenedVolume open_by_content(const FilePtr& file) {
   return open_by_name(file);
 }
 
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
+OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
+  if (options.raw) return open_raw(open_file(path), *options.raw);
+  if (is_folder(path) || is_pattern(path)) return open_slice_series(find_slices(path));
+  return open_by_content(open_file(path));
+}
+
 }  // namespace
 
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
-  const FilePtr file = open_file(path);
-  OpenedVolume volume = options.raw ? open_raw(file, *options.raw) : open_by_content(file);
+  OpenedVolume volume = open_any(path, options);
   apply_overrides(volume.info.geometry, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }
