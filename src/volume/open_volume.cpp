@@ -1,14 +1,14 @@
 // Tells the format of a file by its content, then by its name, and hands it to the format's reader.
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "volume/dicom_series.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/printable.hpp"
 #include "volume/slice_files.hpp"
 #include "volume/slice_series.hpp"
 
@@ -34,7 +34,8 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
   if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
   if (name.ends_with(".png")) return "the magic of PNG";
-  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, or raw with a layout";
+  if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes";
+  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
@@ -69,15 +70,23 @@ OpenedVolume open_by_content(const FilePtr& file) {
   return open_by_name(file);
 }
 
-bool is_folder(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error);
+void refuse_series(const std::string& path, const std::string& series) {
+  if (!series.empty()) bad_input(path, "the DICOM series " + quoted(series), "no DICOM");
 }
 
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
   if (options.raw) return open_raw(open_file(path), *options.raw);
-  if (is_folder(path) || is_pattern(path)) return open_slice_series(find_slices(path));
-  return open_by_content(open_file(path));
+  const std::string& series = options.series;
+  if (is_folder(path) || is_pattern(path)) {
+    const SliceFiles slices = find_slices(path);
+    if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, series);
+    refuse_series(path, series);
+    return open_slice_series(slices);
+  }
+  const FilePtr file = open_file(path);
+  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom_file(path, series);
+  refuse_series(path, series);
+  return open_by_content(file);
 }
 
 }  // namespace

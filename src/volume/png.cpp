@@ -1,14 +1,12 @@
 // PNG slices through libpng: grey of 8 or 16 bits. The slice is decoded whole, as interlaced images must be.
 #include <png.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <csetjmp>
 #include <cstring>
 #include <new>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "isoweave/error.hpp"
@@ -95,39 +93,21 @@ class PngFile {
   png_infop info_ = nullptr;
 };
 
-// The samples of one image, decoded when the first of them is asked for.
-class PngStream final : public ByteStream {
- public:
-  PngStream(std::unique_ptr<PngFile> png, std::size_t bytes) : png_(std::move(png)), bytes_(bytes) {}
-
-  std::size_t read(std::span<std::byte> out) override {
-    if (samples_.empty()) decode();
-    const std::size_t step = std::min(out.size(), bytes_ - used_);
-    std::memcpy(out.data(), samples_.data() + used_, step);
-    used_ += step;
-    return step;
+std::vector<std::byte> decoded(PngFile& png, std::size_t bytes) {
+  std::vector<std::byte> samples(bytes);
+  std::vector<png_bytep> rows(static_cast<std::size_t>(png.height()));
+  const std::size_t row_bytes = bytes / rows.size();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    rows[row] = reinterpret_cast<png_bytep>(samples.data() + row * row_bytes);
   }
-
- private:
-  void decode() {
-    samples_.resize(bytes_);
-    std::vector<png_bytep> rows(static_cast<std::size_t>(png_->height()));
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      rows[row] = reinterpret_cast<png_bytep>(samples_.data() + row * (bytes_ / rows.size()));
-    }
-    if (!png_->read_rows(rows.data())) png_->refuse("readable PNG samples");
-  }
-
-  std::unique_ptr<PngFile> png_;
-  std::size_t bytes_;
-  std::size_t used_ = 0;
-  std::vector<std::byte> samples_;
-};
+  if (!png.read_rows(rows.data())) png.refuse("readable PNG samples");
+  return samples;
+}
 
 }  // namespace
 
 OpenedVolume open_png(const FilePtr& file) {
-  auto png = std::make_unique<PngFile>(file);
+  const auto png = std::make_shared<PngFile>(file);
   if (png->colour() != PNG_COLOR_TYPE_GRAY || (png->bits() != 8 && png->bits() != 16)) {
     bad_input(file->path(), "grey samples of 8 or 16 bits",
               "PNG colour type " + std::to_string(png->colour()) + " of " + std::to_string(png->bits()) + " bits");
@@ -140,7 +120,7 @@ OpenedVolume open_png(const FilePtr& file) {
   info.dims = {png->width(), png->height(), 1};
   info.notes.emplace_back("the spacing is not given and taken as 1");
   check_plausible(info.path, checked_volume_bytes(info), file->size(), kDeflateRatio);
-  volume.samples = std::make_unique<PngStream>(std::move(png), info.slice_bytes());
+  volume.samples = std::make_unique<DecodedStream>([png, bytes = info.slice_bytes()] { return decoded(*png, bytes); });
   return volume;
 }
 

@@ -52,8 +52,6 @@ SliceKind kind_of(const std::string& path) {
   if (is_tiff(head)) found = SliceKind::kTiff;
   if (is_png(head)) found = SliceKind::kPng;
   if (is_dicom(head)) found = SliceKind::kDicom;
-  // Before DICOM had a magic its files began with the first element.
-  if (found == SliceKind::kOther && named == SliceKind::kDicom) return named;
   if (named != SliceKind::kOther && named != found) {
     bad_input(path, "content of " + std::string(name_of(named)), "other content");
   }
@@ -98,6 +96,11 @@ bool natural_less(std::string_view a, std::string_view b) {
   if (a.empty() != b.empty()) return a.empty();
   // "z1" and "z01" are the same by number.
   return whole.first < whole.second;
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
 }
 
 bool is_pattern(const std::string& path) {
@@ -149,6 +152,17 @@ SliceFiles find_slices(const std::string& path) {
   if (slices.files.empty()) bad_input(path, "slices in TIFF, PNG or DICOM", "a directory without any");
   if (!others.empty()) slices.notes.push_back(left_out(others));
   return slices;
+}
+
+std::vector<std::string> dicom_files_beside(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  std::vector<std::string> files;
+  for (const std::string& name : files_of_folder(folder.empty() ? "." : folder.string())) {
+    std::error_code error;
+    const bool empty = fs::file_size(name, error) == 0;
+    if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);
+  }
+  return files;
 }
 
 }  // namespace isoweave

@@ -10,6 +10,8 @@ namespace isoweave {
 // Whether `a` comes before `b` when runs of digits count as numbers: "z9.tif" before "z10.tif".
 bool natural_less(std::string_view a, std::string_view b);
 
+bool is_folder(const std::string& path);
+
 // Whether a path is to be read as a pattern: it holds one of * ? [ and no file has this very name.
 bool is_pattern(const std::string& path);
 
@@ -33,5 +35,8 @@ struct SliceFiles {
 // pattern names must all be slices. Throws BadInput when there is none, when there are two kinds, or when the content
 // of a file is not what its name says.
 SliceFiles find_slices(const std::string& path);
+
+// The DICOM files in the folder of a file, itself among them.
+std::vector<std::string> dicom_files_beside(const std::string& path);
 
 }  // namespace isoweave

@@ -152,6 +152,16 @@ TEST_F(RealFiles, TiffSeries) {
 }
 #endif
 
+// Ranges and means in the descriptions are of the samples as stored.
+TEST_F(RealFiles, DicomSeries) {
+  expect_described_sum("fnndsc_abdomen", "");
+  expect_described_sum("seg3d_mr_dicom", "");
+  const VolumeInfo ct = open_volume(data_file("fnndsc_abdomen"))->info();
+  EXPECT_EQ(ct.slope, 1);
+  EXPECT_EQ(ct.intercept, -1000);
+  EXPECT_NEAR(ct.geometry.origin[2], -679.8, 1e-3);
+}
+
 TEST_F(RealFiles, PvmInDds) { expect_as_described("dti_b0_pvm", "DTI-B0.pvm"); }
 
 }  // namespace
