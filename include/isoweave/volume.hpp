@@ -91,7 +91,7 @@ struct OpenOptions {
 };
 
 // Opens a volume; the format is told by its content, then by its name: NRRD/NHDR, MetaImage
-// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, raw. A folder, or a pattern
+// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, VTK images, raw. A folder, or a pattern
 // such as "slices/*.tif", is a series of one file per slice: TIFF or PNG in the order of the numbers in
 // their names, DICOM by position. A DICOM file stands for the series it belongs to. docs/formats.md says what is read
 // of each. Only headers are read here, and their claims are compared with the sizes of the files where those are known.

@@ -32,6 +32,12 @@ OpenedVolume open_metaimage(const FilePtr& file);
 bool is_pvm(std::string_view head);
 OpenedVolume open_pvm(const FilePtr& file);
 
+bool is_vti(std::string_view head);
+OpenedVolume open_vti(const FilePtr& file);
+
+bool is_vtk_legacy(std::string_view head);
+OpenedVolume open_vtk_legacy(const FilePtr& file);
+
 // The readers below stand on libraries that a build may lack; what tells their files does not.
 bool is_tiff(std::string_view head);
 // `one_of_series`: the file is one slice of a series, and may describe the whole of it.

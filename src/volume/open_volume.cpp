@@ -34,8 +34,10 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
   if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
   if (name.ends_with(".png")) return "the magic of PNG";
+  if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
+  if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
   if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes";
-  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, or raw with a layout";
+  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
@@ -63,6 +65,8 @@ OpenedVolume open_by_content(const FilePtr& file) {
   if (head.starts_with("NRRD")) return open_nrrd(file);
   if (is_tiff(head)) return open_tiff(file, false);
   if (is_png(head)) return open_png(file);
+  if (is_vti(head)) return open_vti(file);
+  if (is_vtk_legacy(head)) return open_vtk_legacy(file);
   if (is_pvm(head)) return open_pvm(file);
   if (is_metaimage(head)) return open_metaimage(file);
   if (is_nifti(head)) return open_nifti(file, false);

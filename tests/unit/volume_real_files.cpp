@@ -162,6 +162,11 @@ TEST_F(RealFiles, DicomSeries) {
   EXPECT_NEAR(ct.geometry.origin[2], -679.8, 1e-3);
 }
 
+TEST_F(RealFiles, VtiAppendedAndInline) {
+  expect_described_sum("ttk_isabel_vti", "isabel_30.vti");
+  expect_described_sum("vtk_hydrogen_vti", "hydrogen.vti");
+}
+
 TEST_F(RealFiles, PvmInDds) { expect_as_described("dti_b0_pvm", "DTI-B0.pvm"); }
 
 }  // namespace
