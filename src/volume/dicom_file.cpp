@@ -54,7 +54,7 @@ class ElementWalk {
   // The next element; the walk goes on behind it, or inside it where it holds elements.
   Element next() {
     while (!ends_.empty() && ends_.back() != kOpen && position_ >= ends_.back()) ends_.pop_back();
-    const Element element = header();
+    Element element = header();
     const std::uint64_t left = file_.size() - std::min(element.value, file_.size());
     if (element.length != kUndefined && element.length > left) {
       bad_input(file_.path(),

@@ -9,7 +9,7 @@ namespace {
 [[noreturn]] void not_built(const std::string& path, std::string_view format, std::string_view library,
                             std::string_view option) {
   bad_input(
-      file->path(), "a format of this build",
+      path, "a format of this build",
       std::string(format) + ", which needs " + std::string(library) + " (CMake option " + std::string(option) + "=ON)");
 }
 #endif

@@ -28,7 +28,6 @@ class PngFile {
     }
     png_set_read_fn(png_, this, read);
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    if (!read_header()) refuse("a readable PNG header");
   }
   ~PngFile() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngFile(const PngFile&) = delete;
@@ -44,6 +43,13 @@ class PngFile {
   int bits() const { return png_get_bit_depth(png_, info_); }
   int colour() const { return png_get_color_type(png_, info_); }
 
+  // To be called before anything is asked for.
+  bool read_header() {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_read_info(png_, info_);
+    return true;
+  }
+
   // Fills rows of the image, in the machine's byte order.
   bool read_rows(png_bytep* rows) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
@@ -57,12 +63,6 @@ class PngFile {
   }
 
  private:
-  bool read_header() {
-    if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    png_read_info(png_, info_);
-    return true;
-  }
-
   static void keep_message(png_structp png, png_const_charp text) {
     auto& self = *static_cast<PngFile*>(png_get_error_ptr(png));
     std::strncpy(self.message_.data(), text, self.message_.size() - 1);
@@ -108,6 +108,7 @@ std::vector<std::byte> decoded(PngFile& png, std::size_t bytes) {
 
 OpenedVolume open_png(const FilePtr& file) {
   const auto png = std::make_shared<PngFile>(file);
+  if (!png->read_header()) png->refuse("a readable PNG header");
   if (png->colour() != PNG_COLOR_TYPE_GRAY || (png->bits() != 8 && png->bits() != 16)) {
     bad_input(file->path(), "grey samples of 8 or 16 bits",
               "PNG colour type " + std::to_string(png->colour()) + " of " + std::to_string(png->bits()) + " bits");

@@ -470,7 +470,7 @@ bool is_contiguous(const TiffFile& tiff, const Pages& pages, const StackDescript
 
 std::unique_ptr<ByteStream> contiguous_samples(const TiffFile& tiff, const VolumeInfo& info,
                                                const StackDescription& stack) {
-  const FilePtr file = tiff.file();
+  const FilePtr& file = tiff.file();
   const std::uint64_t begin = TIFFGetStrileOffset(tiff.handle(), 0);
   const std::uint64_t slice = info.slice_bytes();
   std::uint64_t bytes = 0;
