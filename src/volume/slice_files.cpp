@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -77,6 +78,9 @@ std::string left_out(const std::vector<std::string>& others) {
   return std::to_string(others.size()) + " files of the folder are no slices and are left out: " + names;
 }
 
+// A folder that is not there holds no match; one that may not be listed might.
+int gives_up(const char*, int error) { return error == ENOENT || error == ENOTDIR ? 0 : 1; }
+
 }  // namespace
 
 bool natural_less(std::string_view a, std::string_view b) {
@@ -124,7 +128,7 @@ std::vector<std::string> files_of_folder(const std::string& folder) {
 
 std::vector<std::string> files_of_pattern(const std::string& pattern) {
   glob_t found{};
-  const int result = ::glob(pattern.c_str(), GLOB_NOSORT | GLOB_ERR, nullptr, &found);
+  const int result = ::glob(pattern.c_str(), GLOB_NOSORT, gives_up, &found);
   std::vector<std::string> files;
   for (std::size_t n = 0; result == 0 && n < found.gl_pathc; ++n) files.emplace_back(found.gl_pathv[n]);
   ::globfree(&found);

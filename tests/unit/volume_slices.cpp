@@ -43,6 +43,7 @@ TEST(SliceSeries, IsReadFromAFolderOrAPattern) {
   EXPECT_EQ(read_file<std::uint16_t>(folder / "z[0-2].tif"),
             std::vector<std::uint16_t>(kSamples.begin(), kSamples.begin() + 60));
   EXPECT_EQ(open_volume(folder / "z3.tif")->info().dims[2], 1);
+  EXPECT_TRUE(contains(refusal(folder / "gone/z*.tif"), "expected files that match the pattern, found none"));
   EXPECT_TRUE(contains(refusal(folder / "y*.tif"), "expected files that match the pattern, found none"));
 }
 
