@@ -46,6 +46,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"raw", arguments.input.raw},
           {"spacing", arguments.input.spacing},
           {"origin", arguments.input.origin},
+          {"series", arguments.input.series},
           {"output", absolute_path(arguments.output)},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
           {"iso", fmt::format("{}", options.iso)},
@@ -65,7 +66,7 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
   const Json task = Json::parse(checkpoint.note, nullptr, false);
   if (!task.is_object()) throw BadInput(checkpoint.path + ": expected a state saved by isoweave mesh, found another");
   MeshArguments arguments = now;
-  arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin")};
+  arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin"), task.at("series")};
   arguments.output = task.at("output");
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");

@@ -129,16 +129,20 @@ Quality parse_quality(std::string_view text) {
 }
 
 void add_input_options(CLI::App& verb, InputOptions& input) {
-  verb.add_option("VOLUME", input.path, "Volume file, or generate:KIND:WxHxD[:TYPE[:SEED]]");
+  verb.add_option(
+      "VOLUME", input.path,
+      "Volume file, folder of slices, quoted pattern such as 'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
   verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
+  verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID");
 }
 
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   if (!input.path.starts_with(kGeneratePrefix)) return std::nullopt;
   if (!input.raw.empty()) throw std::invalid_argument("--raw does not go with a generated volume");
   if (!input.origin.empty()) throw std::invalid_argument("--origin does not go with a generated volume");
+  if (!input.series.empty()) throw std::invalid_argument("--series does not go with a generated volume");
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
   if (parts.size() < 2 || parts.size() > 4) wrong_value("VOLUME", "generate:KIND:WxHxD[:TYPE[:SEED]]", input.path);
   GenerateOptions options;
@@ -164,6 +168,7 @@ std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
   if (!input.raw.empty()) options.raw = parse_raw_layout(input.raw);
   if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
   if (!input.origin.empty()) options.origin = parse_triple("--origin", input.origin);
+  options.series = input.series;
   return open_volume(input.path, options);
 }
 

@@ -42,7 +42,7 @@ struct Geometry {
 
 struct VolumeInfo {
   std::string path;                           // as given
-  std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "generated"
+  std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "tiff", "png", "dicom", ...
   std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
   SampleType type = SampleType::kUint8;
   Geometry geometry;
@@ -90,12 +90,16 @@ struct OpenOptions {
   std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
+  std::string series;                            // Series Instance UID: which one, where there are several (DICOM)
 };
 
 // Opens a volume; the format is told by its content, then by its name: NRRD/NHDR, MetaImage
-// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), raw. Only the header is read here, and
-// its claims are compared with the size of the file where that is known.
-// Throws BadInput when the file is missing, a directory, of no known format, or its header is wrong.
+// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, VTK images, raw. A folder, or a pattern
+// such as "slices/*.tif", is a series of one file per slice: TIFF or PNG in the order of the numbers in
+// their names, DICOM by position. A DICOM file stands for the series it belongs to. docs/formats.md says what is read
+// of each. Only headers are read here, and their claims are compared with the sizes of the files where those are known.
+// Throws BadInput when the file is missing, a folder without slices, of no known format or of one that
+// this build leaves out, or its header is wrong.
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
 
 }  // namespace isoweave

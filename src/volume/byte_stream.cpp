@@ -113,6 +113,14 @@ std::size_t InflateStream::read(std::span<std::byte> out) {
   return done;
 }
 
+std::size_t DecodedStream::read(std::span<std::byte> out) {
+  if (decode_) bytes_ = std::exchange(decode_, nullptr)();
+  const std::size_t step = std::min(out.size(), bytes_.size() - used_);
+  std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(used_), step, out.begin());
+  used_ += step;
+  return step;
+}
+
 FileSequence::FileSequence(std::int64_t count, std::uint64_t bytes_each, Opener open, Namer name)
     : count_(count), bytes_each_(bytes_each), open_(std::move(open)), name_(std::move(name)) {}
 

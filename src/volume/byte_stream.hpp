@@ -7,6 +7,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "volume/input_file.hpp"
 
@@ -60,6 +62,21 @@ class InflateStream final : public ByteStream {
   std::unique_ptr<ByteStream> input_;
   std::string path_;
   std::unique_ptr<State> state_;
+};
+
+// Bytes that can only be had all at once, such as a decoded slice; they are made when the first is asked for.
+class DecodedStream final : public ByteStream {
+ public:
+  using Decoder = std::function<std::vector<std::byte>()>;
+
+  explicit DecodedStream(Decoder decode) : decode_(std::move(decode)) {}
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  Decoder decode_;  // empty once it was called
+  std::vector<std::byte> bytes_;
+  std::size_t used_ = 0;
 };
 
 // Several files one after another, each giving exactly `bytes_each` bytes; one is open at a time.

@@ -32,4 +32,22 @@ OpenedVolume open_metaimage(const FilePtr& file);
 bool is_pvm(std::string_view head);
 OpenedVolume open_pvm(const FilePtr& file);
 
+bool is_vti(std::string_view head);
+OpenedVolume open_vti(const FilePtr& file);
+
+bool is_vtk_legacy(std::string_view head);
+OpenedVolume open_vtk_legacy(const FilePtr& file);
+
+// The readers below stand on libraries that a build may lack; what tells their files does not.
+bool is_tiff(std::string_view head);
+// `one_of_series`: the file is one slice of a series, and may describe the whole of it.
+OpenedVolume open_tiff(const FilePtr& file, bool one_of_series);
+
+bool is_png(std::string_view head);
+OpenedVolume open_png(const FilePtr& file);
+
+bool is_dicom(std::string_view head);
+// Bytes of a file that is_dicom needs.
+inline constexpr std::size_t kDicomHeadBytes = 132;
+
 }  // namespace isoweave

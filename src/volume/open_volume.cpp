@@ -4,9 +4,13 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "volume/dicom_series.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/printable.hpp"
+#include "volume/slice_files.hpp"
+#include "volume/slice_series.hpp"
 
 namespace isoweave {
 namespace {
@@ -28,7 +32,12 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".nii") || name.ends_with(".nii.gz") || name.ends_with(".hdr")) return "a NIfTI header";
   if (name.ends_with(".pvm")) return "the magic PVM, PVM2, PVM3, DDS v3d or DDS v3e";
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
-  return "NRRD, MetaImage, NIfTI, PVM, or raw with a layout";
+  if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
+  if (name.ends_with(".png")) return "the magic of PNG";
+  if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
+  if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
+  if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes";
+  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
@@ -54,6 +63,10 @@ OpenedVolume open_by_name(const FilePtr& file) {
 OpenedVolume open_by_content(const FilePtr& file) {
   const std::string head = file->head(kHeadBytes);
   if (head.starts_with("NRRD")) return open_nrrd(file);
+  if (is_tiff(head)) return open_tiff(file, false);
+  if (is_png(head)) return open_png(file);
+  if (is_vti(head)) return open_vti(file);
+  if (is_vtk_legacy(head)) return open_vtk_legacy(file);
   if (is_pvm(head)) return open_pvm(file);
   if (is_metaimage(head)) return open_metaimage(file);
   if (is_nifti(head)) return open_nifti(file, false);
@@ -61,11 +74,29 @@ OpenedVolume open_by_content(const FilePtr& file) {
   return open_by_name(file);
 }
 
+void refuse_series(const std::string& path, const std::string& series) {
+  if (!series.empty()) bad_input(path, "the DICOM series " + quoted(series), "no DICOM");
+}
+
+OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
+  if (options.raw) return open_raw(open_file(path), *options.raw);
+  const std::string& series = options.series;
+  if (is_folder(path) || is_pattern(path)) {
+    const SliceFiles slices = find_slices(path);
+    if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, series);
+    refuse_series(path, series);
+    return open_slice_series(slices);
+  }
+  const FilePtr file = open_file(path);
+  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom_file(path, series);
+  refuse_series(path, series);
+  return open_by_content(file);
+}
+
 }  // namespace
 
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
-  const FilePtr file = open_file(path);
-  OpenedVolume volume = options.raw ? open_raw(file, *options.raw) : open_by_content(file);
+  OpenedVolume volume = open_any(path, options);
   apply_overrides(volume.info.geometry, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }

@@ -120,6 +120,11 @@ TEST(CliBadInput, NothingThereAndNoFile) {
   const files::Folder folder;
   expect_failure(folder, mesh("nothing.nrrd"), 3, "nothing.nrrd");
   expect_failure(folder, mesh("."), 3, "directory");
+  expect_failure(folder, mesh("slices/*.tif"), 3, "files that match the pattern, found none");
+  expect_failure(folder, mesh("nothing.nrrd", {"--series", "1.2"}), 3, "nothing.nrrd");
+  files::write_bytes(folder / "box.nrrd", nrrd("8 8 8", "uchar", 512));
+  expect_failure(folder, mesh("box.nrrd", {"--series", "1.2"}), 3, "expected the DICOM series '1.2', found no DICOM");
+  expect_failure(folder, mesh(kSmall, {"--series", "1.2"}), 2, "--series does not go with a generated volume");
   expect_failure(folder, {"info", "nothing.nrrd"}, 3, "nothing.nrrd");
   expect_failure(folder, {"check", "nothing.ply"}, 3, "nothing.ply");
   expect_failure(folder, {"check", "."}, 3, ".");

@@ -3,6 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "volume/samples.hpp"
 #include "volume_helpers.hpp"
 
 namespace isoweave::testing {
@@ -120,6 +121,51 @@ TEST_F(RealFiles, NrrdVariantsOfOneBall) {
 }
 
 TEST_F(RealFiles, MetaImageZlib) { expect_as_described("elastix_ct_lung_mha", "3DCT_lung.mha"); }
+
+double sum_of(const std::string& path) {
+  const auto source = open_volume(path);
+  double sum = 0;
+  visit_sample_type(source->info().type, [&]<class Sample>() {
+    for (const Sample sample : samples_of<Sample>(*source, 5)) sum += static_cast<double>(sample);
+  });
+  return sum;
+}
+
+// Beside the range, the sum: of integers below 2^53 it is exact.
+void expect_described_sum(const std::string& folder, const std::string& name) {
+  expect_as_described(folder, name);
+  const auto facts = nlohmann::json::parse(get(data_file(folder + "/info.json")));
+  const double sum = facts["mean"].get<double>() * facts["voxels"].get<double>();
+  EXPECT_NEAR(sum_of(data_file(folder + "/" + name)), sum, 1e-6 + 1e-9 * std::abs(sum)) << name;
+}
+
+#ifdef ISOWEAVE_HAS_TIFF
+TEST_F(RealFiles, TiffOfImageJ) {
+  expect_described_sum("neubias_mri_head_tif", "xyz_8bit_calibrated_anisotropic__mri_head.tif");
+  expect_described_sum("neubias_chromosomes_tif", "xyz_8bit__chromosomes.tif");
+  EXPECT_EQ(open_volume(data_file("neubias_chromosomes_tif/xyz_8bit__chromosomes.tif"))->info().geometry.unit, "um");
+}
+
+TEST_F(RealFiles, TiffSeries) {
+  expect_described_sum("neubias_celegans_em_tifs", "");
+  expect_described_sum("neubias_celegans_em_tifs", "*.tif");
+}
+#endif
+
+// Ranges and means in the descriptions are of the samples as stored.
+TEST_F(RealFiles, DicomSeries) {
+  expect_described_sum("fnndsc_abdomen", "");
+  expect_described_sum("seg3d_mr_dicom", "");
+  const VolumeInfo ct = open_volume(data_file("fnndsc_abdomen"))->info();
+  EXPECT_EQ(ct.slope, 1);
+  EXPECT_EQ(ct.intercept, -1000);
+  EXPECT_NEAR(ct.geometry.origin[2], -679.8, 1e-3);
+}
+
+TEST_F(RealFiles, VtiAppendedAndInline) {
+  expect_described_sum("ttk_isabel_vti", "isabel_30.vti");
+  expect_described_sum("vtk_hydrogen_vti", "hydrogen.vti");
+}
 
 TEST_F(RealFiles, PvmInDds) { expect_as_described("dti_b0_pvm", "DTI-B0.pvm"); }
 

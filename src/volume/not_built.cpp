@@ -1,0 +1,33 @@
+// Stands in for the readers whose libraries the build lacks: an error that says which option brings them in.
+#include "volume/dicom_file.hpp"
+#include "volume/formats.hpp"
+
+namespace isoweave {
+namespace {
+
+#if !defined(ISOWEAVE_HAS_TIFF) || !defined(ISOWEAVE_HAS_PNG) || !defined(ISOWEAVE_HAS_DICOM)
+[[noreturn]] void not_built(const std::string& path, std::string_view format, std::string_view library,
+                            std::string_view option) {
+  bad_input(
+      path, "a format of this build",
+      std::string(format) + ", which needs " + std::string(library) + " (CMake option " + std::string(option) + "=ON)");
+}
+#endif
+
+}  // namespace
+
+#ifndef ISOWEAVE_HAS_TIFF
+OpenedVolume open_tiff(const FilePtr& file, bool) { not_built(file->path(), "TIFF", "libtiff", "ISOWEAVE_TIFF"); }
+#endif
+
+#ifndef ISOWEAVE_HAS_PNG
+OpenedVolume open_png(const FilePtr& file) { not_built(file->path(), "PNG", "libpng", "ISOWEAVE_PNG"); }
+#endif
+
+#ifndef ISOWEAVE_HAS_DICOM
+std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+  not_built(slice.path, "DICOM with JPEG samples", "GDCM", "ISOWEAVE_DICOM");
+}
+#endif
+
+}  // namespace isoweave

@@ -1,0 +1,42 @@
+// Volumes kept as one file per slice: the files of a folder, or those that a pattern such as 'scan/*.tif' names.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isoweave {
+
+// Whether `a` comes before `b` when runs of digits count as numbers: "z9.tif" before "z10.tif".
+bool natural_less(std::string_view a, std::string_view b);
+
+bool is_folder(const std::string& path);
+
+// Whether a path is to be read as a pattern: it holds one of * ? [ and no file has this very name.
+bool is_pattern(const std::string& path);
+
+// The regular files of a folder that are not hidden, in natural order. Throws BadInput when it cannot be listed.
+std::vector<std::string> files_of_folder(const std::string& folder);
+
+// The files that a pattern names, in natural order. Throws BadInput when there is none.
+std::vector<std::string> files_of_pattern(const std::string& pattern);
+
+// What one file of a series holds, told by its first bytes.
+enum class SliceKind { kOther, kTiff, kPng, kDicom };
+
+struct SliceFiles {
+  std::string path;  // the folder or the pattern, as given
+  SliceKind kind = SliceKind::kOther;
+  std::vector<std::string> files;
+  std::vector<std::string> notes;  // says which files of the folder are none of the slices
+};
+
+// The slices of a folder or pattern: files of one kind. In a folder other files are left out and noted; those that a
+// pattern names must all be slices. Throws BadInput when there is none, when there are two kinds, or when the content
+// of a file is not what its name says.
+SliceFiles find_slices(const std::string& path);
+
+// The DICOM files in the folder of a file, itself among them.
+std::vector<std::string> dicom_files_beside(const std::string& path);
+
+}  // namespace isoweave

@@ -1,0 +1,155 @@
+#include "volume/vtk_streams.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include "volume/printable.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+// The next `count` bytes of a stream that others read on from.
+class PartStream final : public ByteStream {
+ public:
+  PartStream(std::shared_ptr<ByteStream> input, std::uint64_t count) : input_(std::move(input)), left_(count) {}
+
+  std::size_t read(std::span<std::byte> out) override {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), left_));
+    const std::size_t got = input_->read(out.first(wanted));
+    left_ -= got;
+    return got;
+  }
+
+ private:
+  std::shared_ptr<ByteStream> input_;
+  std::uint64_t left_;
+};
+
+// The value of a base64 digit; nothing for padding and for what is no digit.
+constexpr std::uint32_t kPadding = 64;
+constexpr std::uint32_t kNoDigit = 65;
+
+std::uint32_t digit_of(char c) {
+  if (c >= 'A' && c <= 'Z') return static_cast<std::uint32_t>(c - 'A');
+  if (c >= 'a' && c <= 'z') return static_cast<std::uint32_t>(c - 'a' + 26);
+  if (c >= '0' && c <= '9') return static_cast<std::uint32_t>(c - '0' + 52);
+  if (c == '+') return 62;
+  if (c == '/') return 63;
+  return c == '=' ? kPadding : kNoDigit;
+}
+
+}  // namespace
+
+char TextStream::next() {
+  if (used_ == filled_ && !ended_) {
+    filled_ = input_->read(buffer_);
+    used_ = 0;
+  }
+  if (ended_ || used_ == filled_) return '\0';
+  const char c = std::to_integer<char>(buffer_[used_++]);
+  ended_ = c == '<';
+  return ended_ ? '\0' : c;
+}
+
+NumberStream::NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path)
+    : text_(std::move(text)), type_(type), left_(count), path_(std::move(path)) {}
+
+std::string NumberStream::next_word() {
+  constexpr std::size_t kLongest = 64;
+  char c = text_.next();
+  while (is_blank(c)) c = text_.next();
+  std::string word;
+  for (; c != '\0' && !is_blank(c) && word.size() < kLongest; c = text_.next()) word += c;
+  return word;
+}
+
+bool NumberStream::next_sample() {
+  if (left_ == 0) return false;
+  const std::string word = next_word();
+  if (word.empty()) return false;
+  --left_;
+  visit_sample_type(type_, [&]<class Sample>() {
+    Sample value{};
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    if (error != std::errc{} || stop != end) {
+      bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)), quoted(word));
+    }
+    std::memcpy(sample_.data(), &value, sizeof(Sample));
+    size_ = sizeof(Sample);
+  });
+  used_ = 0;
+  return true;
+}
+
+std::size_t NumberStream::read(std::span<std::byte> out) {
+  std::size_t done = 0;
+  while (done < out.size() && (used_ < size_ || next_sample())) out[done++] = sample_[used_++];
+  return done;
+}
+
+bool Base64Stream::next_group() {
+  std::uint32_t bits = 0;
+  std::size_t digits = 0;
+  std::size_t padding = 0;
+  while (digits + padding < 4) {
+    const char c = text_.next();
+    if (is_blank(c)) continue;
+    if (c == '\0' && digits == 0) return false;
+    const std::uint32_t digit = digit_of(c);
+    if (digit == kNoDigit || (digit != kPadding && padding > 0) || (digit == kPadding && digits < 2)) {
+      bad_input(path_, "groups of four base64 digits", "other characters, or too few");
+    }
+    bits = bits << 6 | (digit == kPadding ? 0 : digit);
+    ++(digit == kPadding ? padding : digits);
+  }
+  constexpr std::uint32_t kByte = 0xff;
+  for (std::size_t n = 0; n < 3; ++n) group_[n] = static_cast<std::byte>(bits >> (16 - 8 * n) & kByte);
+  size_ = 3 - padding;
+  used_ = 0;
+  return true;
+}
+
+std::size_t Base64Stream::read(std::span<std::byte> out) {
+  std::size_t done = 0;
+  while (done < out.size() && (used_ < size_ || next_group())) out[done++] = group_[used_++];
+  return done;
+}
+
+void BlockStream::enter_block() {
+  const bool last = next_ + 1 == sizes_.stored.size() && sizes_.last > 0;
+  left_ = last ? sizes_.last : sizes_.block;
+  block_ = std::make_unique<InflateStream>(std::make_unique<PartStream>(input_, sizes_.stored[next_]), path_);
+  ++next_;
+}
+
+void BlockStream::leave_block() {
+  // One byte more makes the block check its sum, and must not be there.
+  std::array<std::byte, 1> beyond;
+  if (block_->read(beyond) != 0) bad_input(path_, "blocks of the size that their header says", "a larger one");
+  block_.reset();
+}
+
+std::size_t BlockStream::read(std::span<std::byte> out) {
+  std::size_t done = 0;
+  while (done < out.size() && (block_ || next_ < sizes_.stored.size())) {
+    if (!block_) enter_block();
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(out.size() - done, left_));
+    if (block_->read(out.subspan(done, wanted)) < wanted) {
+      bad_input(path_, "blocks of the size that their header says", "a smaller one");
+    }
+    done += wanted;
+    left_ -= wanted;
+    if (left_ == 0) leave_block();
+  }
+  return done;
+}
+
+}  // namespace isoweave

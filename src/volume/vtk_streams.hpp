@@ -1,0 +1,97 @@
+// The ways in which VTK files keep arrays: numbers as text, base64, and blocks that are compressed one by one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "isoweave/volume.hpp"
+#include "volume/byte_stream.hpp"
+
+namespace isoweave {
+
+// Characters of a stream one at a time, up to a '<' or the end.
+class TextStream {
+ public:
+  explicit TextStream(std::unique_ptr<ByteStream> input) : input_(std::move(input)) {}
+
+  // The next character; 0 behind the last.
+  char next();
+
+ private:
+  std::unique_ptr<ByteStream> input_;
+  std::array<std::byte, 64 * 1024> buffer_;
+  std::size_t used_ = 0;
+  std::size_t filled_ = 0;
+  bool ended_ = false;
+};
+
+// Numbers between blanks as `count` samples in the machine's byte order; what follows them is not read.
+class NumberStream final : public ByteStream {
+ public:
+  NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path);
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  bool next_sample();
+  std::string next_word();
+
+  TextStream text_;
+  SampleType type_;
+  std::uint64_t left_;  // samples
+  std::string path_;
+  std::array<std::byte, 8> sample_{};
+  std::size_t used_ = 0;  // bytes of the sample
+  std::size_t size_ = 0;
+};
+
+// Base64 in several pieces, each of which may end in padding, with blanks anywhere between groups.
+class Base64Stream final : public ByteStream {
+ public:
+  Base64Stream(std::unique_ptr<ByteStream> text, std::string path) : text_(std::move(text)), path_(std::move(path)) {}
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  bool next_group();
+
+  TextStream text_;
+  std::string path_;
+  std::array<std::byte, 3> group_{};
+  std::size_t used_ = 0;
+  std::size_t size_ = 0;
+};
+
+// Sizes of compressed blocks, as the header before them has them.
+struct BlockSizes {
+  std::uint64_t block = 0;  // bytes of every block but the last, once inflated
+  std::uint64_t last = 0;
+  std::vector<std::uint64_t> stored;
+};
+
+// zlib blocks one after another.
+class BlockStream final : public ByteStream {
+ public:
+  BlockStream(std::unique_ptr<ByteStream> input, BlockSizes sizes, std::string path)
+      : input_(std::move(input)), sizes_(std::move(sizes)), path_(std::move(path)) {}
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  void enter_block();
+  void leave_block();
+
+  std::shared_ptr<ByteStream> input_;
+  BlockSizes sizes_;
+  std::string path_;
+  std::size_t next_ = 0;    // block
+  std::uint64_t left_ = 0;  // bytes of the current one
+  std::unique_ptr<ByteStream> block_;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,424 @@
+#include <gdcmImageChangeTransferSyntax.h>
+#include <gdcmImageReader.h>
+#include <gdcmImageWriter.h>
+
+#include <cmath>
+
+#include "volume_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+constexpr int kColumns = 7;
+constexpr int kRows = 5;
+constexpr std::size_t kSlice = kColumns * kRows;
+
+// One element in explicit little-endian form.
+std::string element(std::uint16_t group, std::uint16_t number, const std::string& vr, std::string value) {
+  const bool binary = vr == "US" || vr == "OW" || vr == "UL" || vr == "SQ";
+  if (value.size() % 2 != 0) value += binary || vr == "UI" ? '\0' : ' ';
+  const auto size = static_cast<std::uint32_t>(value.size());
+  std::string text = bytes_of(group) + bytes_of(number) + vr;
+  text += vr == "OW" || vr == "SQ" ? std::string(2, '\0') + bytes_of(size) : bytes_of(static_cast<std::uint16_t>(size));
+  return text + value;
+}
+
+std::string us(std::uint16_t number, int value) {
+  return element(0x28, number, "US", bytes_of(static_cast<std::uint16_t>(value)));
+}
+
+struct DicomFields {
+  std::string series = "1.2.3";
+  std::string description = "thin";
+  std::string position = "10\\20\\30";
+  std::string orientation = "1\\0\\0\\0\\1\\0";
+  std::string pixel_spacing = "0.5\\0.25";
+  std::string slope, intercept, frames, thickness;
+  std::string photometric = "MONOCHROME2";
+  int columns = kColumns;
+  int rows = kRows;
+  int bits = 16;
+  int is_signed = 0;
+  int samples = 1;
+  std::string more;  // elements behind (0028,1053)
+};
+
+std::string dicom(const DicomFields& fields, const std::string& samples) {
+  const std::string syntax = element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+  const std::string meta = element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(2, 3, "UI", "1.9") + syntax;
+  std::string file = std::string(128, '\0') + "DICM";
+  file += element(2, 0, "UL", bytes_of(static_cast<std::uint32_t>(meta.size()))) + meta;
+  file += element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(8, 0x18, "UI", "1.9");
+  file += element(8, 0x60, "CS", "CT") + element(8, 0x103e, "LO", fields.description);
+  if (!fields.thickness.empty()) file += element(0x18, 0x50, "DS", fields.thickness);
+  file += element(0x20, 0xe, "UI", fields.series);
+  if (!fields.position.empty()) file += element(0x20, 0x32, "DS", fields.position);
+  if (!fields.orientation.empty()) file += element(0x20, 0x37, "DS", fields.orientation);
+  file += us(2, fields.samples) + element(0x28, 4, "CS", fields.photometric);
+  if (!fields.frames.empty()) file += element(0x28, 8, "IS", fields.frames);
+  file += us(0x10, fields.rows) + us(0x11, fields.columns);
+  if (!fields.pixel_spacing.empty()) file += element(0x28, 0x30, "DS", fields.pixel_spacing);
+  file += us(0x100, fields.bits) + us(0x101, fields.bits) + us(0x102, fields.bits - 1) + us(0x103, fields.is_signed);
+  if (!fields.intercept.empty()) file += element(0x28, 0x1052, "DS", fields.intercept);
+  if (!fields.slope.empty()) file += element(0x28, 0x1053, "DS", fields.slope);
+  return file + fields.more + element(0x7fe0, 0x10, "OW", samples);
+}
+
+const std::vector<std::uint16_t> kSamples = ramp<std::uint16_t>(kSlice * 5);
+
+std::string slice(std::size_t n) { return stored(kSamples).substr(2 * kSlice * n, 2 * kSlice); }
+
+std::string at(double z) { return "10\\20\\" + std::to_string(z); }
+
+// Five slices 2.5 apart, whose names are in the order opposite to that of their positions.
+void put_series(const TempFolder& folder, DicomFields fields = {}) {
+  for (std::size_t n = 0; n < 5; ++n) {
+    fields.position = at(30 + 2.5 * static_cast<double>(n));
+    folder.put("s" + std::to_string(9 - n), dicom(fields, slice(n)));
+  }
+}
+
+std::vector<std::uint16_t> in_order(const std::vector<std::size_t>& slices) {
+  std::vector<std::uint16_t> samples;
+  for (const std::size_t n : slices) {
+    const auto first = kSamples.begin() + static_cast<std::ptrdiff_t>(n * kSlice);
+    samples.insert(samples.end(), first, first + kSlice);
+  }
+  return samples;
+}
+
+TEST(Dicom, OrdersSlicesByPosition) {
+  const TempFolder folder;
+  put_series(folder);
+  const auto source = open_volume(folder / "");
+  const VolumeInfo& info = source->info();
+  EXPECT_EQ(info.format, "dicom");
+  EXPECT_EQ(info.dims, (std::array<std::int64_t, 3>{kColumns, kRows, 5}));
+  EXPECT_EQ(info.type, SampleType::kUint16);
+  EXPECT_EQ(info.geometry.space, Space::kLps);
+  EXPECT_EQ(info.geometry.unit, "mm");
+  EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.25, 0.5, 2.5}));
+  EXPECT_EQ(info.geometry.origin, (std::array<double, 3>{10, 20, 30}));
+  EXPECT_EQ(info.geometry.direction, (std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_TRUE(info.notes.empty());
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+}
+
+TEST(Dicom, ReadsASeriesByAFolderAPatternOrOneFile) {
+  const TempFolder folder;
+  put_series(folder);
+  DicomFields other;
+  other.series = "1.2.4";
+  folder.put("other", dicom(other, slice(0)));
+  folder.put("readme.txt", "hello");
+  folder.put("empty", "");
+  EXPECT_EQ(read_file<std::uint16_t>(folder / "s*"), kSamples);
+  const auto source = open_volume(folder / "s7");
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+  EXPECT_EQ(source->info().notes.at(0), "the series of this file: 5 files of its folder");
+  EXPECT_EQ(open_volume(folder / "other")->info().dims[2], 1);
+}
+
+TEST(Dicom, ListsSeveralSeriesAndReadsTheChosenOne) {
+  const TempFolder folder;
+  put_series(folder);
+  DicomFields other;
+  other.series = "1.2.4";
+  other.description = "scout";
+  folder.put("other", dicom(other, slice(3)));
+  const std::string message = refusal(folder / "");
+  EXPECT_TRUE(contains(message, "found 2 series: 1.2.3 ('thin', 5 slices); 1.2.4 ('scout', 1 slices)")) << message;
+  OpenOptions options;
+  options.series = "1.2.3";
+  EXPECT_EQ(read_file<std::uint16_t>(folder / "", options), kSamples);
+  options.series = "1.2.4";
+  EXPECT_EQ(read_file<std::uint16_t>(folder / "", options), in_order({3}));
+  EXPECT_TRUE(contains(refusal(folder / "s7", options), "expected the series '1.2.4', found '1.2.3'"));
+  options.series = "1.2.5";
+  EXPECT_TRUE(contains(refusal(folder / "", options), "expected the series '1.2.5', found 2 series"));
+  EXPECT_TRUE(contains(refusal(folder.put("a_1x1x1_uint8.raw", "x"), options), "found no DICOM"));
+}
+
+TEST(Dicom, TakesObliqueAndShearedAxes) {
+  const TempFolder folder;
+  // Rows along y, columns along a slanting -z: the normal is (-0.8, 0, -0.6), and x falls from slice to slice.
+  DicomFields fields;
+  fields.orientation = "0\\1\\0\\0.6\\0\\-0.8";
+  for (std::size_t n = 0; n < 3; ++n) {
+    const std::string x = std::to_string(5 - 2 * static_cast<int>(n));
+    fields.position = x + "\\0\\0";
+    folder.put("s" + std::to_string(n), dicom(fields, slice(n)));
+  }
+  const auto source = open_volume(folder / "");
+  const Geometry& geometry = source->info().geometry;
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), in_order({0, 1, 2}));
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{5, 0, 0}));
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{0.25, 0.5, 2}));
+  const std::array<double, 9> expected{0, 0.6, -1, 1, 0, 0, 0, -0.8, 0};
+  for (std::size_t n = 0; n < 9; ++n) EXPECT_NEAR(geometry.direction[n], expected[n], 1e-12) << n;
+}
+
+TEST(Dicom, NotesMissingAndUnevenSlices) {
+  const TempFolder folder;
+  put_series(folder);
+  std::filesystem::remove(folder / "s7");
+  const VolumeInfo missing = open_volume(folder / "")->info();
+  EXPECT_TRUE(contains(missing.notes.at(0), "1 slices seem to be missing: 5 mm between '")) << missing.notes.at(0);
+  EXPECT_TRUE(contains(missing.notes.at(1), "from 2.5 to 5 mm; the mean is used"));
+  EXPECT_NEAR(missing.geometry.spacing[2], 10.0 / 3, 1e-12);
+  DicomFields fields;
+  fields.position = at(35.5);
+  folder.put("s7", dicom(fields, slice(2)));
+  EXPECT_TRUE(contains(open_volume(folder / "")->info().notes.at(0), "unevenly spaced, from 2 to 3 mm"));
+  fields.position = "10\\21\\35";
+  folder.put("s7", dicom(fields, slice(2)));
+  EXPECT_TRUE(contains(open_volume(folder / "")->info().notes.at(0), "up to 1 mm beside it"));
+}
+
+TEST(Dicom, RefusesSlicesInOnePlace) {
+  const TempFolder folder;
+  put_series(folder);
+  DicomFields fields;
+  fields.position = at(32.5);
+  folder.put("t", dicom(fields, slice(2)));
+  const std::string message = refusal(folder / "");
+  EXPECT_TRUE(contains(message, "expected a position of its own for every slice, found that of '")) << message;
+}
+
+TEST(Dicom, ReadsSignedSamplesScalingAndBothPhotometricInterpretations) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.is_signed = 1;
+  fields.slope = "0.5";
+  fields.intercept = "-1024";
+  fields.photometric = "MONOCHROME1";
+  fields.thickness = "3";
+  const auto samples = ramp<std::int16_t>(kSlice);
+  const auto source = open_volume(folder.put("a", dicom(fields, stored(samples))));
+  EXPECT_EQ(source->info().type, SampleType::kInt16);
+  EXPECT_EQ(source->info().slope, 0.5);
+  EXPECT_EQ(source->info().intercept, -1024);
+  EXPECT_EQ(source->info().geometry.spacing[2], 3);
+  EXPECT_TRUE(contains(source->info().notes.at(0), "shown bright"));
+  EXPECT_EQ(samples_of<std::int16_t>(*source), samples);
+  DicomFields bytes;
+  bytes.bits = 8;
+  const auto eight = ramp<std::uint8_t>(kSlice);
+  EXPECT_EQ(read_file<std::uint8_t>(folder.put("a", dicom(bytes, stored(eight)))), eight);
+}
+
+// Rewrites a file in another transfer syntax.
+bool transcode(const std::string& from, const std::string& to, gdcm::TransferSyntax::TSType syntax) {
+  gdcm::ImageReader reader;
+  reader.SetFileName(from.c_str());
+  if (!reader.Read()) return false;
+  gdcm::ImageChangeTransferSyntax change;
+  change.SetTransferSyntax(gdcm::TransferSyntax(syntax));
+  change.SetInput(reader.GetImage());
+  if (!change.Change()) return false;
+  gdcm::ImageWriter writer;
+  writer.SetFile(reader.GetFile());
+  writer.SetImage(change.GetOutput());
+  writer.SetFileName(to.c_str());
+  return writer.Write();
+}
+
+TEST(Dicom, ReadsEveryTransferSyntax) {
+  // GDCM cannot write smaller JPEG 2000 images.
+  DicomFields fields;
+  fields.columns = 64;
+  fields.rows = 48;
+  const auto signed_samples = ramp<std::int16_t>(64 * 48);
+  for (const auto syntax : {gdcm::TransferSyntax::ImplicitVRLittleEndian, gdcm::TransferSyntax::ExplicitVRBigEndian,
+                            gdcm::TransferSyntax::JPEGLosslessProcess14, gdcm::TransferSyntax::JPEGLosslessProcess14_1,
+                            gdcm::TransferSyntax::JPEGLSLossless, gdcm::TransferSyntax::JPEG2000Lossless,
+                            gdcm::TransferSyntax::RLELossless}) {
+    SCOPED_TRACE(gdcm::TransferSyntax::GetTSString(syntax));
+    for (const int is_signed : {0, 1}) {
+      const TempFolder folder;
+      fields.is_signed = is_signed;
+      folder.put("a", dicom(fields, stored(signed_samples)));
+      ASSERT_TRUE(transcode(folder / "a", folder / "b", syntax));
+      std::filesystem::remove(folder / "a");
+      EXPECT_EQ(read_file<std::int16_t>(folder / "b"), signed_samples) << is_signed;
+    }
+  }
+}
+
+TEST(Dicom, SurvivesDamagedRunLengths) {
+  const TempFolder folder;
+  folder.put("w", dicom({}, slice(0)));
+  ASSERT_TRUE(transcode(folder / "w", folder / "a", gdcm::TransferSyntax::RLELossless));
+  std::filesystem::remove(folder / "w");
+  const std::string content = get(folder / "a");
+  expect_prefixes_are_safe(folder, "a", content);
+  expect_flips_are_safe(folder, "a", content, content.size());
+}
+
+TEST(Dicom, RefusesPackedFramesOfAnotherSize) {
+  DicomFields fields;
+  fields.columns = 64;
+  fields.rows = 48;
+  for (const auto syntax : {gdcm::TransferSyntax::JPEGLosslessProcess14_1, gdcm::TransferSyntax::JPEGLSLossless,
+                            gdcm::TransferSyntax::JPEG2000Lossless}) {
+    const TempFolder folder;
+    folder.put("w", dicom(fields, stored(ramp<std::uint16_t>(64 * 48))));
+    ASSERT_TRUE(transcode(folder / "w", folder / "a", syntax));
+    std::filesystem::remove(folder / "w");
+    std::string content = get(folder / "a");
+    const std::size_t columns = content.find(us(0x11, 64));
+    ASSERT_NE(columns, std::string::npos);
+    content.replace(columns, us(0x11, 32).size(), us(0x11, 32));
+    const std::string message = refusal(folder.put("a", content));
+    EXPECT_TRUE(contains(message, "expected a packed frame of 32 x 48 samples of 16 bits, found 64 x 48")) << message;
+  }
+}
+
+TEST(Dicom, RefusesSlicesThatDiffer) {
+  const TempFolder folder;
+  const auto with = [&](const DicomFields& fields) {
+    put_series(folder);
+    folder.put("s7", dicom(fields, slice(2)));
+    return refusal(folder / "");
+  };
+  DicomFields fields;
+  fields.slope = "2";
+  const std::string message = with(fields);
+  EXPECT_TRUE(contains(message, "s7: expected 7 x 5 uint16 MONOCHROME2 scaled by 1 and 0 as in '")) << message;
+  EXPECT_TRUE(contains(message, "found 7 x 5 uint16 MONOCHROME2 scaled by 2 and 0")) << message;
+  fields = {};
+  fields.columns = 5;
+  fields.rows = 7;
+  EXPECT_TRUE(contains(with(fields), "found 5 x 7"));
+  fields = {};
+  fields.orientation = "0\\1\\0\\1\\0\\0";
+  EXPECT_TRUE(contains(with(fields), "expected the orientation and pixel spacing"));
+  fields = {};
+  fields.pixel_spacing = "0.5\\0.5";
+  EXPECT_TRUE(contains(with(fields), "expected the orientation and pixel spacing"));
+}
+
+TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
+  const TempFolder folder;
+  const auto with = [&](const DicomFields& fields) { return refusal(folder.put("a", dicom(fields, slice(0)))); };
+  DicomFields fields;
+  fields.frames = "5";
+  EXPECT_TRUE(contains(with(fields), "expected one frame in each file, found '5'"));
+  fields.more = element(0x5200, 0x9229, "SQ", "");
+  EXPECT_TRUE(contains(with(fields), "enhanced multi-frame"));
+  fields = {};
+  fields.photometric = "RGB";
+  fields.samples = 3;
+  EXPECT_TRUE(contains(with(fields), "found 'RGB' of 3 samples"));
+  fields = {};
+  fields.bits = 12;
+  EXPECT_TRUE(contains(with(fields), "8, 16 or 32 bits allocated, found 12"));
+  fields = {};
+  fields.position.clear();
+  EXPECT_TRUE(contains(with(fields), "expected 3 numbers as Image Position (Patient), found none"));
+  fields = {};
+  fields.orientation = "1\\0\\0\\1\\0\\0";
+  EXPECT_TRUE(contains(with(fields), "orthogonal unit vectors"));
+  fields = {};
+  fields.pixel_spacing = "0.5";
+  EXPECT_TRUE(contains(with(fields), "expected 2 numbers as Pixel Spacing, found '0.5'"));
+  fields.pixel_spacing = "0.5\\0";
+  EXPECT_TRUE(contains(with(fields), "positive, finite sample spacing"));
+  fields = {};
+  fields.slope = "0";
+  EXPECT_TRUE(contains(with(fields), "a Rescale Slope other than 0"));
+  fields = {};
+  fields.rows = 0;
+  EXPECT_TRUE(contains(with(fields), "a DICOM file without one"));
+  EXPECT_TRUE(contains(refusal(folder / ""), "expected DICOM images, found 1 files without one"));
+  std::string deflated = dicom({}, slice(0));
+  deflated.replace(deflated.find("1.2.840.10008.1.2.1") + 16, 3, "9.9");
+  EXPECT_TRUE(contains(refusal(folder.put("a", deflated)), "expected a transfer syntax of plain, JPEG"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.dcm", "hello")), "DICM behind a preamble"));
+}
+
+TEST(Dicom, TakesTheBitsThatAreUsed) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.is_signed = 1;
+  // 12 bits from bit 11 down; the four above hold an overlay.
+  fields.more = us(0x101, 12) + us(0x102, 11);
+  const std::vector<std::uint16_t> kept{0xf001, 0x0fff, 0x7800};
+  std::string samples = stored(kept);
+  samples.resize(2 * kSlice);
+  const auto read = read_file<std::int16_t>(folder.put("a", dicom(fields, samples)));
+  EXPECT_EQ(read[0], 1);
+  EXPECT_EQ(read[1], -1);
+  EXPECT_EQ(read[2], -2048);
+  fields.is_signed = 0;
+  fields.more = us(0x101, 12) + us(0x102, 15);
+  EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", dicom(fields, samples)))[1], 0x0ff);
+  fields.more = us(0x101, 17);
+  EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, samples))), "bits stored within those allocated"));
+}
+
+TEST(Dicom, PassesOverSequencesWithImagesOfTheirOwn) {
+  const TempFolder folder;
+  const std::string item("\xfe\xff\x00\xe0", 4);
+  const std::string end("\xfe\xff\xdd\xe0\0\0\0\0", 8);
+  const std::string open = bytes_of(std::uint32_t{0xffffffff});
+  const std::string inside = us(0x10, 99) + element(0x7fe0, 0x10, "OW", "icon");
+  const std::string packed = us(0x10, 99) + bytes_of(std::uint16_t{0x7fe0}) + bytes_of(std::uint16_t{0x10}) +
+                             std::string("OB\0\0", 4) + open + item + bytes_of(std::uint32_t{0}) + item +
+                             bytes_of(std::uint32_t{4}) + "\xff\xff\xff\xff" + end;
+  const std::string closed = item + bytes_of(static_cast<std::uint32_t>(inside.size())) + inside;
+  const std::string unknown = bytes_of(std::uint16_t{0x88}) + bytes_of(std::uint16_t{0x200}) + std::string("SQ\0\0", 4);
+  const std::string item_end("\xfe\xff\x0d\xe0\0\0\0\0", 8);
+  for (const std::string& sequence : {element(0x88, 0x200, "SQ", closed), unknown + open + closed + end,
+                                      unknown + open + item + open + inside + item_end + end,
+                                      unknown + open + item + open + packed + item_end + end}) {
+    DicomFields fields;
+    fields.more = sequence;
+    const std::string content = dicom(fields, slice(0));
+    EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", content)), in_order({0}));
+    expect_flips_are_safe(folder, "a", content, content.size(), 300);
+  }
+}
+
+TEST(Dicom, ReadsASeriesWithoutUid) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.series.clear();
+  put_series(folder, fields);
+  EXPECT_EQ(read_file<std::uint16_t>(folder / ""), kSamples);
+}
+
+TEST(Dicom, LeavesFilesWithoutImagesOut) {
+  const TempFolder folder;
+  put_series(folder);
+  DicomFields fields;
+  fields.rows = 0;
+  folder.put("report", dicom(fields, ""));
+  const auto source = open_volume(folder / "");
+  EXPECT_EQ(source->info().notes.at(0), "1 DICOM files hold no image and are left out");
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+}
+
+TEST(Dicom, RefusesSizesThatLie) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.rows = 50000;
+  EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, slice(0)))), "expected 700000 bytes"));
+  fields = {};
+  EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, slice(0).substr(0, 60)))), "expected 70 bytes"));
+  std::string content = dicom(fields, slice(0));
+  content.replace(content.size() - 74, 4, bytes_of(std::uint32_t{0xfffffff0}));
+  EXPECT_TRUE(contains(refusal(folder.put("a", content)), "4294967280 bytes of a DICOM element"));
+}
+
+TEST(Dicom, SurvivesCutsAndFlips) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.thickness = "3";
+  const std::string content = dicom(fields, slice(0));
+  expect_prefixes_are_safe(folder, "a", content);
+  expect_flips_are_safe(folder, "a", content, content.size(), 2000);
+}
+
+}  // namespace
+}  // namespace isoweave::testing

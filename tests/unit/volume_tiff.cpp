@@ -1,0 +1,302 @@
+#include <type_traits>
+
+#include "tiff_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+const std::vector<std::uint16_t> kSamples = ramp<std::uint16_t>(5 * 4 * 6);
+
+TiffPage described(const std::string& text) {
+  TiffPage page;
+  page.description = text;
+  return page;
+}
+
+VolumeInfo info_of(const TempFolder& folder, const TiffPage& page) {
+  return open_volume(write_stack(folder / "a.tif", page, stored(kSamples)))->info();
+}
+
+std::string refusal_of(const TempFolder& folder, const TiffPage& page, const std::string& samples) {
+  return refusal(write_stack(folder / "a.tif", page, samples));
+}
+
+template <class Sample>
+void expect_type(const TempFolder& folder, SampleType type, std::uint16_t format) {
+  // Tiles of 16 hang over both edges.
+  constexpr std::uint32_t kWidth = 37;
+  constexpr std::uint32_t kHeight = 21;
+  const auto samples = ramp<Sample>(std::size_t{kWidth} * kHeight * 3);
+  for (const std::string mode : {"wl", "wb", "w8l", "w8b"}) {
+    for (const std::uint32_t tile : {0U, 16U}) {
+      for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
+                                    COMPRESSION_ZSTD, COMPRESSION_LZMA}) {
+        if (TIFFIsCODECConfigured(static_cast<std::uint16_t>(compression)) == 0) continue;
+        TiffPage page{kWidth, kHeight};
+        page.bits = 8 * sizeof(Sample);
+        page.format = format;
+        page.tile = tile;
+        page.compression = static_cast<std::uint16_t>(compression);
+        // libtiff 4.5 writes the floating-point predictor wrongly in the byte order that is not the machine's.
+        const bool reals = std::is_floating_point_v<Sample> && !mode.ends_with('b');
+        if (compression == COMPRESSION_ADOBE_DEFLATE) page.predictor = reals ? 3 : 2;
+        const auto source = open_volume(write_stack(folder / "a.tif", page, stored(samples), mode));
+        EXPECT_EQ(source->info().type, type);
+        EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{kWidth, kHeight, 3}));
+        EXPECT_EQ(samples_of<Sample>(*source), samples) << mode << " tile " << tile << " compression " << compression;
+      }
+    }
+  }
+}
+
+TEST(Tiff, ReadsEveryTypeOrderLayoutAndCompression) {
+  const TempFolder folder;
+  expect_type<std::uint8_t>(folder, SampleType::kUint8, SAMPLEFORMAT_UINT);
+  expect_type<std::int8_t>(folder, SampleType::kInt8, SAMPLEFORMAT_INT);
+  expect_type<std::uint16_t>(folder, SampleType::kUint16, SAMPLEFORMAT_UINT);
+  expect_type<std::int16_t>(folder, SampleType::kInt16, SAMPLEFORMAT_INT);
+  expect_type<std::uint32_t>(folder, SampleType::kUint32, SAMPLEFORMAT_UINT);
+  expect_type<std::int32_t>(folder, SampleType::kInt32, SAMPLEFORMAT_INT);
+  expect_type<float>(folder, SampleType::kFloat32, SAMPLEFORMAT_IEEEFP);
+  expect_type<double>(folder, SampleType::kFloat64, SAMPLEFORMAT_IEEEFP);
+}
+
+TEST(Tiff, IsToldByItsContent) {
+  const TempFolder folder;
+  const auto source = open_volume(write_stack(folder / "no-ending", {}, stored(kSamples)));
+  EXPECT_EQ(source->info().format, "tiff");
+  EXPECT_EQ(source->info().geometry.space, Space::kUnknown);
+  EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{1, 1, 1}));
+  EXPECT_TRUE(contains(source->info().notes.at(0), "axis 0 is not given"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", "hello")), "the magic of TIFF or BigTIFF"));
+}
+
+TEST(Tiff, SkipsSlicesAndPartsOfBands) {
+  const TempFolder folder;
+  for (const std::uint32_t tile : {0U, 16U}) {
+    TiffPage page;
+    page.tile = tile;
+    page.compression = COMPRESSION_LZW;
+    const auto source = open_volume(write_stack(folder / "a.tif", page, stored(kSamples)));
+    std::vector<std::uint16_t> slices(40);
+    source->read(1, 2, std::as_writable_bytes(std::span(slices)));
+    EXPECT_TRUE(std::equal(slices.begin(), slices.end(), kSamples.begin() + 20));
+    source->read(5, 1, std::as_writable_bytes(std::span(slices)));
+    EXPECT_TRUE(std::equal(slices.begin(), slices.begin() + 20, kSamples.begin() + 100));
+  }
+}
+
+TEST(Tiff, TakesSpacingUnitAndOriginFromImageJ) {
+  const TempFolder folder;
+  TiffPage page = described("ImageJ=1.53q\nimages=6\nslices=6\nunit=\\u00B5m\nspacing=-3.5\nxorigin=2\nzorigin=1\n");
+  page.resolution = 4;
+  const VolumeInfo info = info_of(folder, page);
+  EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.25, 0.25, 3.5}));
+  EXPECT_EQ(info.geometry.origin, (std::array<double, 3>{-0.5, 0, -3.5}));
+  EXPECT_EQ(info.geometry.unit, "um");
+  EXPECT_TRUE(info.notes.empty());
+}
+
+TEST(Tiff, TurnsCentimetresAndInchesIntoMillimetres) {
+  const TempFolder folder;
+  const auto spacing = [&](const std::string& unit, std::uint16_t tag, float resolution) {
+    TiffPage page = described("ImageJ=1.53q\nimages=6\n" + unit + "spacing=2\n");
+    page.resolution = resolution;
+    page.resolution_unit = tag;
+    const VolumeInfo info = info_of(folder, page);
+    EXPECT_EQ(info.geometry.unit, unit.empty() && resolution == 72 ? "" : "mm");
+    return std::pair(info.geometry.spacing[0], info.geometry.spacing[2]);
+  };
+  EXPECT_EQ(spacing("unit=cm\n", RESUNIT_NONE, 4), std::pair(2.5, 20.0));
+  EXPECT_EQ(spacing("unit=inch\n", RESUNIT_NONE, 4), std::pair(6.35, 50.8));
+  EXPECT_EQ(spacing("", RESUNIT_CENTIMETER, 4), std::pair(2.5, 20.0));
+  EXPECT_EQ(spacing("", RESUNIT_INCH, 4), std::pair(6.35, 50.8));
+  EXPECT_EQ(spacing("", RESUNIT_INCH, 72), std::pair(1.0, 2.0));
+  const VolumeInfo odd = info_of(folder, described("ImageJ=1.53q\nunit=furlong\nspacing=2\n"));
+  EXPECT_TRUE(contains(odd.notes.at(0), "'furlong'"));
+  EXPECT_EQ(odd.geometry.unit, "");
+}
+
+TEST(Tiff, TakesAStraightCalibrationFromImageJ) {
+  const TempFolder folder;
+  const VolumeInfo info = info_of(folder, described("ImageJ=1.53q\nimages=6\ncf=0\nc0=-32768.0\nc1=0.5\n"));
+  EXPECT_EQ(info.slope, 0.5);
+  EXPECT_EQ(info.intercept, -32768);
+}
+
+TEST(Tiff, ReadsTheFirstChannelAndFrameOfHyperstacks) {
+  const TempFolder folder;
+  const std::string text = "ImageJ=1.53q\nimages=6\nchannels=2\nslices=3\nhyperstack=true\n";
+  const auto source = open_volume(write_stack(folder / "a.tif", described(text), stored(kSamples)));
+  EXPECT_EQ(source->info().dims[2], 3);
+  EXPECT_EQ(source->info().notes.at(0), "the first of 2 channels is read");
+  std::vector<std::uint16_t> expected;
+  for (const std::size_t page : {0U, 2U, 4U}) {
+    expected.insert(expected.end(), kSamples.begin() + static_cast<std::ptrdiff_t>(20 * page),
+                    kSamples.begin() + static_cast<std::ptrdiff_t>(20 * page + 20));
+  }
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), expected);
+  const auto frames = open_volume(
+      write_stack(folder / "a.tif", described("ImageJ=1.53q\nimages=6\nframes=2\nslices=3\n"), stored(kSamples)));
+  EXPECT_EQ(frames->info().notes.at(0), "the first of 2 frames is read");
+  EXPECT_EQ(samples_of<std::uint16_t>(*frames), std::vector<std::uint16_t>(kSamples.begin(), kSamples.begin() + 60));
+  EXPECT_TRUE(contains(refusal_of(folder, described("ImageJ=1\nimages=6\nchannels=4\nslices=3\n"), stored(kSamples)),
+                       "expected 12 images"));
+  EXPECT_TRUE(contains(refusal_of(folder, described("ImageJ=1\nimages=7\n"), stored(kSamples)),
+                       "expected 7 pages by its description, found 6"));
+  EXPECT_TRUE(contains(refusal_of(folder, described("ImageJ=1\nimages=-1\n"), stored(kSamples)), "at least 1"));
+}
+
+std::string ome(const std::string& order, const std::string& more = "") {
+  return "<?xml version=\"1.0\"?><OME><Image><Pixels ID=\"P\" DimensionOrder=\"" + order +
+         "\" SizeC=\"2\" SizeT=\"1\" SizeZ=\"3\" PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\" " +
+         more + "Type=\"uint16\"/></Image></OME>";
+}
+
+TEST(Tiff, ReadsTheFirstChannelOfOmeStacks) {
+  const TempFolder folder;
+  const auto source = open_volume(write_stack(folder / "a.tif", described(ome("XYCZT")), stored(kSamples)));
+  EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{0.5, 0.5, 2}));
+  EXPECT_EQ(source->info().geometry.unit, "um");
+  EXPECT_EQ(samples_of<std::uint16_t>(*source)[20], kSamples[40]);
+  const std::string nm = "PhysicalSizeXUnit=\"nm\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZUnit=\"nm\" ";
+  const auto other = open_volume(write_stack(folder / "a.tif", described(ome("XYZCT", nm)), stored(kSamples)));
+  EXPECT_EQ(other->info().geometry.unit, "nm");
+  EXPECT_EQ(samples_of<std::uint16_t>(*other)[20], kSamples[20]);
+  EXPECT_TRUE(
+      contains(refusal_of(folder, described(ome("XYZCT", "PhysicalSizeZUnit=\"nm\" ")), stored(kSamples)), "one unit"));
+  EXPECT_TRUE(contains(refusal_of(folder, described(ome("ZYX")), stored(kSamples)), "DimensionOrder"));
+  EXPECT_TRUE(contains(refusal_of(folder, described("<OME></OME>"), stored(kSamples)), "expected Pixels"));
+}
+
+TEST(Tiff, ReadsContiguousImageJStacks) {
+  const TempFolder folder;
+  for (const bool big : {false, true}) {
+    HandMade page;
+    page.big = big;
+    page.description = "ImageJ=1.53q\nimages=6\nspacing=2\n";
+    const auto source = open_volume(folder.put("a.tif", hand_made(page, stored(kSamples, big))));
+    EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{5, 4, 6}));
+    EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+    page.description = "ImageJ=1.53q\nimages=6\nchannels=3\nslices=2\n";
+    const auto first = open_volume(folder.put("a.tif", hand_made(page, stored(kSamples, big))));
+    EXPECT_EQ(samples_of<std::uint16_t>(*first)[20], kSamples[60]);
+  }
+  HandMade page;
+  page.description = "ImageJ=1.53q\nimages=7\n";
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(page, stored(kSamples)))), "expected 7 images of 40"));
+  page.compression = COMPRESSION_LZW;
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(page, stored(kSamples)))), "expected 7 pages"));
+}
+
+TEST(Tiff, ReadsImageJStacksBeyondFourGigabytes) {
+  const TempFolder folder;
+  HandMade page;
+  page.width = 65536;
+  page.height = 1;
+  page.bits = 8;
+  page.strip_bytes = 65536;
+  page.description = "ImageJ=1.53q\nimages=98304\n";
+  const std::string head = hand_made(page, "");
+  const std::string path = folder.put("a.tif", head);
+  std::filesystem::resize_file(path, head.size() + (std::uint64_t{3} << 31) - 1);
+  std::ofstream(path, std::ios::binary | std::ios::app) << "y";
+  const auto source = open_volume(path);
+  EXPECT_EQ(source->info().dims[2], 98304);
+  std::vector<std::byte> row(65536);
+  source->read(98303, 1, row);
+  EXPECT_EQ(row.front(), std::byte{0});
+  EXPECT_EQ(row.back(), std::byte{'y'});
+}
+
+TEST(Tiff, RefusesWhatIsNotGrey) {
+  const TempFolder folder;
+  TiffPage page;
+  page.samples = 3;
+  page.photometric = PHOTOMETRIC_RGB;
+  EXPECT_TRUE(contains(refusal_of(folder, page, std::string(5 * 4 * 6, 'x')), "expected grey samples, found RGB"));
+  page.photometric = PHOTOMETRIC_MINISBLACK;
+  EXPECT_TRUE(contains(refusal_of(folder, page, std::string(5 * 4 * 6, 'x')), "one sample per pixel, found 3"));
+  page = {};
+  page.bits = 8;
+  page.photometric = PHOTOMETRIC_PALETTE;
+  EXPECT_TRUE(contains(refusal_of(folder, page, std::string(5 * 4, 'x')), "found a palette"));
+  page = {};
+  page.format = SAMPLEFORMAT_IEEEFP;
+  EXPECT_TRUE(contains(refusal_of(folder, page, std::string(5 * 4 * 2, 'x')), "found 16 bits of sample format 3"));
+  HandMade odd;
+  odd.bits = 12;
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(odd, std::string(40, 'x')))), "found 12 bits"));
+}
+
+TEST(Tiff, NotesWhatItDoesNotApply) {
+  const TempFolder folder;
+  TiffPage page;
+  page.photometric = PHOTOMETRIC_MINISWHITE;
+  const auto source = open_volume(write_stack(folder / "a.tif", page, stored(kSamples)));
+  EXPECT_TRUE(contains(source->info().notes.at(0), "0 stands for white"));
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+}
+
+TEST(Tiff, LeavesSmallerCopiesOut) {
+  const TempFolder folder;
+  TIFF* tiff = TIFFOpen((folder / "a.tif").c_str(), "w");
+  TiffPage copy{2, 2};
+  copy.subfile = FILETYPE_REDUCEDIMAGE;
+  write_page(tiff, {}, stored(kSamples).substr(0, 40));
+  write_page(tiff, copy, std::string(8, 'x'));
+  write_page(tiff, {}, stored(kSamples).substr(40, 40));
+  TIFFClose(tiff);
+  const auto source = open_volume(folder / "a.tif");
+  EXPECT_EQ(source->info().dims[2], 2);
+  EXPECT_TRUE(contains(source->info().notes.at(0), "1 pages are masks or smaller copies"));
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), std::vector<std::uint16_t>(kSamples.begin(), kSamples.begin() + 40));
+}
+
+TEST(Tiff, RefusesPagesThatDiffer) {
+  const TempFolder folder;
+  const auto with_second = [&](const TiffPage& second) {
+    TIFF* tiff = TIFFOpen((folder / "a.tif").c_str(), "w");
+    write_page(tiff, {}, std::string(40, 'x'));
+    write_page(tiff, second, std::string(80, 'x'));
+    TIFFClose(tiff);
+    return refusal(folder / "a.tif");
+  };
+  EXPECT_TRUE(contains(with_second({5, 5}), "expected 5 x 4 uint16 on page 1 as on page 0, found 5 x 5 uint16"));
+  TiffPage other;
+  other.format = SAMPLEFORMAT_INT;
+  EXPECT_TRUE(contains(with_second(other), "found 5 x 4 int16"));
+}
+
+TEST(Tiff, RefusesSizesThatLie) {
+  const TempFolder folder;
+  HandMade page;
+  page.height = 400000000;
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(page, std::string(40, 'x')))), "expected"));
+  page = {};
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(page, std::string(39, 'x')))), "40 bytes of samples"));
+  page.compression = COMPRESSION_PACKBITS;
+  page.strip_bytes = 40;
+  page.width = 1 << 30;
+  EXPECT_TRUE(contains(refusal(folder.put("a.tif", hand_made(page, std::string(40, 'x')))), "cannot hold them"));
+}
+
+TEST(Tiff, SurvivesCutsAndFlips) {
+  const TempFolder folder;
+  for (const std::uint32_t tile : {0U, 16U}) {
+    TiffPage page = described("ImageJ=1.53q\nimages=6\nslices=6\nunit=mm\nspacing=2\n");
+    page.tile = tile;
+    page.compression = COMPRESSION_LZW;
+    const std::string content = get(write_stack(folder / "w.tif", page, stored(kSamples)));
+    expect_prefixes_are_safe(folder, "a.tif", content);
+    expect_flips_are_safe(folder, "a.tif", content, content.size());
+  }
+  HandMade page;
+  page.description = "ImageJ=1.53q\nimages=6\nspacing=2\n";
+  const std::string content = hand_made(page, stored(kSamples, true));
+  expect_prefixes_are_safe(folder, "a.tif", content);
+  expect_flips_are_safe(folder, "a.tif", content, 200);
+}
+
+}  // namespace
+}  // namespace isoweave::testing

@@ -1,0 +1,263 @@
+#include "volume_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(4 * 3 * 5);
+
+std::string base64(const std::string& bytes) {
+  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      bits = bits << 8 | (at + n < bytes.size() ? static_cast<unsigned char>(bytes[at + n]) : 0U);
+    }
+    for (std::size_t n = 0; n < 4; ++n) text += at + n > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * n) & 63];
+  }
+  return text;
+}
+
+// How an array is written.
+struct VtiForm {
+  bool big = false;
+  bool wide = false;      // numbers of 8 bytes before an array
+  std::size_t block = 0;  // bytes of the compressed blocks; 0: not compressed
+  bool appended = false;
+  bool base64 = true;
+  std::string attributes = "type=\"Int16\" Name=\"a\"";
+  std::string scalars = {};
+  std::string place = R"(WholeExtent="0 3 0 2 0 4" Origin="0 0 0" Spacing="1 1 1")";
+  std::string extent = "0 3 0 2 0 4";
+};
+
+std::string word(const VtiForm& form, std::uint64_t value) {
+  return form.wide ? bytes_of(value, form.big) : bytes_of(static_cast<std::uint32_t>(value), form.big);
+}
+
+std::string encoded(const VtiForm& form, const std::string& bytes) { return form.base64 ? base64(bytes) : bytes; }
+
+// The array with its sizes, as VTK writes it: those of compressed blocks are a piece of base64 of their own.
+std::string array_of(const VtiForm& form, const std::string& samples) {
+  if (form.block == 0) return encoded(form, word(form, samples.size()) + samples);
+  std::string sizes;
+  std::string blocks;
+  std::uint64_t count = 0;
+  for (std::size_t at = 0; at < samples.size(); at += form.block, ++count) {
+    const std::string block = zlibbed(samples.substr(at, form.block));
+    sizes += word(form, block.size());
+    blocks += block;
+  }
+  sizes = word(form, count) + word(form, form.block) + word(form, samples.size() % form.block) + sizes;
+  return encoded(form, sizes) + encoded(form, blocks);
+}
+
+std::string vti(const VtiForm& form, const std::string& array) {
+  std::string text = "<?xml version=\"1.0\"?>\n<!-- <VTKFile type='no'> -->\n<VTKFile type=\"ImageData\" byte_order=\"";
+  text += form.big ? "BigEndian\"" : "LittleEndian\"";
+  if (form.wide) text += " header_type=\"UInt64\"";
+  if (form.block > 0) text += " compressor=\"vtkZLibDataCompressor\"";
+  text += ">\n<ImageData " + form.place +
+          ">\n<FieldData><DataArray type=\"Int8\" Name=\"f\" format=\"ascii\">1</DataArray>";
+  text += "</FieldData><Piece Extent=\"" + form.extent + "\">\n<PointData Scalars=\"" + form.scalars + "\">\n";
+  text += "<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\" format=\"ascii\"> 1 2 3 </DataArray>\n";
+  text +=
+      "<DataArray " + form.attributes + " format=\"" + (form.appended ? "appended\" offset=\"2\"/>" : "binary\">\n  ");
+  if (!form.appended) text += array + "\n</DataArray>";
+  text += "</PointData></Piece></ImageData>\n";
+  if (form.appended) {
+    text += std::string("<AppendedData encoding=\"") + (form.base64 ? "base64" : "raw") + "\">\n  _";
+    // Another array, two characters long.
+    text += "AA" + array + "\n</AppendedData>";
+  }
+  return text + "\n</VTKFile>\n";
+}
+
+std::string whole(const VtiForm& form) { return vti(form, array_of(form, stored(kSamples, form.big))); }
+
+TEST(Vti, ReadsEveryEncoding) {
+  const TempFolder folder;
+  for (const bool big : {false, true}) {
+    for (const bool wide : {false, true}) {
+      // Blocks that divide the array, that do not, and one larger than it.
+      for (const std::size_t block : {0U, 24U, 50U, 4096U}) {
+        for (const auto& [appended, text] : {std::pair(false, true), std::pair(true, true), std::pair(true, false)}) {
+          const VtiForm form{big, wide, block, appended, text};
+          const auto source = open_volume(folder.put("a.vti", whole(form)));
+          EXPECT_EQ(source->info().format, "vti");
+          EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{4, 3, 5}));
+          EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples) << big << wide << block << appended << text;
+        }
+      }
+    }
+  }
+}
+
+TEST(Vti, ReadsNumbersInText) {
+  const TempFolder folder;
+  const auto read = [&]<class Sample>(const std::string& type, const std::vector<Sample>& samples) {
+    std::string text = "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 1\"><Piece><PointData>";
+    text += "<DataArray type=\"" + type + "\" format=\"ascii\">";
+    for (const Sample sample : samples) text += "\n " + std::to_string(sample);
+    const std::string path = folder.put("a.vti", text + "\n</DataArray></PointData></Piece></ImageData></VTKFile>");
+    EXPECT_EQ(read_file<Sample>(path), samples) << type;
+  };
+  read("UInt8", std::vector<std::uint8_t>{0, 255, 7, 8});
+  read("Int8", std::vector<std::int8_t>{-128, 127, 7, 8});
+  read("UInt16", std::vector<std::uint16_t>{0, 65535, 7, 8});
+  read("UInt32", std::vector<std::uint32_t>{0, 4294967295U, 7, 8});
+  read("Int32", std::vector<std::int32_t>{-2147483647 - 1, 2147483647, 7, 8});
+  read("Float32", std::vector<float>{-1.5F, 0.25F, 7, 8});
+  read("Float64", std::vector<double>{-1.5, 0.25, 7, 8});
+}
+
+TEST(Vti, RefusesTextThatIsNoNumberOfTheType) {
+  const TempFolder folder;
+  const auto with = [&](const std::string& numbers) {
+    return refusal(folder.put("a.vti",
+                              "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 1\"><Piece><PointData>"
+                              "<DataArray type=\"UInt8\" format=\"ascii\">" +
+                                  numbers + "</DataArray>"));
+  };
+  EXPECT_TRUE(contains(with("1 2 3 256"), "expected numbers of type uint8, found '256'"));
+  EXPECT_TRUE(contains(with("1 2 3 x"), "found 'x'"));
+  EXPECT_TRUE(contains(with("1 2 3"), "expected 4 bytes of samples, found 3"));
+}
+
+TEST(Vti, TakesActiveScalarsOrTheFirstOfOneComponent) {
+  const TempFolder folder;
+  VtiForm form;
+  form.scalars = "a";
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.vti", whole(form))), kSamples);
+  form.scalars = "v";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one component per sample, found 3 in 'v'"));
+  form.scalars = "b";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected the point array 'b', found v, a"));
+  form.scalars.clear();
+  form.attributes += " NumberOfComponents=\"2\"";
+  EXPECT_TRUE(
+      contains(refusal(folder.put("a.vti", whole(form))), "expected a point array of one component, found v, a"));
+}
+
+TEST(Vti, TakesOriginSpacingDirectionAndExtent) {
+  const TempFolder folder;
+  VtiForm form;
+  form.extent = "2 5 -1 1 10 14";
+  form.place =
+      "WholeExtent=\"2 5 -1 1 10 14\" Origin=\"100 200 300\" Spacing=\"2 3 4\" Direction=\"0 -1 0 1 0 0 0 0 1\"";
+  const Geometry geometry = open_volume(folder.put("a.vti", whole(form)))->info().geometry;
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{2, 3, 4}));
+  EXPECT_EQ(geometry.direction, (std::array<double, 9>{0, -1, 0, 1, 0, 0, 0, 0, 1}));
+  // Sample (2, -1, 10): x and y are turned.
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{103, 204, 340}));
+  EXPECT_EQ(geometry.space, Space::kUnknown);
+  form.extent = "2 5 -1 1 10 12";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one piece of the whole extent"));
+}
+
+TEST(Vti, RefusesWhatItDoesNotRead) {
+  const TempFolder folder;
+  const auto with = [&](const std::string& from, const std::string& to, VtiForm form = {}) {
+    std::string text = whole(form);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return refusal(folder.put("a.vti", text.replace(at, from.size(), to)));
+  };
+  VtiForm packed;
+  packed.block = 50;
+  EXPECT_TRUE(contains(with("ImageData\"", "PolyData\""), "expected VTK XML of type ImageData, found 'PolyData'"));
+  EXPECT_TRUE(contains(with("vtkZLib", "vtkLZ4", packed), "found 'vtkLZ4DataCompressor'"));
+  EXPECT_TRUE(contains(with("type=\"Int16\"", "type=\"Int64\""), "found 'Int64'"));
+  EXPECT_TRUE(contains(with("format=\"binary\"", "format=\"odd\""), "found 'odd'"));
+  EXPECT_TRUE(contains(with("Extent=\"0 3", "Extent=\"0 x"), "six whole numbers as an extent"));
+  EXPECT_TRUE(contains(with("Spacing=\"1 1 1\"", "Spacing=\"1 1\""), "3 numbers as Spacing"));
+  EXPECT_TRUE(contains(with("PointData ", "CellData "), "expected PointData"));
+  EXPECT_TRUE(contains(refusal(folder.put("b.vti", "hello")), "<VTKFile type=\"ImageData\">"));
+}
+
+TEST(Vti, RefusesSizesThatLie) {
+  const TempFolder folder;
+  VtiForm form;
+  form.place = "WholeExtent=\"0 99999 0 99999 0 99999\"";
+  form.extent = "0 99999 0 99999 0 99999";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "which cannot hold them"));
+  form.block = 50;
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "which cannot hold them"));
+  form.place = "WholeExtent=\"0 3 0 2 0 3\"";
+  form.extent = "0 3 0 2 0 3";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected compressed blocks of 96 bytes in all"));
+  form.block = 0;
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected 96 bytes in the array, found 120"));
+  VtiForm blocks;
+  blocks.wide = true;
+  blocks.block = 50;
+  const std::string huge = bytes_of(std::uint64_t{1} << 61) + bytes_of(std::uint64_t{8}) + bytes_of(std::uint64_t{120});
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", vti(blocks, base64(huge)))), "expected compressed blocks"));
+  // The header says 50 and 20 bytes; the first block holds 49.
+  const std::string samples = stored(kSamples);
+  const std::string a = zlibbed(samples.substr(0, 49));
+  const std::string b = zlibbed(samples.substr(49));
+  const auto three = [&](std::uint64_t n, std::uint64_t block, std::uint64_t last) {
+    return base64(bytes_of(n) + bytes_of(block) + bytes_of(last) + bytes_of(std::uint64_t{a.size()}) +
+                  bytes_of(std::uint64_t{b.size()})) +
+           base64(a + b);
+  };
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", vti(blocks, three(2, 50, 70)))), "a smaller one"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", vti(blocks, three(2, 48, 72)))), "a larger one"));
+}
+
+TEST(Vti, SurvivesCutsAndFlips) {
+  const TempFolder folder;
+  for (const std::size_t block : {0U, 50U}) {
+    for (const auto& [appended, text] : {std::pair(false, true), std::pair(true, true), std::pair(true, false)}) {
+      const std::string content = whole({false, false, block, appended, text});
+      expect_prefixes_are_safe(folder, "a.vti", content);
+      expect_flips_are_safe(folder, "a.vti", content, content.size(), 1500);
+    }
+  }
+}
+
+// A header with lines replaced or added before POINT_DATA.
+std::string legacy(const std::string& form, const std::string& type = "short", const std::string& more = "") {
+  return "# vtk DataFile Version 3.0\na title\n" + form +
+         "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 5\nSPACING 2 3 4\nORIGIN 10 20 30\n" + more +
+         "POINT_DATA 60\nSCALARS s " + type + " 1\nLOOKUP_TABLE default\n";
+}
+
+TEST(VtkLegacy, ReadsBinaryAndText) {
+  const TempFolder folder;
+  const auto source = open_volume(folder.put("a.vtk", legacy("BINARY") + stored(kSamples, true)));
+  EXPECT_EQ(source->info().format, "vtk");
+  EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{2, 3, 4}));
+  EXPECT_EQ(source->info().geometry.origin, (std::array<double, 3>{10, 20, 30}));
+  EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples);
+  std::string text = legacy("ASCII");
+  for (const std::int16_t sample : kSamples) text += std::to_string(sample) + "\n";
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.vtk", text + "METADATA\nINFORMATION 0\n")), kSamples);
+  const auto reals = ramp<float>(60);
+  EXPECT_EQ(read_file<float>(folder.put("a.vtk", legacy("BINARY", "float") + stored(reals, true))), reals);
+}
+
+TEST(VtkLegacy, RefusesWhatItDoesNotRead) {
+  const TempFolder folder;
+  const auto with = [&](const std::string& header) { return refusal(folder.put("a.vtk", header + stored(kSamples))); };
+  EXPECT_TRUE(contains(with(legacy("OCTAL")), "ASCII or BINARY"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "long")), "found 's long 1'"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "double")), "expected 480 bytes of samples, found 120"));
+  EXPECT_TRUE(contains(with(legacy("ASCII")), "expected numbers of type int16"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DATASET POLYDATA\n")), "DATASET STRUCTURED_POINTS"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3\n")), "3 whole numbers as DIMENSIONS"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3 6\n")), "expected POINT_DATA 72, found '60'"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "CELL_DATA 24\n")), "SCALARS as the first array"));
+  EXPECT_TRUE(contains(refusal(folder.put("b.vtk", "hello")), "# vtk DataFile Version"));
+}
+
+TEST(VtkLegacy, SurvivesCutsAndFlips) {
+  const TempFolder folder;
+  const std::string content = legacy("BINARY") + stored(kSamples, true);
+  expect_prefixes_are_safe(folder, "a.vtk", content);
+  expect_flips_are_safe(folder, "a.vtk", content, 200);
+}
+
+}  // namespace
+}  // namespace isoweave::testing
