@@ -61,11 +61,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"every", arguments.every}};
 }
 
-// The arguments of a run that goes on: the task as it was, and how to run as it is said now.
-MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint) {
-  const Json task = Json::parse(checkpoint.note, nullptr, false);
-  if (!task.is_object()) throw BadInput(checkpoint.path + ": expected a state saved by isoweave mesh, found another");
-  MeshArguments arguments = now;
+// The task of a saved state, and how it was to run where nothing else is said now.
+void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
   arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin"), task.at("series")};
   arguments.output = task.at("output");
   if (now.run.report.empty()) arguments.run.report = task.at("report");
@@ -79,6 +76,16 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
   arguments.open = task.at("open");
   if (now.memory.empty()) arguments.memory = task.at("memory");
   if (now.every.empty()) arguments.every = task.at("every");
+}
+
+// The arguments of a run that goes on: the task as it was, and how to run as it is said now.
+MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint) {
+  MeshArguments arguments = now;
+  try {
+    set_task(arguments, now, Json::parse(checkpoint.note));
+  } catch (const Json::exception&) {
+    throw BadInput(checkpoint.path + ": expected a state saved by this isoweave mesh, found another");
+  }
   arguments.checkpoint = now.resume;
   return arguments;
 }

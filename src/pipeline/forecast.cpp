@@ -272,19 +272,20 @@ class Forecaster {
     std::int64_t recent = 0;
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
-      recent = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
+      // What is read and classified was planned before it turned out how full it is.
+      const std::int64_t planned = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
+      const auto ahead = static_cast<double>(std::min(slices_ahead(info_, planned), info_.dims[2] - done - planned));
+      ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals));
+      recent = planned;
+      const auto at = static_cast<double>(done);
       const auto extracted = [&] {
-        const auto from = static_cast<double>(done);
-        return sum(profile.open, from, done + recent) + sum(profile.caps, from, done + recent);
+        return sum(profile.open, at, done + recent) + sum(profile.caps, at, done + recent);
       };
       while (asked == 0 && recent > 1 && extracted() > 2 * kMostSlabVertices) --recent;
-      const auto at = static_cast<double>(done);
       const double undecided =
           sum(profile.open, at - depth, done) + kCapWeight * sum(profile.caps, at - kCapDepth * depth, done);
       const double triangles = extracted();
-      const auto ahead = static_cast<double>(std::min(slices_ahead(info_, recent), info_.dims[2] - done - recent));
-      ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(recent), ahead, options_.normals));
-      most = std::max(most, model.peak(static_cast<double>(recent), ring, triangles, undecided));
+      most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);
     }
     return most;
