@@ -111,11 +111,13 @@ void make_checkpoint_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  for (const char* name : {"state-0", "state-1", "mesh.part"}) {
-    if (!std::filesystem::exists(std::filesystem::path(folder) / name)) continue;
+  const std::filesystem::path path(folder);
+  if (std::filesystem::exists(path / "state-0") || std::filesystem::exists(path / "state-1")) {
     throw CannotWrite(
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
+  // Without a state there is nothing to go on with: a run that ended before its first one.
+  for (const char* part : {"mesh.part", "faces.part", "positions.part"}) std::filesystem::remove(path / part, error);
 }
 
 // A whole volume is one layer thicker than its slices when it is closed.

@@ -222,50 +222,72 @@ class Forecaster {
   }
 
   Forecast conclude() const {
-    const Profile profile = make_profile();
-    const double extracted = profile.open.back() + profile.caps.back();
+    const Profiles profiles = make_profiles();
+    const auto layers = static_cast<double>(info_.dims[2]);
+    const double open = profiles.open.below(layers);
+    const double caps = profiles.caps.below(layers);
+    const double extracted = open + caps;
     Forecast forecast;
     forecast.triangles_extracted = to_count(extracted);
-    forecast.triangles = to_count(profile.open.back() * left_ + (error_ > 0 ? 0 : profile.caps.back()));
+    forecast.triangles = to_count(open * left_ + (error_ > 0 ? 0 : caps));
     forecast.vertices = forecast.triangles / 2;
-    forecast.peak_bytes = to_count(peak(profile, options_.slab));
-    forecast.least_bytes = to_count(kCapMargin * peak(profile, 1) / kUsedPart);
-    forecast.seconds = seconds_extracting_ / layers_ * static_cast<double>(info_.dims[2]);
+    forecast.peak_bytes = to_count(peak(profiles, options_.slab));
+    forecast.least_bytes = to_count(kCapMargin * peak(profiles, 1) / kUsedPart);
+    forecast.seconds = seconds_extracting_ / layers_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
   }
 
-  // Triangles below each layer.
-  struct Profile {
-    std::vector<double> open, caps;
+  // How many triangles lie below a height, in layers: between the middles of two blocks the facts go from those of the
+  // one to those of the other, outside they stay.
+  class Profile {
+   public:
+    Profile(std::vector<double> per_layer, double distance) : per_layer_(std::move(per_layer)), distance_(distance) {
+      below_.push_back(per_layer_[0] * distance_ / 2);
+      for (std::size_t n = 1; n < per_layer_.size(); ++n) {
+        below_.push_back(below_.back() + (per_layer_[n - 1] + per_layer_[n]) / 2 * distance_);
+      }
+    }
+
+    double below(double height) const {
+      const double place = std::max(height, 0.0) / distance_ - 0.5;
+      if (place <= 0) return per_layer_[0] * std::max(height, 0.0);
+      const std::size_t n = std::min(static_cast<std::size_t>(place), per_layer_.size() - 1);
+      const double beyond = place - static_cast<double>(n);
+      if (n + 1 == per_layer_.size()) return below_[n] + per_layer_[n] * beyond * distance_;
+      const double here = per_layer_[n] + beyond * (per_layer_[n + 1] - per_layer_[n]);
+      return below_[n] + (per_layer_[n] + here) / 2 * beyond * distance_;
+    }
+
+   private:
+    std::vector<double> per_layer_;
+    double distance_;
+    std::vector<double> below_;  // the middle of each block
   };
 
-  // Layers between two blocks are taken to lie between them in their facts, too.
-  Profile make_profile() const {
-    const auto layers = static_cast<std::size_t>(info_.dims[2]);
-    Profile profile{std::vector<double>(layers + 1, 0), std::vector<double>(layers + 1, 0)};
-    const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
-    for (std::size_t k = 0; k < layers; ++k) {
-      const double place = (static_cast<double>(k) + 0.5) / distance - 0.5;
-      const double within = std::clamp(place, 0.0, static_cast<double>(facts_.size() - 1));
-      const auto n = static_cast<std::size_t>(within);
-      const double part = within - static_cast<double>(n);
-      const BlockFacts& a = facts_[n];
-      const BlockFacts& b = facts_[std::min(n + 1, facts_.size() - 1)];
-      profile.open[k + 1] = profile.open[k] + a.per_layer + part * (b.per_layer - a.per_layer);
-      profile.caps[k + 1] = profile.caps[k] + a.caps + part * (b.caps - a.caps);
+  // Of the open surface, and of the caps.
+  struct Profiles {
+    Profile open, caps;
+  };
+
+  Profiles make_profiles() const {
+    std::vector<double> open;
+    std::vector<double> caps;
+    for (const BlockFacts& facts : facts_) {
+      open.push_back(facts.per_layer);
+      caps.push_back(facts.caps);
     }
-    return profile;
+    const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
+    return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
   }
 
   // Goes through the slabs of a run.
-  double peak(const Profile& profile, std::int64_t asked) const {
+  double peak(const Profiles& profiles, std::int64_t asked) const {
     const MemoryModel model{info_.slice_bytes(), static_cast<std::uint64_t>(info_.slice_samples()),
                             Executor(control_.threads).threads(), error_ > 0, options_.normals};
     const double depth = error_ == 0 ? 0 : depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
-    const auto sum = [](const std::vector<double>& below, double from, std::int64_t to) {
-      const auto first = static_cast<std::size_t>(std::max(from, 0.0));
-      return below[static_cast<std::size_t>(to)] - below[first];
+    const auto sum = [](const Profile& profile, double from, double to) {
+      return profile.below(to) - profile.below(from);
     };
     double most = model.fixed();
     double ring = 0;
@@ -279,11 +301,12 @@ class Forecaster {
       recent = planned;
       const auto at = static_cast<double>(done);
       const auto extracted = [&] {
-        return sum(profile.open, at, done + recent) + sum(profile.caps, at, done + recent);
+        const double end = at + static_cast<double>(recent);
+        return sum(profiles.open, at, end) + sum(profiles.caps, at, end);
       };
       while (asked == 0 && recent > 1 && extracted() > 2 * kMostSlabVertices) --recent;
       const double undecided =
-          sum(profile.open, at - depth, done) + kCapWeight * sum(profile.caps, at - kCapDepth * depth, done);
+          sum(profiles.open, at - depth, at) + kCapWeight * sum(profiles.caps, at - kCapDepth * depth, at);
       const double triangles = extracted();
       most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);

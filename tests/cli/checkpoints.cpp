@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -37,12 +38,25 @@ std::string undisturbed_digest() {
   return digest(folder / "out.json");
 }
 
-program::Setup after(int signal, std::chrono::milliseconds delay) {
+// Sends the signal some time after the mesh has been begun.
+program::Setup after(const files::Folder& folder, int signal, std::chrono::milliseconds delay) {
+  using Clock = std::chrono::steady_clock;
   program::Setup setup;
   setup.signal = signal;
-  const auto start = std::chrono::steady_clock::now();
-  setup.ready = [=](pid_t) { return std::chrono::steady_clock::now() - start > delay; };
+  setup.ready = [&folder, delay, begun = std::optional<Clock::time_point>()](pid_t) mutable {
+    if (!begun && std::filesystem::exists(folder / "run/mesh.part")) begun = Clock::now();
+    return begun && Clock::now() - *begun > delay;
+  };
   return setup;
+}
+
+std::chrono::milliseconds random_delay(std::mt19937& random) {
+#if defined(__SANITIZE_ADDRESS__)
+  constexpr unsigned kLongest = 3000;
+#else
+  constexpr unsigned kLongest = 250;
+#endif
+  return std::chrono::milliseconds(random() % kLongest);
 }
 
 TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
@@ -53,15 +67,16 @@ TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
     const files::Folder folder;
     std::vector<std::string> arguments = mesh({"--checkpoint", "run", "--every", "4layers", "--slab", "4"});
     for (int part = 0; part < 100; ++part) {
-      const Result result =
-          run(folder.path(), arguments, after(SIGKILL, std::chrono::milliseconds(20 + random() % 250)));
+      const Result result = run(folder.path(), arguments, after(folder, SIGKILL, random_delay(random)));
       if (result.code == 0) break;
       ASSERT_EQ(result.signal, SIGKILL) << result.err;
       ++kills;
       if (std::filesystem::exists(folder / "out.ply")) break;  // killed when the mesh was complete
       const std::vector<std::string> left = listing(folder);
       ASSERT_TRUE(left == std::vector<std::string>{} || left == std::vector<std::string>{"run"}) << left[0];
-      if (left.empty() || listing(folder / "run").empty()) continue;
+      const bool saved =
+          std::filesystem::exists(folder / "run/state-0") || std::filesystem::exists(folder / "run/state-1");
+      if (!saved) continue;
       arguments = {"mesh", "--resume", "run", "--threads", std::to_string(1 + random() % 4)};
     }
     const Result check = run(folder.path(), {"check", "out.ply", "--json"});
@@ -75,7 +90,7 @@ TEST(CliCheckpoint, InterruptedRunsSayHowToGoOn) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const files::Folder folder;
     const Result result = run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
-                              after(signal, std::chrono::milliseconds(150)));
+                              after(folder, signal, std::chrono::milliseconds(0)));
     ASSERT_EQ(result.code, 130) << result.err;
     EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
     EXPECT_NE(result.err.find("can be resumed from run"), std::string::npos) << result.err;
@@ -103,7 +118,7 @@ TEST(CliCheckpoint, AFullDiskIsNoLoss) {
 TEST(CliCheckpoint, ResumesFromAnywhere) {
   const files::Folder folder;
   ASSERT_EQ(run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
-                after(SIGINT, std::chrono::milliseconds(150)))
+                after(folder, SIGINT, std::chrono::milliseconds(0)))
                 .code,
             130);
   ASSERT_EQ(run("/", {"mesh", "--resume", folder / "run", "--quiet"}).code, 0);
@@ -130,7 +145,7 @@ TEST(CliCheckpoint, WrongUseIsRefused) {
   files::write_bytes(folder / "file", "x");
   expect_refused(folder, mesh({"--checkpoint", "file/run"}), 4, "cannot be created");
   ASSERT_EQ(run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
-                after(SIGINT, std::chrono::milliseconds(150)))
+                after(folder, SIGINT, std::chrono::milliseconds(0)))
                 .code,
             130);
   expect_refused(folder, mesh({"--checkpoint", "run"}), 4, "holds an unfinished run");

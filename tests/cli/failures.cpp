@@ -18,7 +18,7 @@ using program::Result;
 using program::run;
 
 constexpr const char* kSmall = "generate:sphere:16x16x16";
-constexpr const char* kEndless = "generate:smooth:64x64x100000000:uint8";
+constexpr const char* kEndless = "generate:smooth:64x64x2000000:uint8";
 
 std::vector<std::string> mesh(const std::string& volume, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments{"mesh", volume, "-o", "out.ply", "--iso", "0"};

@@ -35,10 +35,18 @@ void become_program(const std::string& folder, char* const* arguments, const std
   ::_exit(99);
 }
 
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
+}
+
 void send_when_ready(pid_t child, const Setup& setup) {
   using namespace std::chrono_literals;
   const auto give_up = std::chrono::steady_clock::now() + 60s;
-  while (!setup.ready(child) && std::chrono::steady_clock::now() < give_up) std::this_thread::sleep_for(5ms);
+  while (!setup.ready(child) && std::chrono::steady_clock::now() < give_up) {
+    if (has_ended(child)) return;
+    std::this_thread::sleep_for(5ms);
+  }
   std::this_thread::sleep_for(50ms);
   ::kill(child, setup.signal);
 }
