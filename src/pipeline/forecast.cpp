@@ -20,7 +20,7 @@ constexpr std::int64_t kThin = 2;  // slices
 constexpr std::int64_t kThick = 15;
 constexpr std::int64_t kThickBlocks = 3;
 constexpr std::int64_t kMostBlocks = 24;
-constexpr double kSampledPart = 0.02;  // of the volume's bytes, and of its triangles that are simplified
+constexpr double kSampledPart = 0.04;  // of the volume's bytes, and of its triangles that are simplified
 constexpr double kLeastBytes = 12e6;
 constexpr double kMostBytes = 256e6;
 constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
@@ -149,9 +149,10 @@ class Forecaster {
     thick_ = std::min(kThick, slices_);
     if (memory > 0) thick_ = std::min(thick_, static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice));
     thick_ = std::max(thick_, std::min(kThin, slices_));
-    blocks_ = std::clamp<std::int64_t>((affordable - kThickBlocks * thick_) / kThin + kThickBlocks, 1, kMostBlocks);
+    const std::int64_t thick_blocks = affordable >= 2 * kThickBlocks * thick_ ? kThickBlocks : 1;
+    blocks_ = std::clamp<std::int64_t>((affordable - thick_blocks * thick_) / kThin + thick_blocks, 1, kMostBlocks);
     blocks_ = std::clamp<std::int64_t>(slices_ / thick_, 1, blocks_);
-    every_ = (blocks_ + kThickBlocks - 1) / kThickBlocks;
+    every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
   void look_at(Block& block, bool thick) {
@@ -283,8 +284,12 @@ class Forecaster {
 
   // Goes through the slabs of a run.
   double peak(const Profiles& profiles, std::int64_t asked) const {
-    const MemoryModel model{info_.slice_bytes(), static_cast<std::uint64_t>(info_.slice_samples()),
-                            Executor(control_.threads).threads(), error_ > 0, options_.normals};
+    const MemoryModel model{resident_,
+                            info_.slice_bytes(),
+                            static_cast<std::uint64_t>(info_.slice_samples()),
+                            Executor(control_.threads).threads(),
+                            error_ > 0,
+                            options_.normals};
     const double depth = error_ == 0 ? 0 : depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
@@ -320,6 +325,7 @@ class Forecaster {
   const VolumeInfo info_;
   const MeshOptions& options_;
   RunControl control_;
+  const std::uint64_t resident_ = resident_process_bytes();
   double error_ = 0;         // length
   std::int64_t slices_ = 0;  // that are looked at
   std::int64_t thick_ = 0;   // slices of a thick block

@@ -118,8 +118,9 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
-                            executor_.threads(), simplifies_, options_.normals};
+    const MemoryModel model{
+        resident_,           volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
+        executor_.threads(), simplifies_,           options_.normals};
     const auto undecided = static_cast<double>(simplifies_ ? simplifier_.live_triangles() : 0);
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
@@ -329,6 +330,8 @@ class VolumeSweep {
   std::int64_t recent_layers_ = 0;
   std::uint64_t recent_triangles_ = 0;
   std::uint64_t voxels_ = 0;
+
+  const std::uint64_t resident_ = resident_process_bytes();
 
   std::optional<CheckpointFolder> folder_;
   std::int64_t saved_layer_ = -1;

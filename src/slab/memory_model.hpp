@@ -9,14 +9,15 @@
 namespace isoweave {
 
 struct MemoryModel {
+  std::uint64_t resident = 0;  // bytes that the process holds before the run: the program and its libraries
   std::uint64_t slice_bytes = 0;
   std::uint64_t slice_samples = 0;
   int threads = 1;
   bool simplifies = true;
   bool normals = false;
 
-  // The program, its libraries and what does not grow.
-  double fixed() const { return 13.2e6 + 0.15e6 * threads; }
+  // What does not grow.
+  double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
 
   // A slab of `layers` layers with `triangles`, on `undecided` ones that were there before. The ring of slices has room
   // for `ring` of them, and never shrinks.
@@ -33,6 +34,8 @@ struct MemoryModel {
   static double ring_for(double layers, double ahead, bool normals) { return layers + 1 + ahead + (normals ? 2 : 0); }
 
  private:
+  static constexpr double kBuffers = 6e6;
+
   double slices(double layers, double ring) const {
     constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
     return ring * static_cast<double>(slice_bytes) + (layers + 1) * kBits * static_cast<double>(slice_samples);

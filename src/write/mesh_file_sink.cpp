@@ -12,7 +12,7 @@
 namespace isoweave {
 namespace {
 
-const std::string kMeshPart = "mesh.part";
+constexpr const char* kMeshPart = "mesh.part";
 
 bool all_finite(std::span<const Point> points) {
   return std::all_of(points.begin(), points.end(),
