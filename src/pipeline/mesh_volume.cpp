@@ -233,8 +233,8 @@ class VolumeSweep {
   bool saves() const { return !control_.checkpoint.folder.empty(); }
 
   void stop_if_asked() {
+    if (!saves()) return check_stop(control_);
     if (control_.stop == nullptr || !control_.stop->load()) return;
-    if (!saves()) throw Interrupted("interrupted, nothing was written");
     save_state();
     throw Interrupted("interrupted; the run can be resumed from " + control_.checkpoint.folder);
   }
@@ -254,7 +254,7 @@ class VolumeSweep {
     if (checkpoint.layer == saved_layer_) return;
     checkpoint.note = control_.checkpoint.note;
     checkpoint.mark = sink_.mark();
-    const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_of(volume_, options_));
+    const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_);
     exchange(*writer);
     const std::optional<std::uint32_t> crc = crc_of_next_slice();
     writer->value(crc.has_value());
@@ -265,7 +265,7 @@ class VolumeSweep {
   }
 
   void load_state() {
-    StateReader reader = open_state(*control_.resume, identity_of(volume_, options_));
+    StateReader reader = open_state(*control_.resume, identity_);
     exchange(reader);
     bool has_crc = false;
     std::uint32_t crc = 0;
@@ -312,6 +312,8 @@ class VolumeSweep {
   const VolumeInfo volume_;
   const MeshOptions& options_;
   const RunControl& control_;
+  const RunIdentity identity_ = identity_of(volume_, options_);  // when the run begins: a file may change meanwhile
+  const std::uint64_t resident_ = resident_process_bytes();
   const Executor executor_;
   MarchingCubes extractor_;
   double voxel_;  // mean side of a voxel
@@ -330,8 +332,6 @@ class VolumeSweep {
   std::int64_t recent_layers_ = 0;
   std::uint64_t recent_triangles_ = 0;
   std::uint64_t voxels_ = 0;
-
-  const std::uint64_t resident_ = resident_process_bytes();
 
   std::optional<CheckpointFolder> folder_;
   std::int64_t saved_layer_ = -1;
