@@ -302,14 +302,16 @@ class Forecaster {
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
+    const SlabGoal& goal = slab_goal(error_ > 0);
     double most = model.fixed();
     double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       // What is read and classified was planned before it turned out how full it is.
-      const std::int64_t planned = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
-      const auto ahead = static_cast<double>(std::min(slices_ahead(info_, planned), info_.dims[2] - done - planned));
+      const std::int64_t planned = std::min(next_slab(info_, goal, asked, recent, per_layer), info_.dims[2] - done);
+      const auto ahead =
+          static_cast<double>(std::min(slices_ahead(info_, goal, planned), info_.dims[2] - done - planned));
       ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals));
       recent = planned;
       const auto at = static_cast<double>(done);
