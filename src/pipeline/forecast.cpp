@@ -27,7 +27,6 @@ constexpr double kMostBytes = 256e6;
 constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
 constexpr double kMostTile = 100000;
 constexpr double kTileBytes = 16e6;
-constexpr std::int64_t kSectionSlab = 4;  // layers: no more slices are held than the thinnest run needs
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 
 // How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
@@ -133,11 +132,12 @@ class Forecaster {
   }
 
   BlockFacts look_at_thick(std::int64_t first, std::int64_t slices) {
+    CountingSink sink;
+    if (error_ == 0) return look_at(first, slices, sink, nullptr);
     const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes());
     Tile tile(info_, map_.busy_part(std::min(1.0, kTileBytes / bytes)), slices);
-    CountingSink sink;
     const BlockFacts facts = look_at(first, slices, sink, &tile);
-    if (error_ > 0 && facts.per_layer > 0) simplify_part(tile, facts.per_layer);
+    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer);
     return facts;
   }
 
@@ -150,7 +150,7 @@ class Forecaster {
       if (options_.closed) inside += inside_on_sides(slice);
     });
     Stopwatch watch;
-    const MeshReport report = mesh(section, sink, 0, kSectionSlab);
+    const MeshReport report = mesh(section, sink, 0, 0);
     watch.lap(seconds_extracting_);
     slices_read_ += static_cast<double>(slices);
     return {static_cast<double>(report.triangles) / layers(section),
