@@ -16,8 +16,9 @@ inline Index standing_half_edge(const Zone& zone, Index h) {
   return exists(twin) ? std::min(h, twin) : h;
 }
 
-// The reference: an ordered set of all live edges; always decide the first. For complete surfaces.
-inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
+// The reference: an ordered set of all live edges; always decide the first, until so many triangles have gone. For
+// complete surfaces.
+inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t most_removed = ~std::uint64_t{0}) {
   using Entry = std::tuple<CostBits, std::uint64_t, Index>;
   const CostBits retire = zone.options().retire;
   std::set<Entry> live;
@@ -32,7 +33,7 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality) {
     if (zone.represents_edge(h)) offer(h);
   }
   Decider decider(zone, quality);
-  while (!live.empty()) {
+  while (!live.empty() && decider.counts().removed < most_removed) {
     const Entry first = *live.begin();
     live.erase(live.begin());
     const Index h = std::get<2>(first);

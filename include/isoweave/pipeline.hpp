@@ -80,6 +80,9 @@ struct MeshOptions {
   bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
   bool closed = true;        // caps at the volume's border; else the surface ends there
   Length error{0.2, true};   // root of the largest quadric error of a collapse; 0: no simplification
+  // Stop at the first collapse that leaves no more triangles than this, if the error does not stop it before; 0: no
+  // such number. The error may be infinite then. Up to three times as many triangles are held.
+  std::uint64_t triangles = 0;
   Quality quality = Quality::kNormal;
   std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
   bool normals = false;   // from gradients, unit length, outwards
@@ -100,7 +103,7 @@ struct MeshReport {
   Schedule schedule = Schedule::kQueue;
   double min = 0, max = 0;  // values read; min > max when all were NaN
   std::uint64_t nan = 0;    // samples
-  double error = 0;         // in the volume's unit
+  double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
   std::uint64_t triangles = 0, vertices = 0;  // written
@@ -125,9 +128,13 @@ struct MeshReport {
 // saved by another version, for another volume or with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
+// Triangles of the full surface, in a pass over the volume that keeps nothing. Throws what mesh_volume throws.
+std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
+
 struct SimplifyOptions {
   Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
   Quality quality = Quality::kNormal;
+  std::uint64_t triangles = 0;  // as in MeshOptions
 };
 
 // What a run will take, from a sample of the volume.

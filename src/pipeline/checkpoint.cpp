@@ -14,7 +14,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 1\n";  // the number changes with the fields
+constexpr std::string_view kFormat = "isoweave state 2\n";  // the number changes with the fields
 
 struct Header {
   std::uint64_t number = 0;
@@ -105,8 +105,9 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   text.str("");
   text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")
        << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
-       << (options.error.voxels ? " voxels" : "") << ", quality " << static_cast<int>(options.quality) << ", space "
-       << static_cast<int>(options.space) << (options.normals ? ", normals" : "");
+       << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << ", quality "
+       << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
+       << (options.normals ? ", normals" : "");
   identity.options = text.str();
   return identity;
 }

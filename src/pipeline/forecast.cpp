@@ -10,6 +10,7 @@
 #include "pipeline/forecast_tile.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
+#include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
 
@@ -36,6 +37,7 @@ constexpr double kCapDepth = 20;
 constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
 constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
+constexpr double kUsualError = 0.3;   // mean voxels
 constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
 
 // Counts triangles.
@@ -85,6 +87,8 @@ class Forecaster {
     control_.measure = true;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
+    // Without a limit tiles tell how long simplification takes, and the number of triangles how many are left.
+    tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
     plan_blocks();
   }
 
@@ -168,7 +172,7 @@ class Forecaster {
       full = count(part, 0);
     }
     Stopwatch watch;
-    const TileCount left = count(part, error_);
+    const TileCount left = count(part, tile_error_);
     watch.lap(seconds_simplifying_);
     simplified_ += static_cast<double>(full.total);
     before_ += full.middle;
@@ -238,7 +242,9 @@ class Forecaster {
     const double extracted = open + caps;
     Forecast forecast;
     forecast.triangles_extracted = to_count(extracted);
-    forecast.triangles = to_count(open * left_ + (error_ > 0 ? 0 : caps));
+    const double left = std::isinf(error_) ? extracted : open * left_ + (error_ > 0 ? 0 : caps);
+    forecast.triangles = to_count(left);
+    if (options_.triangles > 0) forecast.triangles = std::min(forecast.triangles, options_.triangles);
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profiles, options_.slab));
     forecast.least_bytes = to_count(kCapMargin * peak(profiles, 1) / kUsedPart);
@@ -290,6 +296,18 @@ class Forecaster {
     return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
   }
 
+  // Undecided triangles when the slab at a layer is appended.
+  double held_before(const Profiles& profiles, double at, double depth) const {
+    if (options_.triangles > 0) {
+      return std::min(profiles.open.below(at) + profiles.caps.below(at),
+                      static_cast<double>(CountTarget::most_held(options_.triangles)));
+    }
+    const auto above = [&](const Profile& profile, double layers) {
+      return profile.below(at) - profile.below(at - layers);
+    };
+    return above(profiles.open, depth) + kCapWeight * above(profiles.caps, kCapDepth * depth);
+  }
+
   // Goes through the slabs of a run.
   double peak(const Profiles& profiles, std::int64_t asked) const {
     const MemoryModel model{resident_,
@@ -320,8 +338,7 @@ class Forecaster {
         return sum(profiles.open, at, end) + sum(profiles.caps, at, end);
       };
       while (asked == 0 && recent > 1 && extracted() > 2 * kMostSlabVertices) --recent;
-      const double undecided =
-          sum(profiles.open, at - depth, at) + kCapWeight * sum(profiles.caps, at - kCapDepth * depth, at);
+      const double undecided = held_before(profiles, at, depth);
       const double triangles = extracted();
       most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);
@@ -337,6 +354,7 @@ class Forecaster {
   RunControl control_;
   const std::uint64_t resident_ = resident_process_bytes();
   double error_ = 0;             // length
+  double tile_error_ = 0;    // of tiles
   std::int64_t slices_ = 0;      // that are looked at
   std::int64_t thick_ = 0;       // slices of a thick block
   TriangleMap map_{info_.dims};  // of the last thin block

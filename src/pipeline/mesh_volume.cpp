@@ -13,11 +13,18 @@
 #include "pipeline/full_output.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
+#include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
 namespace {
+
+class NoSink final : public MeshSink {
+ public:
+  void append(std::span<const Point>, std::span<const Point>, std::span<const std::array<std::uint64_t, 3>>) override {}
+  void finish() override {}
+};
 
 class VolumeSweep {
  public:
@@ -35,6 +42,7 @@ class VolumeSweep {
         full_output_(world_, sink, executor_, control.measure),
         sink_(sink),
         layers_(extractor_.layers_left()) {
+    if (options.triangles > 0) target_.emplace(simplifier_, executor_, options.triangles);
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
     window_.emplace(source, extractor_.slices_for(1).first);
@@ -76,7 +84,7 @@ class VolumeSweep {
     const double a0 = voxel_ * voxel_;
     const double error = options_.error.value * (options_.error.voxels ? voxel_ : 1);
     SimplifierOptions out;
-    out.zone = {{lattice.row(), lattice.plane()}, a0, retire_cost(error, a0)};
+    out.zone = {{lattice.row(), lattice.plane()}, a0, retire_cost(error, a0, options_.triangles)};
     out.quality = options_.quality;
     out.schedule = control_.schedule;
     return out;
@@ -191,6 +199,7 @@ class VolumeSweep {
     record.live_triangles = simplifier_.live_triangles();
     record.bytes = simplifier_.zone().bytes() + window_->bytes();
     simplifier_.decide();
+    if (target_) extractor_.layers_left() > 0 ? target_->thin_out() : target_->finish();
     clock_.lap(report_.seconds_simplify);
     output_.take(simplifier_);
     output_.report(report_);
@@ -216,6 +225,7 @@ class VolumeSweep {
 
   void finish_report() {
     report_simplifier(simplifier_, report_);
+    if (target_ && report_.triangles <= options_.triangles) report_.error = voxel_ * cost_root(target_->reached());
     const double low = volume_.slope * range_.min + volume_.intercept;
     const double high = volume_.slope * range_.max + volume_.intercept;
     report_.min = volume_.slope > 0 || range_.empty() ? low : high;
@@ -326,6 +336,7 @@ class VolumeSweep {
   MarchingCubes extractor_;
   double voxel_;  // mean side of a voxel
   Simplifier simplifier_;
+  std::optional<CountTarget> target_;
   World world_;
   FinalOutput output_;
   FullOutput full_output_;
@@ -348,6 +359,19 @@ class VolumeSweep {
 };
 
 }  // namespace
+
+std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  MeshOptions full = options;
+  full.error = {0, false};
+  full.triangles = 0;
+  full.normals = false;
+  RunControl counting = control;
+  counting.measure = false;
+  counting.checkpoint = {};
+  counting.resume = nullptr;
+  NoSink sink;
+  return mesh_volume(volume, sink, full, counting).triangles;
+}
 
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control) {
   return VolumeSweep(volume, sink, options, control).run();

@@ -1,12 +1,14 @@
 // The same simplifier on a mesh that is there as a whole.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "isoweave/pipeline.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/mesh_surface.hpp"
 #include "pipeline/sweep.hpp"
+#include "simplify/count_target.hpp"
 
 namespace isoweave {
 namespace {
@@ -60,11 +62,14 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   report.threads = executor.threads();
   report.error = options.error.value * (options.error.voxels ? std::sqrt(a0) : 1);
   SimplifierOptions simplifier_options;
-  simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0)};
+  simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0, options.triangles)};
   simplifier_options.quality = options.quality;
   simplifier_options.schedule = control.schedule;
   Simplifier simplifier(simplifier_options, executor, control.stop);
   report.schedule = simplifier.schedule();
+
+  std::optional<CountTarget> target;
+  if (options.triangles > 0) target.emplace(simplifier, executor, options.triangles);
 
   SurfacePiece piece;
   std::uint64_t dropped = 0;
@@ -82,6 +87,7 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
                               " vertices are not on an oriented manifold and stay where they are");
   }
   simplifier.decide();
+  if (target) target->finish();
   clock.lap(report.seconds_simplify);
 
   // A linked surface is measured as it leaves; around locked vertices only a look at the whole tells.
@@ -91,6 +97,8 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   output.take(simplifier);
   output.wait();
   report_simplifier(simplifier, report);
+  if (target && simplifier.triangles() <= options.triangles)
+    report.error = std::sqrt(a0) * cost_root(target->reached());
   output.report(report);
   if (report.locked_vertices > 0) report_check(check_mesh(recorder.mesh()), report);
   sink.finish();

@@ -51,7 +51,10 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
   return rule;
 }
 
-CostBits retire_cost(double error, double a0) {
+double cost_root(CostBits cost) { return std::sqrt(static_cast<double>(cost_value(cost))); }
+
+CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
+  if (std::isinf(error) && error > 0 && triangles > 0) return kRetiredCost - 1;
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
   }

@@ -39,8 +39,12 @@ double mean_voxel(const Geometry& geometry);
 // for an iso-value that is not finite.
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 
-// The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN.
-CostBits retire_cost(double error, double a0);
+// The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN,
+// and for an infinite one where no number of triangles stops the run.
+CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
+
+// The error of a cost, in units of the root of a0.
+double cost_root(CostBits cost);
 
 void check_stop(const RunControl& control);
 

@@ -8,7 +8,7 @@ namespace isoweave {
 
 void Queue::run(const std::atomic<bool>* stop) {
   offer_live_edges();
-  while (heap_.pop_group(group_)) {
+  while (removed() < most_removed_ && heap_.pop_group(group_)) {
     decide_group();
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) return;
   }
@@ -21,7 +21,7 @@ void Queue::offer_live_edges() {
   flags_.assign(zone_.vertices.size(), 0);
   for (Index t = 0; t < zone_.triangle_count(); ++t) {
     for (Index h = half_edge(t, 0); h <= half_edge(t, 2); ++h) {
-      if (!zone_.alive(h) || zone_.cost(h) > zone_.options().retire) continue;
+      if (!zone_.alive(h) || zone_.cost(h) > zone_.limit()) continue;
       if (zone_.cost(h) == kUnknownCost) {
         flags_[zone_.origin(h)] = 1;
         flags_[zone_.destination(h)] = 1;
@@ -47,9 +47,11 @@ void Queue::decide_group() {
       continue;
     }
     decider_.decide();
+    last_cost_ = cost;
+    if (removed() >= most_removed_) return;
     for (int n = 0; n < decider_.changed_count(); ++n) {
       const Index changed = decider_.changed()[static_cast<std::size_t>(n)];
-      if (zone_.cost(changed) > zone_.options().retire) continue;
+      if (zone_.cost(changed) > zone_.limit()) continue;
       const Index other = zone_.twin(changed);
       heap_.push(zone_.cost(changed), exists(other) ? std::min(changed, other) : changed);
     }

@@ -14,19 +14,27 @@ namespace isoweave {
 // the edges whose keys are not known yet are the first such edges.
 class Queue final : public Driver {
  public:
-  Queue(Zone& zone, Quality quality) : zone_(zone), decider_(zone, quality) {}
+  // Stops when at least `most_removed` triangles have gone.
+  Queue(Zone& zone, Quality quality, std::uint64_t most_removed = ~std::uint64_t{0})
+      : zone_(zone), decider_(zone, quality), most_removed_(most_removed) {}
 
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override { return decider_.counts(); }
   std::uint64_t rounds() const override { return rounds_; }
 
+  // Of the edge decided last; kUnknownCost: none was.
+  CostBits last_cost() const { return last_cost_; }
+
  private:
   void offer_live_edges();
   void decide_group();
   bool flagged(const Star& star) const;
+  std::uint64_t removed() const { return decider_.counts().removed; }
 
   Zone& zone_;
   Decider decider_;
+  std::uint64_t most_removed_;
+  CostBits last_cost_ = kUnknownCost;
   RadixHeap heap_;
   std::vector<RadixHeap::Entry> group_;
   std::vector<std::uint8_t> flags_;  // per vertex

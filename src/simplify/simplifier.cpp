@@ -32,11 +32,21 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
       executor_(executor),
       stop_(stop),
       schedule_(options.schedule == Schedule::kAutomatic ? Schedule::kLocal : options.schedule),
+      quality_(options.quality),
       driver_(make_driver(schedule_, zone_, options.quality, executor)) {}
 
 void Simplifier::decide() {
   driver_->run(stop_);
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
+}
+
+CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
+  if (this->triangles() <= triangles) return kUnknownCost;
+  Queue queue(zone_, quality_, this->triangles() - triangles);
+  queue.run(stop_);
+  counts_before_ += queue.counts();
+  if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
+  return queue.last_cost();
 }
 
 std::vector<Index> Simplifier::final_triangles() {

@@ -40,13 +40,20 @@ class Simplifier {
   // Decides every edge that can be decided with what has been appended. Throws Interrupted.
   void decide();
 
+  // For a complete surface: decides in the order of the keys until no more than `triangles` of the surface are left, or
+  // no edge is. Returns the cost of the last edge decided, kUnknownCost if there was none. Throws Interrupted.
+  CostBits decide_in_order(std::uint64_t triangles);
+
   // Triangles all of whose vertices are final, in memory order. Marks vertices final. The caller hands them to drop()
   // once it has no more use for them.
   std::vector<Index> final_triangles();
   void drop(const std::vector<Index>& triangles);
 
+  // Of the surface so far: held, and handed out.
+  std::uint64_t triangles() const { return appended_ - counts().removed; }
+
   // Those that are held and have not been collapsed.
-  std::uint64_t live_triangles() const { return appended_ - counts().removed - dropped_; }
+  std::uint64_t live_triangles() const { return triangles() - dropped_; }
 
   DecisionCounts counts() const {
     DecisionCounts sum = counts_before_;
@@ -83,6 +90,7 @@ class Simplifier {
   const Executor& executor_;
   const std::atomic<bool>* stop_;
   Schedule schedule_;
+  Quality quality_;
   std::unique_ptr<Driver> driver_;
   std::vector<std::uint8_t> undecided_;  // per vertex
   std::uint64_t appended_ = 0;           // triangles

@@ -29,7 +29,7 @@ inline bool is_unknown(Key turn) { return cost_of(turn) == kUnknownCost; }
 // There is an edge to decide at v, and its key is known.
 inline bool has_turn(const Zone& zone, Index v) {
   const CostBits cost = cost_of(zone.turn_keys[v]);
-  return cost != kUnknownCost && cost <= zone.options().retire;
+  return cost != kUnknownCost && cost <= zone.limit();
 }
 
 inline Index other_end(const Zone& zone, Index edge, Index v) {

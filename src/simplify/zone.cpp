@@ -68,6 +68,17 @@ void Zone::forget_turns() {
   turns_forgotten_ = true;
 }
 
+void Zone::raise_limit(CostBits limit) {
+  limit_ = limit;
+  forget_turns();
+  turns_forgotten_ = false;
+  settled.clear();
+  for (Index v = 0; v < vertices.size(); ++v) {
+    if (states[v] != VertexState::kFinal) settled.old.push_back(v);
+  }
+  settled.first_new = settled.end = static_cast<Index>(vertices.size());
+}
+
 // The vertices that were incomplete, those beside them, and the new ones up to `end`.
 void Zone::list_settled(Index end) {
   settled.old = front_;

@@ -107,7 +107,7 @@ struct Star;
 
 class Zone {
  public:
-  explicit Zone(const ZoneOptions& options) : options_(options) {}
+  explicit Zone(const ZoneOptions& options) : options_(options), limit_(options.retire) {}
 
   Array<Vertex> vertices;
   Array<VertexState> states;   // parallel to vertices
@@ -118,6 +118,16 @@ class Zone {
   SettledVertices settled;  // with the last piece
 
   const ZoneOptions& options() const { return options_; }
+
+  // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide.
+  CostBits limit() const { return limit_; }
+
+  // All vertices count as settled afterwards. At most what retires an edge.
+  void raise_limit(CostBits limit);
+
+  // Nothing more is to be decided: all edges are retired.
+  void retire_all() { options_.retire = limit_ = kUnknownCost; }
+
   Index triangle_count() const { return static_cast<Index>(triangles.size()); }
 
   const HalfEdge& half(Index h) const { return reinterpret_cast<const HalfEdge*>(triangles.data())[h]; }
@@ -174,6 +184,7 @@ class Zone {
     archive.list(triangles);
     archive.list(front_);
     archive.list(unkeyed_edges_);
+    archive.value(limit_);
     if constexpr (Archive::kReads) forget_turns();
   }
 
@@ -210,6 +221,7 @@ class Zone {
   void give_keys(EdgeBatch& batch);
 
   ZoneOptions options_;
+  CostBits limit_;
   std::vector<Index> front_;          // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;  // an end incomplete
   bool turns_forgotten_ = false;

@@ -1,0 +1,47 @@
+// Simplifying to a number of triangles: exactly the mesh at which the sequential queue would stop.
+#pragma once
+
+#include <cstdint>
+
+#include "parallel/parallel.hpp"
+#include "simplify/simplifier.hpp"
+
+namespace isoweave {
+
+// Raises the limit on costs step by step. Keys never decrease, so a limit leaves every triangle all of whose vertices
+// have dearer edges only, and collapses no more edges than have keys within it: from that follows how far it can be
+// raised before anything is decided, and the cost at which the number is met is never overtaken.
+class CountTarget {
+ public:
+  // To be made before anything is appended to the simplifier.
+  CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles)
+      : CountTarget(simplifier, executor, triangles, most_held(triangles)) {}
+  CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles, std::uint64_t most_held);
+
+  // For a surface of which more will come, after decide(): makes what is held smaller while it is more than
+  // `most_held`, if that is possible.
+  void thin_out();
+
+  // What should be held between two slabs where so many triangles are wanted.
+  static std::uint64_t most_held(std::uint64_t triangles) { return 3 * triangles + 100'000; }
+
+  // For a complete surface: decides in order until no more than the number is left, or until all edges are retired.
+  // Then everything is final.
+  void finish();
+
+  // The largest cost decided.
+  CostBits reached() const { return reached_; }
+
+ private:
+  CostBits limit_that_leaves(std::uint64_t triangles) const;
+  CostBits limit_within(std::uint64_t edges) const;
+  void raise_limit(CostBits limit);
+
+  Simplifier& simplifier_;
+  const Executor& executor_;
+  std::uint64_t target_;
+  std::uint64_t most_held_;
+  CostBits reached_ = kUnknownCost;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,112 @@
+// Runs to a number of triangles stop where the reference queue would.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "oracle.hpp"
+#include "simplify/count_target.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+ZoneOptions zone_options(const SurfaceCase& surface) {
+  const double a0 = surface.voxel() * surface.voxel();
+  const Lattice lattice{surface.volume.dims};
+  return {{lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1)};
+}
+
+SurfaceCase make_case(const std::string& kind, bool closed) {
+  SurfaceCase surface;
+  surface.volume.kind = kind;
+  surface.volume.dims = {16, 15, 22};
+  surface.volume.spacing = {0.8, 1.1, 1.5};
+  surface.volume.seed = 5;
+  surface.closed = closed;
+  return surface;
+}
+
+SurfaceRun oracle(const SurfaceCase& surface, std::uint64_t triangles) {
+  const Executor executor(1);
+  Simplifier simplifier({zone_options(surface), surface.quality, Schedule::kQueue}, executor, nullptr);
+  return sweep(surface, kWholeVolume, executor, simplifier, [&] {
+    const std::uint64_t have = simplifier.triangles();
+    if (have > triangles) decide_in_order(simplifier.zone(), surface.quality, have - triangles);
+    simplifier.zone().retire_all();
+  });
+}
+
+// most_held: so that sweeps have to thin out.
+SurfaceRun run(const SurfaceCase& surface, std::uint64_t triangles, Schedule schedule, int threads, std::int64_t slab,
+               std::uint64_t most_held, std::uint64_t* held = nullptr) {
+  const Executor executor(threads);
+  Simplifier simplifier({zone_options(surface), surface.quality, schedule}, executor, nullptr);
+  CountTarget target(simplifier, executor, triangles, most_held);
+  const std::int64_t layers = surface.volume.dims[2] + (surface.closed ? 1 : 0);
+  std::int64_t done = 0;
+  return sweep(surface, slab, executor, simplifier, [&] {
+    simplifier.decide();
+    done += slab;
+    done < layers ? target.thin_out() : target.finish();
+    if (held != nullptr) *held = std::max(*held, simplifier.live_triangles());
+  });
+}
+
+class Counts : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
+ protected:
+  SurfaceCase surface() const { return make_case(std::get<0>(GetParam()), std::get<1>(GetParam())); }
+};
+
+TEST_P(Counts, RunsStopWhereTheReferenceQueueWould) {
+  for (const double error : {kNoLimit, 0.3}) {
+    SurfaceCase surface = this->surface();
+    surface.error = error;
+    const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+    for (const std::uint64_t triangles : {all / 2, all / 5 + 1, all / 20, std::uint64_t{1}, all + 1}) {
+      const SurfaceRun expected = oracle(surface, triangles);
+      if (triangles == all / 2 && std::isinf(error)) {
+        ASSERT_GE(expected.report.triangles + 2, triangles);
+      }
+      for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{6}, kWholeVolume}) {
+        const auto same = [&](Schedule schedule, int threads) {
+          const SurfaceRun found = run(surface, triangles, schedule, threads, slab, 0);
+          EXPECT_EQ(digest_text(found.report.digest), digest_text(expected.report.digest))
+              << triangles << " of " << all << ", error " << error << ", slab " << slab << ", threads " << threads
+              << ", schedule " << static_cast<int>(schedule);
+          EXPECT_EQ(found.report.triangles, expected.report.triangles);
+        };
+        same(Schedule::kQueue, 1);
+        same(Schedule::kLocal, 1);
+        if (kSanitized) continue;
+        same(Schedule::kLocal, 4);
+        same(Schedule::kRounds, 3);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Volumes, Counts,
+                         ::testing::Combine(::testing::Values("gyroid", "noise", "box", "specks", "smooth"),
+                                            ::testing::Bool()),
+                         [](const auto& instance) {
+                           return std::get<0>(instance.param) + (std::get<1>(instance.param) ? "Closed" : "Open");
+                         });
+
+TEST(CountsHeld, NoMoreThanIsNeeded) {
+  SurfaceCase surface = make_case("smooth", true);
+  surface.volume.dims = {40, 40, 160};
+  surface.error = kNoLimit;
+  std::uint64_t held = 0;
+  const SurfaceRun thin = run(surface, 1500, Schedule::kLocal, 2, 8, 6000, &held);
+  const SurfaceRun whole = run(surface, 1500, Schedule::kLocal, 2, kWholeVolume, 6000);
+  EXPECT_EQ(digest_text(thin.report.digest), digest_text(whole.report.digest));
+  EXPECT_LE(thin.report.triangles, 1500U);
+  EXPECT_GE(thin.report.triangles, 1499U);
+  EXPECT_GT(thin.report.triangles_extracted, 40'000U);
+  EXPECT_LT(held, 20'000U);
+}
+
+}  // namespace
+}  // namespace isoweave::testing
