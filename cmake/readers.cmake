@@ -3,8 +3,8 @@
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
-# isoweave_reader(NAME SOURCE TARGET PACKAGE...): finds a package, and drops the reader's source without it.
-macro(isoweave_reader name source target package)
+# isoweave_reader(NAME SOURCES TARGET PACKAGE...): finds a package, and drops the reader's sources without it.
+macro(isoweave_reader name sources target package)
   set(ISOWEAVE_${name} AUTO CACHE STRING "Read ${name} through ${package}: AUTO, ON or OFF")
   set_property(CACHE ISOWEAVE_${name} PROPERTY STRINGS AUTO ON OFF)
   set(ISOWEAVE_HAS_${name} FALSE)
@@ -19,12 +19,14 @@ macro(isoweave_reader name source target package)
   set(ISOWEAVE_${name}_TARGET ${target})
   list(APPEND ISOWEAVE_READERS ${name})
   if(NOT ISOWEAVE_HAS_${name})
-    list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+    foreach(source ${sources})
+      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+    endforeach()
   endif()
 endmacro()
 
 # Messages of libtiff are taken per file since 4.5.
-isoweave_reader(TIFF tiff.cpp TIFF::TIFF TIFF 4.5)
+isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIFF::TIFF TIFF 4.5)
 isoweave_reader(PNG png.cpp PNG::PNG PNG)
 # Plain DICOM samples need no library.
 isoweave_reader(DICOM dicom_unpack.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
