@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "isoweave/error.hpp"
+#include "volume/input_file.hpp"
 
 namespace isoweave {
 namespace {
@@ -40,15 +41,11 @@ std::string state_path(const std::string& folder, std::uint64_t number) {
 Header read_header(StateReader& reader) {
   std::string format;
   reader.list(format);
-  if (format != kFormat) {
-    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found another file");
-  }
+  constexpr const char* kExpected = "a state saved by isoweave " ISOWEAVE_VERSION;
+  if (format != kFormat) bad_input(reader.path(), kExpected, "another file");
   std::string version;
   reader.list(version);
-  if (version != ISOWEAVE_VERSION) {
-    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found one of version " +
-                   version);
-  }
+  if (version != ISOWEAVE_VERSION) bad_input(reader.path(), kExpected, "one of version " + version);
   Header header;
   header.exchange(reader);
   header.checkpoint.path = reader.path();
@@ -89,7 +86,7 @@ std::string file_text(const std::string& path) {
 
 void require_same(const std::string& path, const char* what, const std::string& saved, const std::string& now) {
   if (saved == now) return;
-  throw BadInput(path + ": the " + what + " has changed: expected " + saved + ", found " + now);
+  bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
 }
 
 }  // namespace

@@ -271,6 +271,15 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
   expect_refused<BadInput>([&] { read_checkpoint(folder_.path()); }, "found another file");
 }
 
+TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
+  StateWriter writer(folder_ / "state-0");
+  writer.list(std::string("isoweave state 1\n"));
+  writer.list(std::string("1\n2"));
+  writer.commit();
+  std::filesystem::remove(folder_ / "state-1");
+  expect_refused<BadInput>([&] { read_checkpoint(folder_.path()); }, "version 1?2");
+}
+
 TEST_F(SavedState, ShortOrMissingPartsAreRefused) {
   std::filesystem::resize_file(folder_ / "mesh.part", 10);
   expect_refused<CannotWrite>([&] { resume(); }, "expected at least");
