@@ -29,7 +29,8 @@ endmacro()
 isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIFF::TIFF TIFF 4.5)
 isoweave_reader(PNG png.cpp PNG::PNG PNG)
 # Plain DICOM samples need no library.
-isoweave_reader(DICOM dicom_unpack.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)
@@ -50,7 +51,7 @@ function(isoweave_select_reader_tests sources)
   if(NOT ISOWEAVE_HAS_PNG)
     list(FILTER left EXCLUDE REGEX "/volume_png\\.cpp$")
   endif()
-  if(NOT ISOWEAVE_HAS_DICOM)
+  if(NOT ISOWEAVE_HAS_DICOM OR NOT ISOWEAVE_HAS_JPEG2000)
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
   endif()
   set(${sources} ${left} PARENT_SCOPE)

@@ -28,6 +28,7 @@ constexpr std::string_view kExplicit = "1.2.840.10008.1.2.1";
 constexpr std::string_view kBigEndian = "1.2.840.10008.1.2.2";
 constexpr std::string_view kRunLength = "1.2.840.10008.1.2.5";
 constexpr std::string_view kJpegFamily = "1.2.840.10008.1.2.4.";
+constexpr std::string_view kJpeg2000 = "1.2.840.10008.1.2.4.9";
 
 struct Element {
   std::uint32_t tag = 0;
@@ -328,7 +329,8 @@ std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, st
       samples = unpack_run_lengths(slice, packed, bytes);
     } else {
       check_frame_header(slice, packed);
-      samples = unpack_dicom(slice, packed, bytes);
+      const bool jpeg2000 = slice.syntax.starts_with(kJpeg2000);
+      samples = jpeg2000 ? unpack_jpeg2000(slice, packed, bytes) : unpack_jpeg(slice, packed, bytes);
     }
   } else {
     samples = plain_samples(slice, *file, bytes);

@@ -19,6 +19,12 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// Fourth powers of lengths and products of all three must be numbers too.
+constexpr double kSmallestStep = 1e-30;
+constexpr double kLargestStep = 1e30;
+
+bool is_usable_step(double length) { return length >= kSmallestStep && length <= kLargestStep; }
+
 // Some unit vector orthogonal to `a`: against the world axis that `a` leans to least.
 Vector3 any_normal(const Vector3& a) {
   std::size_t least = 0;
@@ -46,6 +52,9 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
     const double length = length_of(axes.steps[axis]);
     if (!std::isfinite(length) || !(length > 0)) {
       bad_input(path, "a positive, finite sample spacing on axis " + std::to_string(axis), number_text(length));
+    }
+    if (!is_usable_step(length)) {
+      bad_input(path, "a sample spacing from 1e-30 to 1e30 on axis " + std::to_string(axis), number_text(length));
     }
     geometry.spacing[axis] = length;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -93,6 +102,7 @@ void apply_overrides(Geometry& geometry, const OpenOptions& options) {
   if (options.spacing) {
     for (const double step : *options.spacing) {
       if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
+      if (!is_usable_step(step)) throw std::invalid_argument("spacing must lie between 1e-30 and 1e30");
     }
     geometry.spacing = *options.spacing;
   }

@@ -5,7 +5,8 @@
 namespace isoweave {
 namespace {
 
-#if !defined(ISOWEAVE_HAS_TIFF) || !defined(ISOWEAVE_HAS_PNG) || !defined(ISOWEAVE_HAS_DICOM)
+#if !defined(ISOWEAVE_HAS_TIFF) || !defined(ISOWEAVE_HAS_PNG) || !defined(ISOWEAVE_HAS_DICOM) || \
+    !defined(ISOWEAVE_HAS_JPEG2000)
 [[noreturn]] void not_built(const std::string& path, std::string_view format, std::string_view library,
                             std::string_view option) {
   bad_input(
@@ -25,8 +26,14 @@ OpenedVolume open_png(const FilePtr& file) { not_built(file->path(), "PNG", "lib
 #endif
 
 #ifndef ISOWEAVE_HAS_DICOM
-std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
   not_built(slice.path, "DICOM with JPEG samples", "GDCM", "ISOWEAVE_DICOM");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_JPEG2000
+std::vector<std::byte> unpack_jpeg2000(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+  not_built(slice.path, "DICOM with JPEG 2000 samples", "OpenJPEG", "ISOWEAVE_JPEG2000");
 }
 #endif
 

@@ -187,6 +187,24 @@ TEST(Dicom, RefusesPackedFramesOfAnotherSize) {
   }
 }
 
+// Found by fuzzing: GDCM's decoder kept memory for good when a stream was damaged, and printed why.
+TEST(Dicom, RefusesDamagedJpeg2000) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.columns = 64;
+  fields.rows = 48;
+  folder.put("w", dicom(fields, stored(ramp<std::uint16_t>(64 * 48))));
+  ASSERT_TRUE(transcode(folder / "w", folder / "a", gdcm::TransferSyntax::JPEG2000Lossless));
+  std::filesystem::remove(folder / "w");
+  std::string content = get(folder / "a");
+  const std::size_t samples = content.find("\xff\x93") + 2;
+  content.replace(samples, 60, 60, '\xfe');
+  ::testing::internal::CaptureStderr();
+  const std::string message = refusal(folder.put("a", content));
+  EXPECT_TRUE(contains(message, "expected decodable JPEG 2000 samples, found damaged data")) << message;
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(Dicom, RefusesSlicesThatDiffer) {
   const TempFolder folder;
   const auto with = [&](const DicomFields& fields) {

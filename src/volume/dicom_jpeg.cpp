@@ -1,7 +1,6 @@
-// JPEG, JPEG-LS and JPEG 2000 samples of DICOM files through the codecs of GDCM.
+// JPEG and JPEG-LS samples of DICOM files through the codecs of GDCM.
 #include <gdcmDataElement.h>
 #include <gdcmFragment.h>
-#include <gdcmJPEG2000Codec.h>
 #include <gdcmJPEGCodec.h>
 #include <gdcmJPEGLSCodec.h>
 #include <gdcmSequenceOfFragments.h>
@@ -46,8 +45,6 @@ std::unique_ptr<gdcm::ImageCodec> codec_for(const gdcm::TransferSyntax& syntax) 
   if (codec->CanDecode(syntax)) return codec;
   codec = std::make_unique<gdcm::JPEGLSCodec>();
   if (codec->CanDecode(syntax)) return codec;
-  codec = std::make_unique<gdcm::JPEG2000Codec>();
-  if (codec->CanDecode(syntax)) return codec;
   return nullptr;
 }
 
@@ -61,11 +58,11 @@ bool decodes(gdcm::ImageCodec& codec, const gdcm::DataElement& packed, gdcm::Dat
 
 }  // namespace
 
-std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes) {
+std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes) {
   keep_gdcm_quiet();
   const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(slice.syntax.c_str()));
   const std::unique_ptr<gdcm::ImageCodec> codec = codec_for(syntax);
-  if (!codec) bad_input(slice.path, "JPEG, JPEG-LS or JPEG 2000 samples", isoweave::quoted(slice.syntax));
+  if (!codec) bad_input(slice.path, "JPEG or JPEG-LS samples", isoweave::quoted(slice.syntax));
   const std::array<unsigned int, 3> dims{static_cast<unsigned int>(slice.columns),
                                          static_cast<unsigned int>(slice.rows), 1};
   codec->SetNumberOfDimensions(2);
