@@ -30,7 +30,9 @@ isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIF
 isoweave_reader(PNG png.cpp PNG::PNG PNG)
 # Plain DICOM samples need no library.
 isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)
 isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
+isoweave_reader(LZ4 vtk_lz4.cpp IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)
@@ -51,7 +53,7 @@ function(isoweave_select_reader_tests sources)
   if(NOT ISOWEAVE_HAS_PNG)
     list(FILTER left EXCLUDE REGEX "/volume_png\\.cpp$")
   endif()
-  if(NOT ISOWEAVE_HAS_DICOM OR NOT ISOWEAVE_HAS_JPEG2000)
+  if(NOT (ISOWEAVE_HAS_DICOM AND ISOWEAVE_HAS_JPEGLS AND ISOWEAVE_HAS_JPEG2000))
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
   endif()
   set(${sources} ${left} PARENT_SCOPE)

@@ -1,12 +1,13 @@
 // Stands in for the readers whose libraries the build lacks: an error that says which option brings them in.
 #include "volume/dicom_file.hpp"
 #include "volume/formats.hpp"
+#include "volume/vtk_streams.hpp"
 
 namespace isoweave {
 namespace {
 
 #if !defined(ISOWEAVE_HAS_TIFF) || !defined(ISOWEAVE_HAS_PNG) || !defined(ISOWEAVE_HAS_DICOM) || \
-    !defined(ISOWEAVE_HAS_JPEG2000)
+    !defined(ISOWEAVE_HAS_JPEG2000) || !defined(ISOWEAVE_HAS_JPEGLS) || !defined(ISOWEAVE_HAS_LZ4)
 [[noreturn]] void not_built(const std::string& path, std::string_view format, std::string_view library,
                             std::string_view option) {
   bad_input(
@@ -31,9 +32,22 @@ std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std:
 }
 #endif
 
+#ifndef ISOWEAVE_HAS_JPEGLS
+std::vector<std::byte> unpack_jpegls(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+  not_built(slice.path, "DICOM with JPEG-LS samples", "CharLS", "ISOWEAVE_JPEGLS");
+}
+#endif
+
 #ifndef ISOWEAVE_HAS_JPEG2000
 std::vector<std::byte> unpack_jpeg2000(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
   not_built(slice.path, "DICOM with JPEG 2000 samples", "OpenJPEG", "ISOWEAVE_JPEG2000");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_LZ4
+std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream>, std::uint64_t, std::uint64_t,
+                                           const std::string& path) {
+  not_built(path, "VTI with LZ4 blocks", "liblz4", "ISOWEAVE_LZ4");
 }
 #endif
 

@@ -125,6 +125,9 @@ void put_vtk(Seeds& seeds) {
       form.wide = wide;
       form.big = wide;
       seeds.put("vti", whole(form));
+      form.lz4 = true;
+      seeds.put("vti", whole(form));
+      form.lz4 = false;
       form.appended = true;
       form.base64 = false;
       form.place = R"(WholeExtent="1 4 0 2 -1 3" Origin="1 2 3" Spacing="1 .5 2" Direction="0 1 0 1 0 0 0 0 -1")";
@@ -221,6 +224,13 @@ void put_dicom(Seeds& seeds) {
     series += (n == 0 ? "" : kNext) + dicom(fields, slice(n));
   }
   seeds.put("dicom_series", series);
+  const std::string frames = enhanced({frame_at(1), frame_at(2)}, slice(0) + slice(1));
+  seeds.put("dicom", frames);
+  seeds.put("dicom", deflated_file(frames));
+  seeds.put("dicom", deflated_file(plain));
+  const std::string lengths = run_lengths(slice(0));
+  const std::string table = item(bytes_of(0U) + bytes_of(static_cast<std::uint32_t>(lengths.size() + 8)));
+  seeds.put("dicom", packed_frames({frame_at(1), frame_at(2)}, table + item(lengths) + item(lengths)));
   // GDCM cannot write smaller JPEG 2000 images.
   fields.columns = fields.rows = 32;
   folder.put("a", dicom(fields, stored(ramp<std::uint16_t>(32 * 32))));

@@ -78,6 +78,66 @@ inline void put_series(const TempFolder& folder, DicomFields fields = {}) {
   }
 }
 
+// The elements behind the meta group without any wrapping, as this transfer syntax has them.
+inline std::string deflated_file(const std::string& file) {
+  const std::size_t syntax = file.find(element(2, 0x10, "UI", "1.2.840.10008.1.2.1"));
+  const std::size_t end = syntax + element(2, 0x10, "UI", "1.2.840.10008.1.2.1").size();
+  return file.substr(0, syntax) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1.99") + deflated(file.substr(end), -15);
+}
+
+inline const std::string kItem("\xfe\xff\x00\xe0", 4);
+
+inline std::string item(const std::string& content) {
+  return kItem + bytes_of(static_cast<std::uint32_t>(content.size())) + content;
+}
+
+inline std::string group(std::uint16_t high, std::uint16_t low, const std::string& macro) {
+  return element(high, low, "SQ", item(macro));
+}
+
+// An enhanced image: what all frames share, then what each has of its own.
+inline std::string enhanced(const std::vector<std::string>& frames, const std::string& samples,
+                            DicomFields fields = {}) {
+  fields.frames = fields.frames.empty() ? std::to_string(frames.size()) : fields.frames;
+  fields.position.clear();
+  fields.orientation.clear();
+  fields.pixel_spacing.clear();
+  const std::string shared = group(0x20, 0x9116, element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0")) +
+                             group(0x28, 0x9110, element(0x28, 0x30, "DS", "0.5\\0.25")) +
+                             group(0x28, 0x9145, element(0x28, 0x1052, "DS", "-7") + element(0x28, 0x1053, "DS", "2"));
+  std::string items;
+  for (const std::string& frame : frames) items += item(frame);
+  fields.more += element(0x5200, 0x9229, "SQ", item(shared)) + element(0x5200, 0x9230, "SQ", items);
+  return dicom(fields, samples);
+}
+
+inline std::string frame_at(double z) { return group(0x20, 0x9113, element(0x20, 0x32, "DS", at(z))); }
+
+// Packed samples: the table of offsets and the fragments that `content` has.
+inline std::string packed_frames(const std::vector<std::string>& frames, const std::string& content) {
+  std::string file = enhanced(frames, "");
+  const std::string plain = element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+  file.replace(file.find(plain), plain.size(), element(2, 0x10, "UI", "1.2.840.10008.1.2.5"));
+  file.resize(file.size() - element(0x7fe0, 0x10, "OW", "").size());
+  return file + bytes_of(std::uint16_t{0x7fe0}) + bytes_of(std::uint16_t{0x10}) + std::string("OB\0\0", 4) +
+         bytes_of(0xffffffffU) + content + std::string("\xfe\xff\xdd\xe0\0\0\0\0", 8);
+}
+
+// A slice as run lengths: the more significant bytes of its samples, then the less significant, all literal.
+inline std::string run_lengths(const std::string& slice) {
+  std::string high;
+  std::string low;
+  for (std::size_t n = 0; n < slice.size(); n += 2) {
+    low += slice[n];
+    high += slice[n + 1];
+  }
+  const std::string first = static_cast<char>(high.size() - 1) + high;
+  const std::string second = static_cast<char>(low.size() - 1) + low;
+  std::string header = bytes_of(2U) + bytes_of(64U) + bytes_of(static_cast<std::uint32_t>(64 + first.size()));
+  header.resize(64);
+  return header + first + second;
+}
+
 // Rewrites a file in another transfer syntax.
 inline bool transcode(const std::string& from, const std::string& to, gdcm::TransferSyntax::TSType syntax) {
   gdcm::ImageReader reader;

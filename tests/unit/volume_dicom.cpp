@@ -187,7 +187,19 @@ TEST(Dicom, RefusesPackedFramesOfAnotherSize) {
   }
 }
 
-// Found by fuzzing: GDCM's decoder kept memory for good when a stream was damaged, and printed why.
+// Found by fuzzing: GDCM's decoders kept memory for good when a stream was damaged.
+TEST(Dicom, RefusesDamagedJpegLs) {
+  const TempFolder folder;
+  folder.put("w", dicom({}, slice(0)));
+  ASSERT_TRUE(transcode(folder / "w", folder / "a", gdcm::TransferSyntax::JPEGLSLossless));
+  std::filesystem::remove(folder / "w");
+  std::string content = get(folder / "a");
+  // The scan's header: another number of components.
+  content[content.find("\xff\xda") + 4] = 9;
+  const std::string message = refusal(folder.put("a", content));
+  EXPECT_TRUE(contains(message, "expected decodable JPEG-LS samples, found damaged data")) << message;
+}
+
 TEST(Dicom, RefusesDamagedJpeg2000) {
   const TempFolder folder;
   DicomFields fields;
@@ -234,13 +246,16 @@ TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
   const auto with = [&](const DicomFields& fields) { return refusal(folder.put("a", dicom(fields, slice(0)))); };
   DicomFields fields;
   fields.frames = "5";
-  EXPECT_TRUE(contains(with(fields), "expected one frame in each file, found '5'"));
-  fields.more = element(0x5200, 0x9229, "SQ", "");
-  EXPECT_TRUE(contains(with(fields), "enhanced multi-frame"));
+  EXPECT_TRUE(contains(with(fields), "groups that say where each lies (enhanced images), found 5 frames without"));
+  fields.frames = "many";
+  EXPECT_TRUE(contains(with(fields), "expected a number of frames, found 'many'"));
   fields = {};
   fields.photometric = "RGB";
   fields.samples = 3;
   EXPECT_TRUE(contains(with(fields), "found 'RGB' of 3 samples"));
+  fields.photometric = "PALETTE COLOR";
+  fields.samples = 1;
+  EXPECT_TRUE(contains(with(fields), "expected grey samples (MONOCHROME1 or 2), found 'PALETTE COLOR' of 1 samples"));
   fields = {};
   fields.bits = 12;
   EXPECT_TRUE(contains(with(fields), "8, 16 or 32 bits allocated, found 12"));
@@ -264,7 +279,7 @@ TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
   EXPECT_TRUE(contains(refusal(folder / ""), "expected DICOM images, found 1 files without one"));
   std::string deflated = dicom({}, slice(0));
   deflated.replace(deflated.find("1.2.840.10008.1.2.1") + 16, 3, "9.9");
-  EXPECT_TRUE(contains(refusal(folder.put("a", deflated)), "expected a transfer syntax of plain, JPEG"));
+  EXPECT_TRUE(contains(refusal(folder.put("a", deflated)), "expected a transfer syntax of plain, deflated, JPEG"));
   EXPECT_TRUE(contains(refusal(folder.put("a.dcm", "hello")), "DICM behind a preamble"));
 }
 
@@ -286,6 +301,82 @@ TEST(Dicom, TakesTheBitsThatAreUsed) {
   EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", dicom(fields, samples)))[1], 0x0ff);
   fields.more = us(0x101, 17);
   EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, samples))), "bits stored within those allocated"));
+}
+
+TEST(Dicom, ReadsDeflatedFiles) {
+  const TempFolder folder;
+  put_series(folder);
+  for (const char* name : {"s5", "s6", "s7", "s8", "s9"}) folder.put(name, deflated_file(get(folder / name)));
+  EXPECT_EQ(read_file<std::uint16_t>(folder / ""), kSamples);
+  const TempFolder one;
+  const std::string content = deflated_file(dicom({}, slice(0)));
+  expect_prefixes_are_safe(one, "a", content);
+  expect_flips_are_safe(one, "a", content, content.size(), 1000);
+}
+
+TEST(Dicom, ReadsDeflatedSlicesLargerThanWhatIsHeld) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.columns = fields.rows = 400;
+  const auto samples = ramp<std::uint16_t>(400 * 400);
+  const std::string content = deflated_file(dicom(fields, stored(samples)));
+  EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", content)), samples);
+}
+
+TEST(Dicom, ReadsTheFramesOfEnhancedImages) {
+  const TempFolder folder;
+  // The frames lie in another order than they are stored in.
+  const std::string samples = slice(2) + slice(0) + slice(1);
+  const std::string content = enhanced({frame_at(35), frame_at(30), frame_at(32.5)}, samples);
+  for (const std::string& form : {content, deflated_file(content)}) {
+    const auto source = open_volume(folder.put("a", form));
+    EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{kColumns, kRows, 3}));
+    EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{0.25, 0.5, 2.5}));
+    EXPECT_EQ(source->info().geometry.origin, (std::array<double, 3>{10, 20, 30}));
+    EXPECT_EQ(source->info().slope, 2);
+    EXPECT_EQ(source->info().intercept, -7);
+    EXPECT_TRUE(source->info().notes.empty());
+    EXPECT_EQ(samples_of<std::uint16_t>(*source), in_order({0, 1, 2}));
+  }
+  expect_flips_are_safe(folder, "a", content, content.size(), 1000);
+  // What a frame says comes before what all share.
+  const std::string own = group(0x28, 0x9110, element(0x28, 0x30, "DS", "3\\4"));
+  const auto source =
+      open_volume(folder.put("a", enhanced({frame_at(1) + own, own + frame_at(2)}, slice(0) + slice(1))));
+  EXPECT_EQ(source->info().geometry.spacing, (std::array<double, 3>{4, 3, 1}));
+}
+
+TEST(Dicom, RefusesFramesThatAreNotOneVolume) {
+  const TempFolder folder;
+  const auto refused = [&](const std::vector<std::string>& frames, const std::string& samples,
+                           const DicomFields& fields = {}) {
+    return refusal(folder.put("a", enhanced(frames, samples, fields)));
+  };
+  const std::string two = slice(0) + slice(1);
+  EXPECT_TRUE(contains(refused({frame_at(1), frame_at(1)}, two), "a (frame 2): expected a position of its own"));
+  EXPECT_TRUE(contains(refused({frame_at(1), ""}, two), "a (frame 2): expected 3 numbers as Image Position"));
+  EXPECT_TRUE(contains(refused({frame_at(1), frame_at(2)}, slice(0)), "expected 140 bytes of samples, found 70"));
+  DicomFields fields;
+  fields.frames = "3";
+  EXPECT_TRUE(contains(refused({frame_at(1), frame_at(2)}, two, fields), "groups for each of 3 frames, found 2"));
+  const std::string own = group(0x28, 0x9145, element(0x28, 0x1053, "DS", "5"));
+  EXPECT_TRUE(contains(refused({frame_at(1), frame_at(2) + own}, two), "scaled by 5 and -7"));
+}
+
+TEST(Dicom, ReadsPackedFramesByTheirNumberOrTheirOffsets) {
+  const TempFolder folder;
+  const std::vector<std::string> frames{frame_at(1), frame_at(2)};
+  const std::string a = run_lengths(slice(0));
+  const std::string b = run_lengths(slice(1));
+  EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", packed_frames(frames, item("") + item(a) + item(b)))),
+            in_order({0, 1}));
+  // The first frame in two fragments.
+  const std::string halves = item(a.substr(0, 100)) + item(a.substr(100)) + item(b);
+  const std::string table = item(bytes_of(0U) + bytes_of(static_cast<std::uint32_t>(a.size() + 16)));
+  EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", packed_frames(frames, table + halves))), in_order({0, 1}));
+  EXPECT_TRUE(contains(refusal(folder.put("a", packed_frames(frames, item("") + halves))), "found 3 fragments"));
+  const std::string wrong = item(bytes_of(0U) + bytes_of(5000U));
+  EXPECT_TRUE(contains(refusal(folder.put("a", packed_frames(frames, wrong + halves))), "for frame 2, found none"));
 }
 
 TEST(Dicom, PassesOverSequencesWithImagesOfTheirOwn) {

@@ -35,8 +35,10 @@ TEST(Png, ReadsASeries) {
 
 TEST(Png, RefusesWhatIsNotGreyOfWholeBytes) {
   const TempFolder folder;
-  EXPECT_TRUE(contains(refusal(write_png(folder / "a.png", {8, PNG_COLOR_TYPE_RGB}, "")), "expected grey samples"));
-  EXPECT_TRUE(contains(refusal(write_png(folder / "a.png", {8, PNG_COLOR_TYPE_GRAY_ALPHA}, "")), "colour type 4"));
+  EXPECT_TRUE(contains(refusal(write_png(folder / "a.png", {8, PNG_COLOR_TYPE_RGB}, "")),
+                       "expected grey samples of 8 or 16 bits, found RGB"));
+  EXPECT_TRUE(contains(refusal(write_png(folder / "a.png", {8, PNG_COLOR_TYPE_GRAY_ALPHA}, "")),
+                       "found grey with transparency of 8 bits"));
   EXPECT_TRUE(contains(refusal(write_png(folder / "a.png", {4}, "")), "of 4 bits"));
   EXPECT_TRUE(contains(refusal(folder.put("a.png", "hello")), "the magic of PNG"));
 }

@@ -31,6 +31,7 @@ struct VtiForm {
   std::string scalars = {};
   std::string place = R"(WholeExtent="0 3 0 2 0 4" Origin="0 0 0" Spacing="1 1 1")";
   std::string extent = "0 3 0 2 0 4";
+  bool lz4 = false;  // the blocks
 };
 
 inline std::string word(const VtiForm& form, std::uint64_t value) {
@@ -41,6 +42,16 @@ inline std::string encoded(const VtiForm& form, const std::string& bytes) {
   return form.base64 ? base64(bytes) : bytes;
 }
 
+// An LZ4 block of one sequence of literals, which any data may be stored as.
+inline std::string lz4_literals(const std::string& data) {
+  constexpr std::size_t kShort = 15;
+  if (data.size() < kShort) return static_cast<char>(data.size() << 4) + data;
+  std::string block = "\xf0";
+  std::size_t left = data.size() - kShort;
+  for (; left >= 255; left -= 255) block += '\xff';
+  return block + static_cast<char>(left) + data;
+}
+
 // The array with its sizes, as VTK writes it: those of compressed blocks are a piece of base64 of their own.
 inline std::string array_of(const VtiForm& form, const std::string& samples) {
   if (form.block == 0) return encoded(form, word(form, samples.size()) + samples);
@@ -48,7 +59,8 @@ inline std::string array_of(const VtiForm& form, const std::string& samples) {
   std::string blocks;
   std::uint64_t count = 0;
   for (std::size_t at = 0; at < samples.size(); at += form.block, ++count) {
-    const std::string block = zlibbed(samples.substr(at, form.block));
+    const std::string part = samples.substr(at, form.block);
+    const std::string block = form.lz4 ? lz4_literals(part) : zlibbed(part);
     sizes += word(form, block.size());
     blocks += block;
   }
@@ -60,7 +72,7 @@ inline std::string vti(const VtiForm& form, const std::string& array) {
   std::string text = "<?xml version=\"1.0\"?>\n<!-- <VTKFile type='no'> -->\n<VTKFile type=\"ImageData\" byte_order=\"";
   text += form.big ? "BigEndian\"" : "LittleEndian\"";
   if (form.wide) text += " header_type=\"UInt64\"";
-  if (form.block > 0) text += " compressor=\"vtkZLibDataCompressor\"";
+  if (form.block > 0) text += std::string(" compressor=\"vtk") + (form.lz4 ? "LZ4" : "ZLib") + "DataCompressor\"";
   text += ">\n<ImageData " + form.place +
           ">\n<FieldData><DataArray type=\"Int8\" Name=\"f\" format=\"ascii\">1</DataArray>";
   text += "</FieldData><Piece Extent=\"" + form.extent + "\">\n<PointData Scalars=\"" + form.scalars + "\">\n";
