@@ -3,8 +3,8 @@
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
-# isoweave_reader(NAME SOURCE TARGET PACKAGE...): finds a package, and drops the reader's source without it.
-macro(isoweave_reader name source target package)
+# isoweave_reader(NAME SOURCES TARGET PACKAGE...): finds a package, and drops the reader's sources without it.
+macro(isoweave_reader name sources target package)
   set(ISOWEAVE_${name} AUTO CACHE STRING "Read ${name} through ${package}: AUTO, ON or OFF")
   set_property(CACHE ISOWEAVE_${name} PROPERTY STRINGS AUTO ON OFF)
   set(ISOWEAVE_HAS_${name} FALSE)
@@ -19,7 +19,9 @@ macro(isoweave_reader name source target package)
   set(ISOWEAVE_${name}_TARGET ${target})
   list(APPEND ISOWEAVE_READERS ${name})
   if(NOT ISOWEAVE_HAS_${name})
-    list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+    foreach(source ${sources})
+      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+    endforeach()
   endif()
 endmacro()
 
@@ -28,6 +30,15 @@ isoweave_reader(TIFF tiff.cpp TIFF::TIFF TIFF 4.5)
 isoweave_reader(PNG png.cpp PNG::PNG PNG)
 # Plain DICOM samples need no library.
 isoweave_reader(DICOM dicom_unpack.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+# Loaded when it is needed; headers only.
+isoweave_reader(HDF5 "hdf5.cpp;hdf5_dataset.cpp;hdf5_library.cpp" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5>
+                IsoweaveHdf5)
+# Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
+isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp"
+                $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
+isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
+isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
+isoweave_reader(LZ4 codec_lz4.cpp IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)
@@ -50,6 +61,12 @@ function(isoweave_select_reader_tests sources)
   endif()
   if(NOT ISOWEAVE_HAS_DICOM)
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_HDF5)
+    list(FILTER left EXCLUDE REGEX "/volume_hdf5\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_ZARR)
+    list(FILTER left EXCLUDE REGEX "/volume_(zarr|n5|ome_zarr)\\.cpp$")
   endif()
   set(${sources} ${left} PARENT_SCOPE)
 endfunction()

@@ -1,0 +1,195 @@
+#include "volume/hdf5_dataset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <set>
+
+#include "volume/printable.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::size_t kMostObjects = 10000;
+constexpr std::size_t kDeepest = 32;
+constexpr hid_t kDefault = 0;  // H5P_DEFAULT
+
+std::optional<SampleType> sample_type_of(H5T_class_t kind, std::size_t bytes, bool is_signed) {
+  if (kind == H5T_FLOAT) {
+    if (bytes == 4) return SampleType::kFloat32;
+    if (bytes == 8) return SampleType::kFloat64;
+    return std::nullopt;
+  }
+  if (bytes == 1) return is_signed ? SampleType::kInt8 : SampleType::kUint8;
+  if (bytes == 2) return is_signed ? SampleType::kInt16 : SampleType::kUint16;
+  if (bytes == 4) return is_signed ? SampleType::kInt32 : SampleType::kUint32;
+  return std::nullopt;
+}
+
+// Reads the type of a dataset; h5py keeps truth values as enumerations of integers.
+void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
+  const Hdf5Handle stored(h5.H5Dget_type(dataset), h5.H5Tclose);
+  const bool enumeration = stored && h5.H5Tget_class(stored.id()) == H5T_ENUM;
+  const Hdf5Handle inner(enumeration ? h5.H5Tget_super(stored.id()) : -1, h5.H5Tclose);
+  const hid_t type = enumeration ? inner.id() : stored.id();
+  found.type_text = "of another kind";
+  if (type < 0) return;
+  const H5T_class_t kind = h5.H5Tget_class(type);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return;
+  const std::size_t bytes = h5.H5Tget_size(type);
+  const bool is_signed = kind == H5T_INTEGER && h5.H5Tget_sign(type) == H5T_SGN_2;
+  found.type = sample_type_of(kind, bytes, is_signed);
+  found.type_text = std::string(kind == H5T_FLOAT ? "float" : is_signed ? "int" : "uint") + std::to_string(8 * bytes);
+}
+
+bool take_shape(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
+  const Hdf5Handle space(h5.H5Dget_space(dataset), h5.H5Sclose);
+  if (!space || h5.H5Sget_simple_extent_type(space.id()) != H5S_SIMPLE) return false;
+  const int rank = h5.H5Sget_simple_extent_ndims(space.id());
+  std::array<hsize_t, H5S_MAX_RANK> sizes{};
+  if (rank < 1 || rank > H5S_MAX_RANK) return false;
+  if (h5.H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) < 0) return false;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(rank); ++n) {
+    found.shape.push_back(static_cast<std::int64_t>(std::min<hsize_t>(sizes.at(n), INT64_MAX)));
+  }
+  return true;
+}
+
+// Walks the groups of a file along its hard links. Others may lead into other files, or nowhere.
+class Search {
+ public:
+  explicit Search(const Hdf5Functions& h5) : h5_(h5) {}
+
+  void visit(hid_t group, const std::string& path, std::size_t depth) {
+    H5G_info_t info{};
+    if (h5_.H5Gget_info(group, &info) < 0) return;
+    for (hsize_t n = 0; n < info.nlinks && visited_ < kMostObjects; ++n, ++visited_) {
+      const std::string name = name_of(group, n);
+      if (name.empty()) continue;
+      const Hdf5Handle object(h5_.H5Oopen(group, name.c_str(), kDefault), h5_.H5Oclose);
+      if (!object) continue;
+      const H5I_type_t kind = h5_.H5Iget_type(object.id());
+      if (kind == H5I_GROUP && depth < kDeepest) visit(object.id(), path + "/" + name, depth + 1);
+      if (kind == H5I_DATASET) take(object.id(), path + "/" + name);
+    }
+  }
+
+  std::vector<Hdf5Dataset> found;
+
+ private:
+  // The name of a hard link; empty for any other.
+  std::string name_of(hid_t group, hsize_t n) const {
+    H5L_info_t link{};
+    if (h5_.H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefault) < 0) return {};
+    if (link.type != H5L_TYPE_HARD) return {};
+    std::array<char, 1024> name{};
+    const ssize_t length =
+        h5_.H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefault);
+    return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : std::string();
+  }
+
+  void take(hid_t dataset, const std::string& path) {
+    Hdf5Dataset entry;
+    entry.name = path;
+    if (!take_shape(h5_, dataset, entry) || entry.shape.size() < 2) return;
+    take_type(h5_, dataset, entry);
+    found.push_back(std::move(entry));
+  }
+
+  const Hdf5Functions& h5_;
+  std::size_t visited_ = 0;
+};
+
+constexpr hssize_t kMostValues = 64;
+
+std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
+  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
+  const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
+  if (!type || !space) return std::nullopt;
+  const H5T_class_t kind = h5.H5Tget_class(type.id());
+  const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count < 1 || count > kMostValues) return std::nullopt;
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (h5.H5Aread(attribute, h5.native_double, values.data()) < 0) return std::nullopt;
+  return values;
+}
+
+std::vector<std::string> read_texts(const Hdf5Functions& h5, hid_t attribute) {
+  constexpr std::size_t kLongest = 1 << 16;
+  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
+  const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
+  if (!type || !space || h5.H5Tget_class(type.id()) != H5T_STRING) return {};
+  const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
+  const std::size_t bytes = h5.H5Tget_size(type.id());
+  if (count < 1 || count > kMostValues || bytes < 1 || bytes > kLongest) return {};
+  std::vector<std::string> texts;
+  if (h5.H5Tis_variable_str(type.id()) > 0) {
+    std::vector<char*> values(static_cast<std::size_t>(count), nullptr);
+    if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return {};
+    for (char* const value : values) {
+      texts.emplace_back(value == nullptr ? "" : value);
+      if (value != nullptr) h5.H5free_memory(value);
+    }
+    return texts;
+  }
+  std::string values(static_cast<std::size_t>(count) * bytes, '\0');
+  if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return {};
+  for (std::size_t at = 0; at < values.size(); at += bytes) {
+    const std::string value = values.substr(at, bytes);
+    texts.push_back(value.substr(0, value.find('\0')));
+  }
+  return texts;
+}
+
+}  // namespace
+
+std::vector<Hdf5Dataset> find_datasets(const Hdf5Session& session, hid_t file) {
+  Search search(session.h5());
+  search.visit(file, "", 0);
+  return std::move(search.found);
+}
+
+Hdf5Dataset describe_dataset(const Hdf5Session& session, hid_t dataset, const std::string& name) {
+  Hdf5Dataset described;
+  described.name = name;
+  take_type(session.h5(), dataset, described);
+  take_shape(session.h5(), dataset, described);
+  return described;
+}
+
+ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
+  const Hdf5Functions& h5 = session.h5();
+  const auto open = [&h5, object](const std::string& name) {
+    const bool there = h5.H5Aexists(object, name.c_str()) > 0;
+    return Hdf5Handle(there ? h5.H5Aopen(object, name.c_str(), kDefault) : -1, h5.H5Aclose);
+  };
+  const auto numbers = [&h5, open](const std::string& name) {
+    const Hdf5Handle attribute = open(name);
+    return attribute ? read_numbers(h5, attribute.id()) : std::nullopt;
+  };
+  const auto texts = [&h5, open](const std::string& name) {
+    const Hdf5Handle attribute = open(name);
+    return attribute ? read_texts(h5, attribute.id()) : std::vector<std::string>();
+  };
+  return {numbers, texts};
+}
+
+void name_hdf5_axes(const ArrayAttributes& attributes, std::vector<ArrayAxis>& axes) {
+  std::vector<std::string> names = attributes.texts("DIMENSION_LABELS");
+  if (const std::vector<std::string> tags = attributes.texts("axistags"); tags.size() == 1) {
+    // JSON, in which only the keys matter: {"axes": [{"key": "z", ...}, ...]}.
+    names.clear();
+    constexpr std::string_view kKey = "\"key\":";
+    const std::string& text = tags[0];
+    for (std::size_t at = text.find(kKey); at != std::string::npos; at = text.find(kKey, at + kKey.size())) {
+      const std::size_t begin = text.find('"', at + kKey.size());
+      const std::size_t end = begin == std::string::npos ? begin : text.find('"', begin + 1);
+      if (end == std::string::npos) break;
+      names.push_back(text.substr(begin + 1, end - begin - 1));
+    }
+  }
+  if (names.size() != axes.size()) return;
+  for (std::size_t n = 0; n < axes.size(); ++n) axes[n].name = names[n];
+}
+
+}  // namespace isoweave
