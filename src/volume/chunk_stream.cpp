@@ -136,6 +136,17 @@ std::uint64_t bytes_below(const std::string& folder, std::uint64_t enough) {
   return bytes;
 }
 
+// Whether there is any file or folder that may be a chunk's.
+bool has_chunks(const ChunkedArray& array) {
+  std::error_code error;
+  fs::directory_iterator entry(array.folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name[0] == 'c' || (name[0] >= '0' && name[0] <= '9')) return true;
+  }
+  return false;
+}
+
 // Chunks may be left out, so that any size may be claimed; what is held must be in some proportion to what is stored.
 void check_band(const ChunkedArray& array, std::int64_t slices, std::size_t slice_bytes) {
   constexpr std::uint64_t kRatio = 1 << 20;
@@ -181,6 +192,7 @@ OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice) {
   info.part = choice.part;
   info.notes = array.notes;
   info.notes.insert(info.notes.end(), choice.notes.begin(), choice.notes.end());
+  if (!has_chunks(array)) info.notes.emplace_back("no chunk is stored: every sample is the fill value");
   checked_volume_bytes(info);
   const std::int64_t depth = choice.axis[2] == kNoAxis ? 1 : array.chunk[choice.axis[2]];
   check_band(array, std::min(depth, info.dims[2]), info.slice_bytes());

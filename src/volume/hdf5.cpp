@@ -102,8 +102,8 @@ class DatasetStream final : public BandStream {
 
 std::string text_of(const Hdf5Dataset& dataset) {
   std::string text = isoweave::quoted(dataset.name) + " (";
-  for (const std::int64_t size : dataset.shape)
-    text += std::to_string(size) + (&size == &dataset.shape.back() ? "" : " x ");
+  for (std::size_t n = 0; n < dataset.shape.size(); ++n)
+    text += (n == 0 ? "" : " x ") + std::to_string(dataset.shape[n]);
   return text + " " + dataset.type_text + ")";
 }
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <set>
 
-#include "volume/printable.hpp"
+#include "volume/samples.hpp"
 
 namespace isoweave {
 namespace {
@@ -102,16 +101,35 @@ class Search {
 
 constexpr hssize_t kMostValues = 64;
 
+template <class Value>
+std::vector<double> as_doubles(const std::vector<std::byte>& bytes) {
+  std::vector<double> values;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Value)) {
+    Value value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    values.push_back(static_cast<double>(value));
+  }
+  return values;
+}
+
+// The library's own name for a double is a variable, which cannot be had from a library that is loaded: a program that
+// is linked to it, too, may hold the variable in its place.
 std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
-  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
+  const Hdf5Handle stored(h5.H5Aget_type(attribute), h5.H5Tclose);
   const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
+  const Hdf5Handle type(stored ? h5.H5Tget_native_type(stored.id(), H5T_DIR_ASCEND) : -1, h5.H5Tclose);
   if (!type || !space) return std::nullopt;
   const H5T_class_t kind = h5.H5Tget_class(type.id());
   const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
   if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count < 1 || count > kMostValues) return std::nullopt;
-  std::vector<double> values(static_cast<std::size_t>(count));
-  if (h5.H5Aread(attribute, h5.native_double, values.data()) < 0) return std::nullopt;
-  return values;
+  const std::size_t bytes = h5.H5Tget_size(type.id());
+  const bool is_signed = kind == H5T_INTEGER && h5.H5Tget_sign(type.id()) == H5T_SGN_2;
+  const std::optional<SampleType> known = sample_type_of(kind, bytes, is_signed);
+  if (!known && !(kind == H5T_INTEGER && bytes == sizeof(std::int64_t))) return std::nullopt;
+  std::vector<std::byte> values(static_cast<std::size_t>(count) * bytes);
+  if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return std::nullopt;
+  if (!known) return is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
+  return visit_sample_type(*known, [&]<class Value>() { return as_doubles<Value>(values); });
 }
 
 std::vector<std::string> read_texts(const Hdf5Functions& h5, hid_t attribute) {

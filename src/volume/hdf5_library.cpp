@@ -60,7 +60,6 @@ Hdf5Functions load_functions(const std::string& path) {
 #undef ISOWEAVE_LOAD
 #undef ISOWEAVE_TEXT
   if (h5.H5open() < 0) bad_input(path, "a working libhdf5", "one that does not start");
-  h5.native_double = *static_cast<const hid_t*>(symbol(library, "H5T_NATIVE_DOUBLE_g", path));
   constexpr H5Z_filter_t kLzf = 32000;
   static const H5Z_class2_t filter{H5Z_CLASS_T_VERS, kLzf, 0, 1, "lzf", nullptr, nullptr, decode_lzf_chunk};
   if (h5.H5Zfilter_avail(kLzf) <= 0) h5.H5Zregister(&filter);

@@ -27,7 +27,6 @@ struct Hdf5Functions {
 #define ISOWEAVE_DECLARE(function) decltype(&::function) function = nullptr;
   ISOWEAVE_HDF5_FUNCTIONS(ISOWEAVE_DECLARE)
 #undef ISOWEAVE_DECLARE
-  hid_t native_double = -1;
 };
 
 // The library while it is being used: by one thread at a time, since most builds of it allow no more, and without

@@ -87,9 +87,9 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-ZarrNode node_at(const std::string& folder, const std::string& header) {
-  std::optional<ZarrNode> node = open_node(folder);
-  if (!node) bad_input(header, "an array in " + isoweave::quoted(folder), "no metadata of Zarr or N5");
+ZarrNode node_at(const std::string& root, const std::string& name, const std::string& header) {
+  std::optional<ZarrNode> node = open_node(inside(root, name, header));
+  if (!node) bad_input(header, "an array or group at " + isoweave::quoted(name), "no metadata of Zarr or N5");
   return std::move(*node);
 }
 
@@ -110,7 +110,7 @@ FoundArray level_of_image(const ZarrNode& node, const Multiscale& image, const O
   check_level(options.level, image.levels.size(), node.header);
   const std::int64_t number = options.level.value_or(0);
   const Multiscale::Level& level = image.levels[static_cast<std::size_t>(number)];
-  FoundArray found{node_at(inside(node.folder, level.path, node.header), node.header), {}, level.places, {}, {}};
+  FoundArray found{node_at(node.folder, level.path, node.header), {}, level.places, {}, {}};
   if (!found.node.is_array) bad_input(node.header, "an array at " + isoweave::quoted(level.path), "a group");
   if (!image.axis_names.is_null()) found.axis_names = image.axis_names;
   note_levels(found, image.levels.size(), number);
@@ -125,7 +125,7 @@ FoundArray level_of_n5(const ZarrNode& node, const OpenOptions& options) {
   while (open_node(node.folder + "/s" + std::to_string(levels))) ++levels;
   check_level(options.level, levels, node.header);
   const std::int64_t number = options.level.value_or(0);
-  FoundArray found{node_at(node.folder + "/s" + std::to_string(number), node.header), {}, {}, {}, {}};
+  FoundArray found{node_at(node.folder, "s" + std::to_string(number), node.header), {}, {}, {}, {}};
   // What is said of all levels holds for one that says nothing of its own.
   if (node.attributes.is_object() && found.node.attributes.is_object()) {
     for (const auto& [key, value] : node.attributes.items()) {
@@ -148,7 +148,7 @@ FoundArray find_array(const ZarrNode& node, const OpenOptions& options) {
   const std::vector<std::string> images = images_below(node);
   if (images.empty()) bad_input(node.header, "an image or array in the group", "none");
   if (images.size() > 1) bad_input(node.header, "--dataset with one of " + listed(images), "no choice");
-  FoundArray found = find_array(node_at(node.folder + "/" + images[0], node.header), options);
+  FoundArray found = find_array(node_at(node.folder, images[0], node.header), options);
   found.notes.push_back(isoweave::quoted(images[0]) + " is the only array in the folder, and is read");
   return found;
 }
@@ -207,8 +207,7 @@ void check_places(const FoundArray& found, std::size_t axes) {
 }  // namespace
 
 OpenedVolume open_zarr(const std::string& path, const OpenOptions& options) {
-  const std::string folder = options.dataset.empty() ? path : path + "/" + options.dataset;
-  const FoundArray found = find_array(node_at(folder, path), options);
+  const FoundArray found = find_array(node_at(path, options.dataset, path), options);
   ChunkedArray array = array_of(found.node);
   if (found.axis_names) {
     if (found.axis_names->size() != array.axes.size()) {

@@ -139,7 +139,7 @@ std::string inside(const std::string& folder, const std::string& name, const std
   const bool leads_out =
       std::any_of(relative.begin(), relative.end(), [](const fs::path& part) { return part == ".."; });
   if (relative.is_absolute() || leads_out) bad_input(path, "a path inside the folder", isoweave::quoted(name));
-  return folder + "/" + name;
+  return name.empty() ? folder : folder + "/" + name;
 }
 
 }  // namespace isoweave

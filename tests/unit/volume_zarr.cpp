@@ -19,7 +19,7 @@ using Encode = std::function<std::string(const std::string&)>;
 
 std::string plain(const std::string& data) { return data; }
 
-const ArrayJson kZarr2 = {{"zarr_format", 2}, {"shape", {3, 4, 5}}, {"chunks", {2, 3, 2}},      {"dtype", "<i2"},
+const ArrayJson kZarr2 = {{"zarr_format", 2}, {"shape", {3, 4, 5}}, {"chunks", {2, 3, 2}},   {"dtype", "<i2"},
                           {"order", "C"},     {"fill_value", 0},    {"compressor", nullptr}, {"filters", nullptr}};
 
 // A Zarr 2 array of 5 x 4 x 3 samples.
@@ -35,15 +35,14 @@ void put_zarr2(const std::string& folder, const ArrayJson& changes = {}, const C
   });
 }
 
-const ArrayJson kZarr3 = {
-    {"zarr_format", 3},
-    {"node_type", "array"},
-    {"shape", {3, 4, 5}},
-    {"data_type", "int16"},
-    {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", {2, 3, 2}}}}}},
-    {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "/"}}}}},
-    {"fill_value", 0},
-    {"codecs", {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}}}};
+const ArrayJson kZarr3 = {{"zarr_format", 3},
+                          {"node_type", "array"},
+                          {"shape", {3, 4, 5}},
+                          {"data_type", "int16"},
+                          {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", {2, 3, 2}}}}}},
+                          {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "/"}}}}},
+                          {"fill_value", 0},
+                          {"codecs", {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}}}};
 
 template <class Sample = std::int16_t>
 void put_zarr3(const std::string& folder, const ArrayJson& changes = {}, const ChunkOf& chunks = {},
@@ -92,9 +91,9 @@ TEST(Zarr2, ChunksThatAreLeftOutAreTheFillValue) {
   put_zarr2(folder / "a", {{"fill_value", -7}, {"dtype", ">i2"}}, {.big = true});
   std::filesystem::remove(folder / "a/0.0.1");
   std::vector<std::int16_t> expected = kExpected;
-  for (const std::size_t k : {0, 1}) {
-    for (const std::size_t j : {0, 1, 2}) {
-      for (const std::size_t i : {2, 3}) expected[20 * k + 5 * j + i] = -7;
+  for (const std::size_t k : std::vector<std::size_t>{0, 1}) {
+    for (const std::size_t j : std::vector<std::size_t>{0, 1, 2}) {
+      for (const std::size_t i : std::vector<std::size_t>{2, 3}) expected[20 * k + 5 * j + i] = -7;
     }
   }
   EXPECT_EQ(read_file<std::int16_t>(folder / "a"), expected);
@@ -136,7 +135,8 @@ TEST(Zarr2, Zstd) {
 #ifdef ISOWEAVE_HAS_BLOSC
 std::string blosc(const std::string& data) {
   std::string out(data.size() + BLOSC_MAX_OVERHEAD, '\0');
-  const int bytes = blosc_compress_ctx(5, BLOSC_SHUFFLE, 2, data.size(), data.data(), out.data(), out.size(), "lz4", 0, 1);
+  const int bytes =
+      blosc_compress_ctx(5, BLOSC_SHUFFLE, 2, data.size(), data.data(), out.data(), out.size(), "lz4", 0, 1);
   out.resize(static_cast<std::size_t>(bytes));
   return out;
 }
@@ -215,7 +215,8 @@ TEST(Zarr2, ChangedBytesOfMetadataAreSafe) {
   int refused = 0;
   for (int round = 0; round < 2000; ++round) {
     std::string broken = good;
-    for (int flips = 1 + round % 3; flips > 0; --flips) broken[random() % good.size()] = static_cast<char>(random() & 0xff);
+    for (int flips = 1 + round % 3; flips > 0; --flips)
+      broken[random() % good.size()] = static_cast<char>(random() & 0xff);
     put_file(folder / "a/.zarray", broken);
     if (!reads_or_refuses(folder / "a")) ++refused;
   }
@@ -281,8 +282,8 @@ void put_shards(const std::string& folder, bool at_end) {
 TEST(Zarr3, Shards) {
   const TempFolder folder;
   std::vector<std::int16_t> expected = kExpected;
-  for (const std::size_t k : {0, 1, 2}) {
-    for (const std::size_t i : {2, 3}) expected[20 * k + 5 * 3 + i] = 9;
+  for (const std::size_t k : std::vector<std::size_t>{0, 1, 2}) {
+    for (const std::size_t i : std::vector<std::size_t>{2, 3}) expected[20 * k + 5 * 3 + i] = 9;
   }
   put_shards(folder / "end", true);
   EXPECT_EQ(read_file<std::int16_t>(folder / "end"), expected);
