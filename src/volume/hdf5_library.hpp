@@ -24,7 +24,7 @@ namespace isoweave {
 // clang-format on
 
 struct Hdf5Functions {
-#define ISOWEAVE_DECLARE(function) decltype(&::function) function = nullptr;
+#define ISOWEAVE_DECLARE(function) decltype (&::function)(function) = nullptr;
   ISOWEAVE_HDF5_FUNCTIONS(ISOWEAVE_DECLARE)
 #undef ISOWEAVE_DECLARE
 };
