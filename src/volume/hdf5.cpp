@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <filesystem>
 #include <utility>
 
@@ -78,10 +79,8 @@ class DatasetStream final : public BandStream {
   void read_slab(const std::vector<hsize_t>& begin, const std::vector<hsize_t>& size, std::span<std::byte> out) {
     const Hdf5Session session(path_);
     const Hdf5Functions& h5 = session.h5();
-    const Hdf5Handle stored_type(h5.H5Dget_type(open_.dataset.id()), h5.H5Tclose);
-    const Hdf5Handle inner(h5.H5Tget_class(stored_type.id()) == H5T_ENUM ? h5.H5Tget_super(stored_type.id()) : -1,
-                           h5.H5Tclose);
-    const Hdf5Handle type(h5.H5Tget_native_type(inner ? inner.id() : stored_type.id(), H5T_DIR_ASCEND), h5.H5Tclose);
+    // Samples are read as they are stored: nothing is converted.
+    const Hdf5Handle type(h5.H5Dget_type(open_.dataset.id()), h5.H5Tclose);
     const Hdf5Handle from(h5.H5Dget_space(open_.dataset.id()), h5.H5Sclose);
     const Hdf5Handle to(h5.H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), h5.H5Sclose);
     // A type of another size would not fit the memory.
@@ -241,6 +240,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const std::int64_t depth = band_depth(info, choice, chunk);
   check_stored(info, h5.H5Dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
   place_axes(info, choice, places_of_attributes(attributes, choice));
+  volume.swap_bytes = dataset.big_endian != (std::endian::native == std::endian::big);
   volume.samples = std::make_unique<DatasetStream>(path, std::move(open), info, choice, depth);
   return volume;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "volume/samples.hpp"
+#include "volume/stream_source.hpp"
 
 namespace isoweave {
 namespace {
@@ -13,15 +15,40 @@ constexpr std::size_t kMostObjects = 10000;
 constexpr std::size_t kDeepest = 32;
 constexpr hid_t kDefault = 0;  // H5P_DEFAULT
 
-std::optional<SampleType> sample_type_of(H5T_class_t kind, std::size_t bytes, bool is_signed) {
-  if (kind == H5T_FLOAT) {
-    if (bytes == 4) return SampleType::kFloat32;
-    if (bytes == 8) return SampleType::kFloat64;
-    return std::nullopt;
-  }
-  if (bytes == 1) return is_signed ? SampleType::kInt8 : SampleType::kUint8;
-  if (bytes == 2) return is_signed ? SampleType::kInt16 : SampleType::kUint16;
-  if (bytes == 4) return is_signed ? SampleType::kInt32 : SampleType::kUint32;
+struct Number {
+  H5T_class_t kind = H5T_INTEGER;
+  std::size_t bytes = 0;
+  bool is_signed = false;
+  bool big_endian = false;
+};
+
+bool is_ieee(const Hdf5Functions& h5, hid_t type, std::size_t bytes) {
+  using Fields = std::array<std::size_t, 5>;  // of the sign; of the exponent and its size; of the mantissa and its size
+  Fields fields{};
+  if (h5.H5Tget_fields(type, &fields[0], &fields[1], &fields[2], &fields[3], &fields[4]) < 0) return false;
+  const std::size_t bias = h5.H5Tget_ebias(type);
+  return (bytes == 4 && fields == Fields{31, 23, 8, 0, 23} && bias == 127) ||
+         (bytes == 8 && fields == Fields{63, 52, 11, 0, 52} && bias == 1023);
+}
+
+// A number as machines have it, but for the order of its bytes; nothing for any other. libhdf5 would have to convert
+// those, and does not survive all descriptions of them that are damaged.
+std::optional<Number> plain_number(const Hdf5Functions& h5, hid_t type) {
+  const H5T_class_t kind = h5.H5Tget_class(type);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return std::nullopt;
+  const std::size_t bytes = h5.H5Tget_size(type);
+  const H5T_order_t order = h5.H5Tget_order(type);
+  const bool whole = h5.H5Tget_precision(type) == 8 * bytes && h5.H5Tget_offset(type) == 0;
+  if (!whole || (order != H5T_ORDER_LE && order != H5T_ORDER_BE)) return std::nullopt;
+  if (kind == H5T_FLOAT && !is_ieee(h5, type, bytes)) return std::nullopt;
+  return Number{kind, bytes, kind == H5T_INTEGER && h5.H5Tget_sign(type) == H5T_SGN_2, order == H5T_ORDER_BE};
+}
+
+std::optional<SampleType> sample_type_of(const Number& number) {
+  if (number.kind == H5T_FLOAT) return number.bytes == 4 ? SampleType::kFloat32 : SampleType::kFloat64;
+  if (number.bytes == 1) return number.is_signed ? SampleType::kInt8 : SampleType::kUint8;
+  if (number.bytes == 2) return number.is_signed ? SampleType::kInt16 : SampleType::kUint16;
+  if (number.bytes == 4) return number.is_signed ? SampleType::kInt32 : SampleType::kUint32;
   return std::nullopt;
 }
 
@@ -32,13 +59,14 @@ void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
   const Hdf5Handle inner(enumeration ? h5.H5Tget_super(stored.id()) : -1, h5.H5Tclose);
   const hid_t type = enumeration ? inner.id() : stored.id();
   found.type_text = "of another kind";
-  if (type < 0) return;
-  const H5T_class_t kind = h5.H5Tget_class(type);
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return;
-  const std::size_t bytes = h5.H5Tget_size(type);
-  const bool is_signed = kind == H5T_INTEGER && h5.H5Tget_sign(type) == H5T_SGN_2;
-  found.type = sample_type_of(kind, bytes, is_signed);
-  found.type_text = std::string(kind == H5T_FLOAT ? "float" : is_signed ? "int" : "uint") + std::to_string(8 * bytes);
+  const std::optional<Number> number = type < 0 ? std::nullopt : plain_number(h5, type);
+  if (!number) return;
+  found.type = sample_type_of(*number);
+  found.big_endian = number->big_endian;
+  found.type_text = std::string(number->kind == H5T_FLOAT ? "float"
+                                : number->is_signed       ? "int"
+                                                          : "uint") +
+                    std::to_string(8 * number->bytes);
 }
 
 bool take_shape(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
@@ -112,23 +140,20 @@ std::vector<double> as_doubles(const std::vector<std::byte>& bytes) {
   return values;
 }
 
-// The library's own name for a double is a variable, which cannot be had from a library that is loaded: a program that
-// is linked to it, too, may hold the variable in its place.
 std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
-  const Hdf5Handle stored(h5.H5Aget_type(attribute), h5.H5Tclose);
+  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
   const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
-  const Hdf5Handle type(stored ? h5.H5Tget_native_type(stored.id(), H5T_DIR_ASCEND) : -1, h5.H5Tclose);
   if (!type || !space) return std::nullopt;
-  const H5T_class_t kind = h5.H5Tget_class(type.id());
+  const std::optional<Number> number = plain_number(h5, type.id());
   const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count < 1 || count > kMostValues) return std::nullopt;
-  const std::size_t bytes = h5.H5Tget_size(type.id());
-  const bool is_signed = kind == H5T_INTEGER && h5.H5Tget_sign(type.id()) == H5T_SGN_2;
-  const std::optional<SampleType> known = sample_type_of(kind, bytes, is_signed);
-  if (!known && !(kind == H5T_INTEGER && bytes == sizeof(std::int64_t))) return std::nullopt;
-  std::vector<std::byte> values(static_cast<std::size_t>(count) * bytes);
+  if (!number || count < 1 || count > kMostValues) return std::nullopt;
+  const std::optional<SampleType> known = sample_type_of(*number);
+  if (!known && number->bytes != sizeof(std::int64_t)) return std::nullopt;
+  std::vector<std::byte> values(static_cast<std::size_t>(count) * number->bytes);
   if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return std::nullopt;
-  if (!known) return is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
+  const bool swap = number->big_endian != (std::endian::native == std::endian::big);
+  if (swap) swap_sample_bytes(values, number->bytes);
+  if (!known) return number->is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
   return visit_sample_type(*known, [&]<class Value>() { return as_doubles<Value>(values); });
 }
 

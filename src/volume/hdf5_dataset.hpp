@@ -14,7 +14,8 @@ struct Hdf5Dataset {
   std::string name;                 // its path in the file
   std::vector<std::int64_t> shape;  // from the slowest axis to the fastest
   std::optional<SampleType> type;   // nothing: of a kind that is not read
-  std::string type_text;            // for messages
+  bool big_endian = false;
+  std::string type_text;  // for messages
 };
 
 // All datasets of numbers and of 2 axes or more that hard links lead to, a bounded number of them.

@@ -34,10 +34,10 @@ std::size_t decode_lzf_chunk(unsigned flags, std::size_t values, const unsigned*
   return bytes;
 }
 
-void* symbol(void* library, const char* name, const std::string& path) {
-  void* const found = ::dlsym(library, name);
-  if (found == nullptr) bad_input(path, "function " + std::string(name) + " in libhdf5", "a library without it");
-  return found;
+template <class Function>
+void load(void* library, const char* name, Function& function, const std::string& path) {
+  function = reinterpret_cast<Function>(::dlsym(library, name));
+  if (function == nullptr) bad_input(path, "function " + std::string(name) + " in libhdf5", "a library without it");
 }
 
 // The library that was found when this one was built, or one of its name.
@@ -53,10 +53,59 @@ void* load_library(const std::string& path) {
 Hdf5Functions load_functions(const std::string& path) {
   void* const library = load_library(path);
   Hdf5Functions h5;
+// The name is that of the function of this version, whatever macro stands for it.
 #define ISOWEAVE_TEXT(name) #name
-#define ISOWEAVE_LOAD(function) \
-  h5.function = reinterpret_cast<decltype(h5.function)>(symbol(library, ISOWEAVE_TEXT(function), path));
-  ISOWEAVE_HDF5_FUNCTIONS(ISOWEAVE_LOAD)
+#define ISOWEAVE_LOAD(name) load(library, ISOWEAVE_TEXT(name), h5.name, path)
+  ISOWEAVE_LOAD(H5open);
+  ISOWEAVE_LOAD(H5Eget_auto2);
+  ISOWEAVE_LOAD(H5Eset_auto2);
+  ISOWEAVE_LOAD(H5Ewalk2);
+  ISOWEAVE_LOAD(H5Zregister);
+  ISOWEAVE_LOAD(H5Zfilter_avail);
+  ISOWEAVE_LOAD(H5Fopen);
+  ISOWEAVE_LOAD(H5Fclose);
+  ISOWEAVE_LOAD(H5Oopen);
+  ISOWEAVE_LOAD(H5Oclose);
+  ISOWEAVE_LOAD(H5Iget_type);
+  ISOWEAVE_LOAD(H5Gget_info);
+  ISOWEAVE_LOAD(H5Lget_name_by_idx);
+  ISOWEAVE_LOAD(H5Lget_info_by_idx);
+  ISOWEAVE_LOAD(H5Dget_space);
+  ISOWEAVE_LOAD(H5Dget_type);
+  ISOWEAVE_LOAD(H5Dget_create_plist);
+  ISOWEAVE_LOAD(H5Dget_storage_size);
+  ISOWEAVE_LOAD(H5Dread);
+  ISOWEAVE_LOAD(H5Sclose);
+  ISOWEAVE_LOAD(H5Screate_simple);
+  ISOWEAVE_LOAD(H5Sselect_hyperslab);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_type);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_ndims);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_dims);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_npoints);
+  ISOWEAVE_LOAD(H5Tclose);
+  ISOWEAVE_LOAD(H5Tget_class);
+  ISOWEAVE_LOAD(H5Tget_size);
+  ISOWEAVE_LOAD(H5Tget_sign);
+  ISOWEAVE_LOAD(H5Tget_super);
+  ISOWEAVE_LOAD(H5Tget_order);
+  ISOWEAVE_LOAD(H5Tget_precision);
+  ISOWEAVE_LOAD(H5Tget_offset);
+  ISOWEAVE_LOAD(H5Tget_fields);
+  ISOWEAVE_LOAD(H5Tget_ebias);
+  ISOWEAVE_LOAD(H5Tis_variable_str);
+  ISOWEAVE_LOAD(H5Pclose);
+  ISOWEAVE_LOAD(H5Pget_layout);
+  ISOWEAVE_LOAD(H5Pget_chunk);
+  ISOWEAVE_LOAD(H5Pget_nfilters);
+  ISOWEAVE_LOAD(H5Pget_filter2);
+  ISOWEAVE_LOAD(H5Pget_external_count);
+  ISOWEAVE_LOAD(H5Aexists);
+  ISOWEAVE_LOAD(H5Aopen);
+  ISOWEAVE_LOAD(H5Aclose);
+  ISOWEAVE_LOAD(H5Aread);
+  ISOWEAVE_LOAD(H5Aget_type);
+  ISOWEAVE_LOAD(H5Aget_space);
+  ISOWEAVE_LOAD(H5free_memory);
 #undef ISOWEAVE_LOAD
 #undef ISOWEAVE_TEXT
   if (h5.H5open() < 0) bad_input(path, "a working libhdf5", "one that does not start");

@@ -10,23 +10,57 @@
 namespace isoweave {
 
 // The functions that are used, by their names in hdf5.h; some of those are macros for one of several versions.
-// clang-format off
-#define ISOWEAVE_HDF5_FUNCTIONS(use) \
-  use(H5open) use(H5Eget_auto2) use(H5Eset_auto2) use(H5Ewalk2) use(H5Zregister) use(H5Zfilter_avail) \
-  use(H5Fopen) use(H5Fclose) use(H5Oopen) use(H5Oclose) use(H5Iget_type) use(H5Gget_info) \
-  use(H5Lget_name_by_idx) use(H5Lget_info_by_idx) use(H5Dget_space) use(H5Dget_type) use(H5Dget_create_plist) \
-  use(H5Dget_storage_size) use(H5Dread) use(H5Sclose) use(H5Screate_simple) use(H5Sselect_hyperslab) \
-  use(H5Sget_simple_extent_type) use(H5Sget_simple_extent_ndims) use(H5Sget_simple_extent_dims) \
-  use(H5Sget_simple_extent_npoints) use(H5Tclose) use(H5Tget_class) use(H5Tget_size) use(H5Tget_sign) \
-  use(H5Tget_super) use(H5Tget_native_type) use(H5Tis_variable_str) use(H5Pclose) use(H5Pget_layout) \
-  use(H5Pget_chunk) use(H5Pget_nfilters) use(H5Pget_filter2) use(H5Pget_external_count) use(H5Aexists) \
-  use(H5Aopen) use(H5Aclose) use(H5Aread) use(H5Aget_type) use(H5Aget_space) use(H5free_memory)
-// clang-format on
-
 struct Hdf5Functions {
-#define ISOWEAVE_DECLARE(function) decltype (&::function)(function) = nullptr;
-  ISOWEAVE_HDF5_FUNCTIONS(ISOWEAVE_DECLARE)
-#undef ISOWEAVE_DECLARE
+  decltype(&::H5open) H5open = nullptr;
+  decltype(&::H5Eget_auto2) H5Eget_auto2 = nullptr;
+  decltype(&::H5Eset_auto2) H5Eset_auto2 = nullptr;
+  decltype(&::H5Ewalk2) H5Ewalk2 = nullptr;
+  decltype(&::H5Zregister) H5Zregister = nullptr;
+  decltype(&::H5Zfilter_avail) H5Zfilter_avail = nullptr;
+  decltype(&::H5Fopen) H5Fopen = nullptr;
+  decltype(&::H5Fclose) H5Fclose = nullptr;
+  decltype(&::H5Oopen) H5Oopen = nullptr;
+  decltype(&::H5Oclose) H5Oclose = nullptr;
+  decltype(&::H5Iget_type) H5Iget_type = nullptr;
+  decltype(&::H5Gget_info) H5Gget_info = nullptr;
+  decltype(&::H5Lget_name_by_idx) H5Lget_name_by_idx = nullptr;
+  decltype(&::H5Lget_info_by_idx) H5Lget_info_by_idx = nullptr;
+  decltype(&::H5Dget_space) H5Dget_space = nullptr;
+  decltype(&::H5Dget_type) H5Dget_type = nullptr;
+  decltype(&::H5Dget_create_plist) H5Dget_create_plist = nullptr;
+  decltype(&::H5Dget_storage_size) H5Dget_storage_size = nullptr;
+  decltype(&::H5Dread) H5Dread = nullptr;
+  decltype(&::H5Sclose) H5Sclose = nullptr;
+  decltype(&::H5Screate_simple) H5Screate_simple = nullptr;
+  decltype(&::H5Sselect_hyperslab) H5Sselect_hyperslab = nullptr;
+  decltype(&::H5Sget_simple_extent_type) H5Sget_simple_extent_type = nullptr;
+  decltype(&::H5Sget_simple_extent_ndims) H5Sget_simple_extent_ndims = nullptr;
+  decltype(&::H5Sget_simple_extent_dims) H5Sget_simple_extent_dims = nullptr;
+  decltype(&::H5Sget_simple_extent_npoints) H5Sget_simple_extent_npoints = nullptr;
+  decltype(&::H5Tclose) H5Tclose = nullptr;
+  decltype(&::H5Tget_class) H5Tget_class = nullptr;
+  decltype(&::H5Tget_size) H5Tget_size = nullptr;
+  decltype(&::H5Tget_sign) H5Tget_sign = nullptr;
+  decltype(&::H5Tget_super) H5Tget_super = nullptr;
+  decltype(&::H5Tget_order) H5Tget_order = nullptr;
+  decltype(&::H5Tget_precision) H5Tget_precision = nullptr;
+  decltype(&::H5Tget_offset) H5Tget_offset = nullptr;
+  decltype(&::H5Tget_fields) H5Tget_fields = nullptr;
+  decltype(&::H5Tget_ebias) H5Tget_ebias = nullptr;
+  decltype(&::H5Tis_variable_str) H5Tis_variable_str = nullptr;
+  decltype(&::H5Pclose) H5Pclose = nullptr;
+  decltype(&::H5Pget_layout) H5Pget_layout = nullptr;
+  decltype(&::H5Pget_chunk) H5Pget_chunk = nullptr;
+  decltype(&::H5Pget_nfilters) H5Pget_nfilters = nullptr;
+  decltype(&::H5Pget_filter2) H5Pget_filter2 = nullptr;
+  decltype(&::H5Pget_external_count) H5Pget_external_count = nullptr;
+  decltype(&::H5Aexists) H5Aexists = nullptr;
+  decltype(&::H5Aopen) H5Aopen = nullptr;
+  decltype(&::H5Aclose) H5Aclose = nullptr;
+  decltype(&::H5Aread) H5Aread = nullptr;
+  decltype(&::H5Aget_type) H5Aget_type = nullptr;
+  decltype(&::H5Aget_space) H5Aget_space = nullptr;
+  decltype(&::H5free_memory) H5free_memory = nullptr;
 };
 
 // The library while it is being used: by one thread at a time, since most builds of it allow no more, and without
