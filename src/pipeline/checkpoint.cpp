@@ -83,7 +83,7 @@ std::string numbers_text(std::span<const double> numbers) {
 // folder.
 std::string file_text(const VolumeInfo& volume) {
   const std::string& path = volume.header.empty() ? volume.path : volume.header;
-  const std::string part = volume.part.empty() ? "" : ", " + volume.part;
+  std::string part = volume.part.empty() ? "" : ", " + volume.part;
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return part;
   return part + ", " + std::to_string(status.st_size) + " bytes changed at " + std::to_string(status.st_mtim.tv_sec) +

@@ -80,14 +80,14 @@ class DatasetStream final : public BandStream {
     const Hdf5Session session(path_);
     const Hdf5Functions& h5 = session.h5();
     // Samples are read as they are stored: nothing is converted.
-    const Hdf5Handle type(h5.H5Dget_type(open_.dataset.id()), h5.H5Tclose);
-    const Hdf5Handle from(h5.H5Dget_space(open_.dataset.id()), h5.H5Sclose);
-    const Hdf5Handle to(h5.H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), h5.H5Sclose);
+    const Hdf5Handle type(h5.dget_type(open_.dataset.id()), h5.tclose);
+    const Hdf5Handle from(h5.dget_space(open_.dataset.id()), h5.sclose);
+    const Hdf5Handle to(h5.screate_simple(static_cast<int>(size.size()), size.data(), nullptr), h5.sclose);
     // A type of another size would not fit the memory.
     const bool ready =
-        type && from && to && h5.H5Tget_size(type.id()) == bytes_each_ &&
-        h5.H5Sselect_hyperslab(from.id(), H5S_SELECT_SET, begin.data(), nullptr, size.data(), nullptr) >= 0;
-    const bool read = ready && h5.H5Dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefault, out.data()) >= 0;
+        type && from && to && h5.tget_size(type.id()) == bytes_each_ &&
+        h5.sselect_hyperslab(from.id(), H5S_SELECT_SET, begin.data(), nullptr, size.data(), nullptr) >= 0;
+    const bool read = ready && h5.dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefault, out.data()) >= 0;
     if (!read) session.refuse(path_, "samples that libhdf5 can read");
   }
 
@@ -140,15 +140,15 @@ std::string filter_name(H5Z_filter_t filter, const char* stored) {
 
 void check_filters(const Hdf5Session& session, hid_t properties, const std::string& path) {
   const Hdf5Functions& h5 = session.h5();
-  const int filters = h5.H5Pget_nfilters(properties);
+  const int filters = h5.pget_nfilters(properties);
   for (int n = 0; n < filters; ++n) {
     std::array<char, 64> name{};
     std::size_t values = 0;
     unsigned flags = 0, config = 0;
-    const H5Z_filter_t filter = h5.H5Pget_filter2(properties, static_cast<unsigned>(n), &flags, &values, nullptr,
-                                                  name.size() - 1, name.data(), &config);
+    const H5Z_filter_t filter = h5.pget_filter2(properties, static_cast<unsigned>(n), &flags, &values, nullptr,
+                                                name.size() - 1, name.data(), &config);
     if (filter < 0) session.refuse(path, "the filters of the dataset");
-    if (h5.H5Zfilter_avail(filter) > 0) continue;
+    if (h5.zfilter_avail(filter) > 0) continue;
     bad_input(path, "a filter that libhdf5 or one of its plugins has", filter_name(filter, name.data()));
   }
 }
@@ -157,15 +157,15 @@ void check_filters(const Hdf5Session& session, hid_t properties, const std::stri
 std::vector<std::int64_t> chunks_of(const Hdf5Session& session, hid_t dataset, std::size_t axes,
                                     const std::string& path) {
   const Hdf5Functions& h5 = session.h5();
-  const Hdf5Handle properties(h5.H5Dget_create_plist(dataset), h5.H5Pclose);
+  const Hdf5Handle properties(h5.dget_create_plist(dataset), h5.pclose);
   if (!properties) session.refuse(path, "the layout of the dataset");
-  const H5D_layout_t layout = h5.H5Pget_layout(properties.id());
+  const H5D_layout_t layout = h5.pget_layout(properties.id());
   if (layout == H5D_VIRTUAL) bad_input(path, "samples in the file", "a virtual dataset, which lies in other files");
-  if (h5.H5Pget_external_count(properties.id()) != 0) bad_input(path, "samples in the file", "external files");
+  if (h5.pget_external_count(properties.id()) != 0) bad_input(path, "samples in the file", "external files");
   if (layout != H5D_CHUNKED) return {};
   check_filters(session, properties.id(), path);
   std::array<hsize_t, H5S_MAX_RANK> sizes{};
-  const int rank = h5.H5Pget_chunk(properties.id(), static_cast<int>(sizes.size()), sizes.data());
+  const int rank = h5.pget_chunk(properties.id(), static_cast<int>(sizes.size()), sizes.data());
   if (rank != static_cast<int>(axes)) session.refuse(path, "chunks of the dataset's axes");
   std::vector<std::int64_t> chunk;
   for (std::size_t n = 0; n < axes; ++n) chunk.push_back(static_cast<std::int64_t>(sizes.at(n)));
@@ -207,14 +207,13 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const Hdf5Session session(path);
   const Hdf5Functions& h5 = session.h5();
   OpenDataset open;
-  open.file = Hdf5Handle(h5.H5Fopen(path.c_str(), kReadOnly, kDefault), h5.H5Fclose);
+  open.file = Hdf5Handle(h5.fopen(path.c_str(), kReadOnly, kDefault), h5.fclose);
   if (!open.file) session.refuse(path, "a readable HDF5 file");
   const bool named = !options.dataset.empty();
   const std::string name = named ? options.dataset : only_dataset(find_datasets(session, open.file.id()), path);
-  open.dataset = Hdf5Handle(h5.H5Oopen(open.file.id(), name.c_str(), kDefault), h5.H5Oclose);
+  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), name.c_str(), kDefault), h5.oclose);
   if (!open.dataset) session.refuse(path, "a dataset " + isoweave::quoted(name));
-  if (h5.H5Iget_type(open.dataset.id()) != H5I_DATASET)
-    bad_input(path, "a dataset " + isoweave::quoted(name), "a group");
+  if (h5.iget_type(open.dataset.id()) != H5I_DATASET) bad_input(path, "a dataset " + isoweave::quoted(name), "a group");
 
   const Hdf5Dataset dataset = describe_dataset(session, open.dataset.id(), name);
   if (!dataset.type) {
@@ -238,7 +237,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   checked_volume_bytes(info);
   const std::vector<std::int64_t> chunk = chunks_of(session, open.dataset.id(), axes.size(), path);
   const std::int64_t depth = band_depth(info, choice, chunk);
-  check_stored(info, h5.H5Dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
+  check_stored(info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
   place_axes(info, choice, places_of_attributes(attributes, choice));
   volume.swap_bytes = dataset.big_endian != (std::endian::native == std::endian::big);
   volume.samples = std::make_unique<DatasetStream>(path, std::move(open), info, choice, depth);

@@ -25,8 +25,8 @@ struct Number {
 bool is_ieee(const Hdf5Functions& h5, hid_t type, std::size_t bytes) {
   using Fields = std::array<std::size_t, 5>;  // of the sign; of the exponent and its size; of the mantissa and its size
   Fields fields{};
-  if (h5.H5Tget_fields(type, &fields[0], &fields[1], &fields[2], &fields[3], &fields[4]) < 0) return false;
-  const std::size_t bias = h5.H5Tget_ebias(type);
+  if (h5.tget_fields(type, &fields[0], &fields[1], &fields[2], &fields[3], &fields[4]) < 0) return false;
+  const std::size_t bias = h5.tget_ebias(type);
   return (bytes == 4 && fields == Fields{31, 23, 8, 0, 23} && bias == 127) ||
          (bytes == 8 && fields == Fields{63, 52, 11, 0, 52} && bias == 1023);
 }
@@ -34,14 +34,14 @@ bool is_ieee(const Hdf5Functions& h5, hid_t type, std::size_t bytes) {
 // A number as machines have it, but for the order of its bytes; nothing for any other. libhdf5 would have to convert
 // those, and does not survive all descriptions of them that are damaged.
 std::optional<Number> plain_number(const Hdf5Functions& h5, hid_t type) {
-  const H5T_class_t kind = h5.H5Tget_class(type);
+  const H5T_class_t kind = h5.tget_class(type);
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) return std::nullopt;
-  const std::size_t bytes = h5.H5Tget_size(type);
-  const H5T_order_t order = h5.H5Tget_order(type);
-  const bool whole = h5.H5Tget_precision(type) == 8 * bytes && h5.H5Tget_offset(type) == 0;
+  const std::size_t bytes = h5.tget_size(type);
+  const H5T_order_t order = h5.tget_order(type);
+  const bool whole = h5.tget_precision(type) == 8 * bytes && h5.tget_offset(type) == 0;
   if (!whole || (order != H5T_ORDER_LE && order != H5T_ORDER_BE)) return std::nullopt;
   if (kind == H5T_FLOAT && !is_ieee(h5, type, bytes)) return std::nullopt;
-  return Number{kind, bytes, kind == H5T_INTEGER && h5.H5Tget_sign(type) == H5T_SGN_2, order == H5T_ORDER_BE};
+  return Number{kind, bytes, kind == H5T_INTEGER && h5.tget_sign(type) == H5T_SGN_2, order == H5T_ORDER_BE};
 }
 
 std::optional<SampleType> sample_type_of(const Number& number) {
@@ -54,9 +54,9 @@ std::optional<SampleType> sample_type_of(const Number& number) {
 
 // Reads the type of a dataset; h5py keeps truth values as enumerations of integers.
 void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
-  const Hdf5Handle stored(h5.H5Dget_type(dataset), h5.H5Tclose);
-  const bool enumeration = stored && h5.H5Tget_class(stored.id()) == H5T_ENUM;
-  const Hdf5Handle inner(enumeration ? h5.H5Tget_super(stored.id()) : -1, h5.H5Tclose);
+  const Hdf5Handle stored(h5.dget_type(dataset), h5.tclose);
+  const bool enumeration = stored && h5.tget_class(stored.id()) == H5T_ENUM;
+  const Hdf5Handle inner(enumeration ? h5.tget_super(stored.id()) : -1, h5.tclose);
   const hid_t type = enumeration ? inner.id() : stored.id();
   found.type_text = "of another kind";
   const std::optional<Number> number = type < 0 ? std::nullopt : plain_number(h5, type);
@@ -70,12 +70,12 @@ void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
 }
 
 bool take_shape(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
-  const Hdf5Handle space(h5.H5Dget_space(dataset), h5.H5Sclose);
-  if (!space || h5.H5Sget_simple_extent_type(space.id()) != H5S_SIMPLE) return false;
-  const int rank = h5.H5Sget_simple_extent_ndims(space.id());
+  const Hdf5Handle space(h5.dget_space(dataset), h5.sclose);
+  if (!space || h5.sget_simple_extent_type(space.id()) != H5S_SIMPLE) return false;
+  const int rank = h5.sget_simple_extent_ndims(space.id());
   std::array<hsize_t, H5S_MAX_RANK> sizes{};
   if (rank < 1 || rank > H5S_MAX_RANK) return false;
-  if (h5.H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) < 0) return false;
+  if (h5.sget_simple_extent_dims(space.id(), sizes.data(), nullptr) < 0) return false;
   for (std::size_t n = 0; n < static_cast<std::size_t>(rank); ++n) {
     found.shape.push_back(static_cast<std::int64_t>(std::min<hsize_t>(sizes.at(n), INT64_MAX)));
   }
@@ -89,15 +89,17 @@ class Search {
 
   void visit(hid_t group, const std::string& path, std::size_t depth) {
     H5G_info_t info{};
-    if (h5_.H5Gget_info(group, &info) < 0) return;
+    if (h5_.gget_info(group, &info) < 0) return;
     for (hsize_t n = 0; n < info.nlinks && visited_ < kMostObjects; ++n, ++visited_) {
       const std::string name = name_of(group, n);
       if (name.empty()) continue;
-      const Hdf5Handle object(h5_.H5Oopen(group, name.c_str(), kDefault), h5_.H5Oclose);
+      const Hdf5Handle object(h5_.oopen(group, name.c_str(), kDefault), h5_.oclose);
       if (!object) continue;
-      const H5I_type_t kind = h5_.H5Iget_type(object.id());
-      if (kind == H5I_GROUP && depth < kDeepest) visit(object.id(), path + "/" + name, depth + 1);
-      if (kind == H5I_DATASET) take(object.id(), path + "/" + name);
+      const H5I_type_t kind = h5_.iget_type(object.id());
+      std::string inner = path;
+      inner.append("/").append(name);
+      if (kind == H5I_GROUP && depth < kDeepest) visit(object.id(), inner, depth + 1);
+      if (kind == H5I_DATASET) take(object.id(), inner);
     }
   }
 
@@ -107,11 +109,11 @@ class Search {
   // The name of a hard link; empty for any other.
   std::string name_of(hid_t group, hsize_t n) const {
     H5L_info_t link{};
-    if (h5_.H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefault) < 0) return {};
+    if (h5_.lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefault) < 0) return {};
     if (link.type != H5L_TYPE_HARD) return {};
     std::array<char, 1024> name{};
     const ssize_t length =
-        h5_.H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefault);
+        h5_.lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefault);
     return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : std::string();
   }
 
@@ -141,16 +143,16 @@ std::vector<double> as_doubles(const std::vector<std::byte>& bytes) {
 }
 
 std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
-  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
-  const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
+  const Hdf5Handle type(h5.aget_type(attribute), h5.tclose);
+  const Hdf5Handle space(h5.aget_space(attribute), h5.sclose);
   if (!type || !space) return std::nullopt;
   const std::optional<Number> number = plain_number(h5, type.id());
-  const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
+  const hssize_t count = h5.sget_simple_extent_npoints(space.id());
   if (!number || count < 1 || count > kMostValues) return std::nullopt;
   const std::optional<SampleType> known = sample_type_of(*number);
   if (!known && number->bytes != sizeof(std::int64_t)) return std::nullopt;
   std::vector<std::byte> values(static_cast<std::size_t>(count) * number->bytes);
-  if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return std::nullopt;
+  if (h5.aread(attribute, type.id(), values.data()) < 0) return std::nullopt;
   const bool swap = number->big_endian != (std::endian::native == std::endian::big);
   if (swap) swap_sample_bytes(values, number->bytes);
   if (!known) return number->is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
@@ -159,24 +161,24 @@ std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t a
 
 std::vector<std::string> read_texts(const Hdf5Functions& h5, hid_t attribute) {
   constexpr std::size_t kLongest = 1 << 16;
-  const Hdf5Handle type(h5.H5Aget_type(attribute), h5.H5Tclose);
-  const Hdf5Handle space(h5.H5Aget_space(attribute), h5.H5Sclose);
-  if (!type || !space || h5.H5Tget_class(type.id()) != H5T_STRING) return {};
-  const hssize_t count = h5.H5Sget_simple_extent_npoints(space.id());
-  const std::size_t bytes = h5.H5Tget_size(type.id());
+  const Hdf5Handle type(h5.aget_type(attribute), h5.tclose);
+  const Hdf5Handle space(h5.aget_space(attribute), h5.sclose);
+  if (!type || !space || h5.tget_class(type.id()) != H5T_STRING) return {};
+  const hssize_t count = h5.sget_simple_extent_npoints(space.id());
+  const std::size_t bytes = h5.tget_size(type.id());
   if (count < 1 || count > kMostValues || bytes < 1 || bytes > kLongest) return {};
   std::vector<std::string> texts;
-  if (h5.H5Tis_variable_str(type.id()) > 0) {
+  if (h5.tis_variable_str(type.id()) > 0) {
     std::vector<char*> values(static_cast<std::size_t>(count), nullptr);
-    if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return {};
+    if (h5.aread(attribute, type.id(), values.data()) < 0) return {};
     for (char* const value : values) {
       texts.emplace_back(value == nullptr ? "" : value);
-      if (value != nullptr) h5.H5free_memory(value);
+      if (value != nullptr) h5.free_memory(value);
     }
     return texts;
   }
   std::string values(static_cast<std::size_t>(count) * bytes, '\0');
-  if (h5.H5Aread(attribute, type.id(), values.data()) < 0) return {};
+  if (h5.aread(attribute, type.id(), values.data()) < 0) return {};
   for (std::size_t at = 0; at < values.size(); at += bytes) {
     const std::string value = values.substr(at, bytes);
     texts.push_back(value.substr(0, value.find('\0')));
@@ -203,8 +205,8 @@ Hdf5Dataset describe_dataset(const Hdf5Session& session, hid_t dataset, const st
 ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
   const Hdf5Functions& h5 = session.h5();
   const auto open = [&h5, object](const std::string& name) {
-    const bool there = h5.H5Aexists(object, name.c_str()) > 0;
-    return Hdf5Handle(there ? h5.H5Aopen(object, name.c_str(), kDefault) : -1, h5.H5Aclose);
+    const bool there = h5.aexists(object, name.c_str()) > 0;
+    return Hdf5Handle(there ? h5.aopen(object, name.c_str(), kDefault) : -1, h5.aclose);
   };
   const auto numbers = [&h5, open](const std::string& name) {
     const Hdf5Handle attribute = open(name);

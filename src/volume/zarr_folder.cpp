@@ -63,9 +63,9 @@ std::vector<std::string> images_below(const ZarrNode& root) {
   std::vector<std::string> found;
   std::vector<std::string> open{""};
   for (std::size_t n = 0; n < open.size() && n < kMostFolders; ++n) {
-    const std::string name = open[n];
-    for (const std::string& folder : folders_in(root.folder + "/" + name)) {
-      const std::string path = name.empty() ? folder : name + "/" + folder;
+    const std::string above = open[n].empty() ? "" : open[n] + "/";
+    for (const std::string& folder : folders_in(root.folder + "/" + open[n])) {
+      const std::string path = above + folder;
       const std::optional<ZarrNode> node = open_node(root.folder + "/" + path);
       if (node && node->is_array) {
         if (axis_count(*node) > 1) found.push_back(path);
