@@ -47,6 +47,10 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"spacing", arguments.input.spacing},
           {"origin", arguments.input.origin},
           {"series", arguments.input.series},
+          {"dataset", arguments.input.dataset},
+          {"level", arguments.input.level},
+          {"channel", arguments.input.channel},
+          {"time", arguments.input.time},
           {"output", absolute_path(arguments.output)},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
           {"iso", fmt::format("{}", options.iso)},
@@ -63,7 +67,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
 
 // The task of a saved state, and how it was to run where nothing else is said now.
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
-  arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin"), task.at("series")};
+  arguments.input = {task.at("volume"),  task.at("raw"),   task.at("spacing"), task.at("origin"), task.at("series"),
+                     task.at("dataset"), task.at("level"), task.at("channel"), task.at("time")};
   arguments.output = task.at("output");
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");

@@ -32,7 +32,15 @@ isoweave_reader(PNG png.cpp PNG::PNG PNG)
 isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
 isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)
 isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
-isoweave_reader(LZ4 vtk_lz4.cpp IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
+# Loaded when it is needed; headers only.
+isoweave_reader(HDF5 "hdf5.cpp;hdf5_dataset.cpp;hdf5_library.cpp" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5>
+                IsoweaveHdf5)
+# Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
+isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp"
+                $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
+isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
+isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
+isoweave_reader(LZ4 "codec_lz4.cpp;vtk_lz4.cpp" IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)
@@ -55,6 +63,12 @@ function(isoweave_select_reader_tests sources)
   endif()
   if(NOT (ISOWEAVE_HAS_DICOM AND ISOWEAVE_HAS_JPEGLS AND ISOWEAVE_HAS_JPEG2000))
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_HDF5)
+    list(FILTER left EXCLUDE REGEX "/volume_hdf5\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_ZARR)
+    list(FILTER left EXCLUDE REGEX "/volume_(zarr|n5|ome_zarr)\\.cpp$")
   endif()
   set(${sources} ${left} PARENT_SCOPE)
 endfunction()

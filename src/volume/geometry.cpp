@@ -74,23 +74,14 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
 }
 
 std::string_view known_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kSpellings{{
-      {"mm", "mm"},
-      {"millimeter", "mm"},
-      {"millimeters", "mm"},
-      {"millimetre", "mm"},
-      {"um", "um"},
-      {"\xc2\xb5m", "um"},  // the micro sign
-      {"\xce\xbcm", "um"},  // the Greek letter
-      {"micron", "um"},
-      {"microns", "um"},
-      {"micrometer", "um"},
-      {"micrometre", "um"},
-      {"nm", "nm"},
-      {"nanometer", "nm"},
-      {"nanometre", "nm"},
-      {"m", "m"},
-      {"meter", "m"},
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kSpellings{{
+      {"mm", "mm"},          {"millimeter", "mm"}, {"millimeters", "mm"}, {"millimetre", "mm"},
+      {"um", "um"},          {"\xc2\xb5m", "um"},  // the micro sign
+      {"\xce\xbcm", "um"},                         // the Greek letter
+      {"micron", "um"},      {"microns", "um"},    {"micrometer", "um"},  {"micrometre", "um"},
+      {"nm", "nm"},          {"nanometer", "nm"},  {"nanometre", "nm"},   {"m", "m"},
+      {"meter", "m"},        {"meters", "m"},      {"metre", "m"},        {"micrometers", "um"},
+      {"micrometres", "um"}, {"nanometers", "nm"}, {"nanometres", "nm"},
   }};
   for (const auto& [spelling, unit] : kSpellings) {
     if (spelling == text) return unit;

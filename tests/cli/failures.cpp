@@ -125,6 +125,11 @@ TEST(CliBadInput, NothingThereAndNoFile) {
   files::write_bytes(folder / "box.nrrd", nrrd("8 8 8", "uchar", 512));
   expect_failure(folder, mesh("box.nrrd", {"--series", "1.2"}), 3, "expected the DICOM series '1.2', found no DICOM");
   expect_failure(folder, mesh(kSmall, {"--series", "1.2"}), 2, "--series does not go with a generated volume");
+  for (const std::string option : {"--dataset", "--level", "--channel", "--time"}) {
+    expect_failure(folder, mesh("box.nrrd", {option, "1"}), 3, "expected HDF5, Zarr or N5 for --dataset, --level");
+    expect_failure(folder, mesh(kSmall, {option, "1"}), 2, option + " does not go with a generated volume");
+  }
+  expect_failure(folder, mesh("box.nrrd", {"--level", "-1"}), 2, "--level: expected a whole number from 0 on");
   expect_failure(folder, {"info", "nothing.nrrd"}, 3, "nothing.nrrd");
   expect_failure(folder, {"check", "nothing.ply"}, 3, "nothing.ply");
   expect_failure(folder, {"check", "."}, 3, ".");

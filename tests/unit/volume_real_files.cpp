@@ -322,6 +322,44 @@ TEST_F(RealFiles, EverySampleAndPlaceOfTiffIsThatOfAnIndependentReader) {
 }
 #endif
 
+#ifdef ISOWEAVE_HAS_HDF5
+TEST_F(RealFiles, Hdf5) {
+  expect_described_sum("gala_em_h5", "train-image.h5");
+  expect_described_sum("gala_membrane_prob_h5", "train-p1.lzf.h5");
+}
+#endif
+
+#if defined(ISOWEAVE_HAS_ZARR) && defined(ISOWEAVE_HAS_BLOSC)
+TEST_F(RealFiles, OmeZarr) {
+  expect_described_sum("niftizarr_example4d", "example4d.nii.zarr");
+  EXPECT_EQ(read_file<std::int16_t>(data_file("niftizarr_example4d/example4d.nii.zarr")),
+            read_file<std::int16_t>(data_file("niftizarr_example4d/example4d.nii.gz")));
+  OpenOptions second;
+  second.time = 1;
+  second.level = 1;
+  const VolumeInfo info = open_volume(data_file("niftizarr_example4d/example4d.nii.zarr"), second)->info();
+  EXPECT_NEAR(info.geometry.origin[2], 1.0999995, 1e-6);
+  EXPECT_EQ(info.dims, (std::array<std::int64_t, 3>{64, 48, 12}));
+}
+
+TEST_F(RealFiles, OmeZarrExamples) {
+  const std::string folder = "omezarr_examples_synthetic/";
+  EXPECT_EQ(open_volume(data_file(folder + "valid/image-02.zarr"))->info().dims[1], 200);
+  const auto stack = open_volume(data_file(folder + "valid/image-03.zarr"));
+  EXPECT_EQ(stack->info().geometry.unit, "um");
+  EXPECT_EQ(samples_of<double>(*stack).size(), 20000U);
+  EXPECT_TRUE(contains(open_volume(data_file(folder + "valid/image-04.zarr"))->info().notes[0], "no chunk is stored"));
+  EXPECT_TRUE(contains(refusal(data_file(folder + "valid/plate-01.zarr")), "--dataset with one of 'A/1/0', 'A/2/0'"));
+  EXPECT_TRUE(contains(refusal(data_file(folder + "invalid/image-01.zarr")), "expected an image or array"));
+  EXPECT_TRUE(contains(refusal(data_file(folder + "invalid/image-02.zarr")), "expected an image in 'multiscales'"));
+  EXPECT_TRUE(contains(refusal(data_file(folder + "invalid/image-03.zarr")), "expected an array or group at '0'"));
+  OpenOptions second;
+  second.level = 1;
+  EXPECT_TRUE(contains(refusal(data_file(folder + "invalid/image-04.zarr"), second), "3 axes of its image"));
+  EXPECT_TRUE(contains(refusal(data_file(folder + "warning/image-01.zarr")), "found '<i8'"));
+}
+#endif
+
 TEST_F(RealFiles, PvmInDds) { expect_described_sum("dti_b0_pvm", "DTI-B0.pvm"); }
 
 }  // namespace
