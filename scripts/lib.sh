@@ -45,7 +45,7 @@ install_packages() {
 }
 
 build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  libtiff-dev libpng-dev libgdcm-dev)
+  libtiff-dev libpng-dev libgdcm-dev libmeshoptimizer-dev libdraco-dev)
 test_packages=(libgtest-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind)
 
 # Runs a command with its output kept back, and shown only when it fails.

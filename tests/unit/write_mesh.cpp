@@ -9,6 +9,7 @@
 #include "isoweave/mesh.hpp"
 #include "meshes.hpp"
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_format.hpp"
 
 namespace isoweave {
 namespace {
