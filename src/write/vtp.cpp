@@ -78,7 +78,7 @@ class VtpSink final : public MeshFileSink {
     if (normals_ != nullptr) append_array(*normals_);
     append_array(faces_);
     write_offsets();
-    constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>\n";
+    constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>";
     file().write(std::as_bytes(std::span(kEnd)));
 
     const std::string head = padded_head(options(), vertices(), triangles());
