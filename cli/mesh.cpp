@@ -276,7 +276,11 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = mesh_volume(*volume, *sink, options, control);
   printer.finish();
-  if (report_file) write_report(*report_file, report_json(report, info, arguments, options, file, forecast));
+  if (report_file) {
+    Json json = report_json(report, info, arguments, options, file, forecast);
+    json["notes"] = sink->notes();
+    write_report(*report_file, json);
+  }
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);

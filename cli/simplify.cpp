@@ -58,7 +58,11 @@ void run_simplify(const SimplifyArguments& arguments) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = simplify_mesh(mesh, *sink, options, control);
   printer.finish();
-  if (report_file) write_report(*report_file, report_json(report, mesh, arguments));
+  if (report_file) {
+    Json json = report_json(report, mesh, arguments);
+    json["notes"] = sink->notes();
+    write_report(*report_file, json);
+  }
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);

@@ -52,6 +52,9 @@ TriangleMesh read_mesh(const std::string& path) {
   if (!named_obj && starts_with_word(head, "solid")) return mesh_io::read_stl_ascii(input);
   if (has_ending(path, ".stl")) return mesh_io::read_stl_binary(input);
   if (has_ending(path, ".ply")) input.fail("does not begin with the line 'ply'");
+  if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
+  if (has_ending(path, ".vtp")) input.fail("does not begin with a '<VTKFile' tag");
+  if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
   if (has_ending(path, ".off")) input.fail("does not begin with the line 'OFF' or 'NOFF'");
   if (named_obj || looks_like_obj(head)) return mesh_io::read_obj(input);
   input.fail("is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
