@@ -15,7 +15,6 @@ namespace {
 using PackedPosition = std::array<std::uint16_t, 4>;  // the last is not used: 4-byte steps are asked for
 using PackedNormal = std::array<std::int8_t, 4>;
 
-constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 29;
 constexpr const char* kExtension = "EXT_meshopt_compression";
 
 PackedNormal pack_normal(const Point& normal) {
@@ -89,7 +88,7 @@ std::vector<std::byte> add_views(GltfJson& json, const std::vector<PackedView>& 
 class PackedGlbSink final : public WholeMeshSink {
  public:
   PackedGlbSink(const MeshTarget& target, const MeshFileOptions& options)
-      : WholeMeshSink(target, options, kMostTriangles) {}
+      : WholeMeshSink(target, options, kMostPackedTriangles) {}
 
  private:
   void write_mesh(TriangleMesh mesh) override {

@@ -41,6 +41,14 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
   }
 }
 
+// What packing leaves, as measured on scans.
+std::uint64_t packed_bytes(const std::string& path, MeshFormat format, std::uint64_t vertices, std::uint64_t triangles,
+                           bool normals) {
+  check_count_fits(path, "triangles", 0, triangles, kMostPackedTriangles);
+  if (format == MeshFormat::kPrecomputed) return vertices * 2 + triangles;
+  return vertices * (normals ? 8 : 4) + triangles * 3 / 2;
+}
+
 }  // namespace
 
 MeshFormat mesh_format(const std::string& path) {
@@ -110,12 +118,11 @@ std::unique_ptr<MeshSink> open_mesh_stream(int descriptor, const std::string& na
 
 std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                               const MeshFileOptions& options) {
-  // Lines of text, and what packing leaves: as measured on scans.
-  constexpr std::uint64_t kObjVertex = 32, kObjFace = 24, kOffFace = 26;
-  constexpr std::uint64_t k3mfVertex = 16, k3mfTriangle = 10;
-  constexpr std::uint64_t kPackedVertex = 6, kPackedTriangle = 2;
+  // Lines of text, and what packing leaves of triangles: as measured on scans.
+  constexpr std::uint64_t kTextVertex = 32, kObjFace = 24, kOffFace = 22, k3mfVertex = 14, k3mfTriangle = 7;
   const MeshFormat format = mesh_format(path);
   check_options(path, format, options);
+  if (options.compress) return packed_bytes(path, format, vertices, triangles, options.normals);
   const std::uint64_t raw_vertex = options.normals ? 24 : 12;
   switch (format) {
     case MeshFormat::kPly:
@@ -125,11 +132,10 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
       check_count_fits(path, "triangles", 0, triangles);
       return triangles * 50;
     case MeshFormat::kObj:
-      return (vertices * kObjVertex + triangles * kObjFace) * (options.normals ? 2 : 1);
+      return (vertices * kTextVertex + triangles * kObjFace) * (options.normals ? 2 : 1);
     case MeshFormat::kOff:
-      return vertices * kObjVertex * (options.normals ? 2 : 1) + triangles * kOffFace;
+      return vertices * kTextVertex * (options.normals ? 2 : 1) + triangles * kOffFace;
     case MeshFormat::kGlb:
-      if (options.compress) break;
       check_glb_fits(path, vertices, triangles, options.normals, 0);
       return vertices * raw_vertex + triangles * 12;
     case MeshFormat::kVtp:
@@ -138,22 +144,21 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
       check_count_fits(path, "vertices", 0, vertices, kMost3mfVertices);
       return vertices * k3mfVertex + triangles * k3mfTriangle;
     case MeshFormat::kPrecomputed:
-      if (options.compress) break;
-      check_count_fits(path, "vertices", 0, vertices);
-      return vertices * 12 + triangles * 12;
+      break;
   }
-  check_count_fits(path, "triangles", 0, triangles, kMostDracoTriangles);
-  return vertices * kPackedVertex + triangles * kPackedTriangle;
+  check_count_fits(path, "vertices", 0, vertices);
+  return vertices * 12 + triangles * 12;
 }
 
 std::uint64_t mesh_file_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                                const MeshFileOptions& options) {
-  constexpr std::uint64_t kGlbVertex = 64, kGlbTriangle = 64, kDracoVertex = 64, kDracoTriangle = 64;
+  // Measured; for GLB as the packing of indices begins, for Draco as its tables of corners are built.
+  constexpr std::uint64_t kGlbVertex = 44, kGlbNormal = 16, kGlbTriangle = 38, kDracoVertex = 50, kDracoTriangle = 62;
   const MeshFormat format = mesh_format(path);
   if (format == MeshFormat::kStl) return vertices * 12;
   if (!options.compress) return 0;
-  if (format == MeshFormat::kGlb) return vertices * kGlbVertex + triangles * kGlbTriangle;
-  return vertices * kDracoVertex + triangles * kDracoTriangle;
+  if (format == MeshFormat::kPrecomputed) return vertices * kDracoVertex + triangles * kDracoTriangle;
+  return vertices * (kGlbVertex + (options.normals ? kGlbNormal : 0)) + triangles * kGlbTriangle;
 }
 
 }  // namespace isoweave

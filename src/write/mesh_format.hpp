@@ -21,8 +21,8 @@ void check_count_fits(const std::string& path, const char* what, std::uint64_t h
 void check_glb_fits(const std::string& path, std::uint64_t vertices, std::uint64_t triangles, bool normals,
                     std::uint64_t other);
 
-// Vertices of a 3MF file are numbered below this, and those of packed meshes.
+// 3MF numbers vertices below this. Packed meshes: the libraries count corners in 32 bits.
 inline constexpr std::uint64_t kMost3mfVertices = std::uint64_t{1} << 31;
-inline constexpr std::uint64_t kMostDracoTriangles = std::uint64_t{1} << 29;
+inline constexpr std::uint64_t kMostPackedTriangles = std::uint64_t{1} << 29;
 
 }  // namespace isoweave

@@ -70,7 +70,7 @@ std::vector<std::byte> manifest(const Grid16& grid, std::uint64_t fragment_bytes
 class PackedPrecomputedSink final : public WholeMeshSink {
  public:
   PackedPrecomputedSink(const MeshTarget& target, const MeshFileOptions& options)
-      : WholeMeshSink(target, without_normals(options), kMostDracoTriangles) {}
+      : WholeMeshSink(target, without_normals(options), kMostPackedTriangles) {}
 
  private:
   void write_mesh(TriangleMesh mesh) override {
