@@ -110,6 +110,7 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
     decide();
     output.take(simplifier);
   }
+  output.wait();
   output.report(run.report);
   report_simplifier(simplifier, run.report);
   run.mesh = std::move(sink.mesh);

@@ -27,7 +27,9 @@ struct TriangleMesh {
 // kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always.
 TriangleMesh read_mesh(const std::string& path);
 
-// Where finished pieces of a mesh go. Not thread-safe.
+// Where finished pieces of a mesh go. Not thread-safe. mesh_volume calls append() from a thread of its own while it
+// makes the next piece, unless it was given one thread only; finish() and mark() are called when no append() is
+// underway.
 class MeshSink {
  public:
   virtual ~MeshSink() = default;

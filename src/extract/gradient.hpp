@@ -5,10 +5,23 @@
 #include <cmath>
 #include <cstdint>
 
+#include "isoweave/mesh.hpp"
 #include "slab/slice_window.hpp"
 #include "slab/vec3.hpp"
 
 namespace isoweave {
+
+// A row of samples; NaN outside the volume.
+template <class T>
+struct SampleRow {
+  const T* samples = nullptr;
+  std::int64_t size = 0;  // 0 for a row outside
+
+  double operator[](std::int64_t i) const {
+    if (static_cast<std::uint64_t>(i) >= static_cast<std::uint64_t>(size)) return std::nan("");
+    return static_cast<double>(samples[i]);
+  }
+};
 
 // Read access to the samples a window holds; NaN outside the volume.
 template <class T>
@@ -16,10 +29,12 @@ class SampleView {
  public:
   explicit SampleView(const SliceWindow& window) : window_(window), dims_(window.info().dims) {}
 
-  double operator()(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    if (i < 0 || j < 0 || k < 0 || i >= dims_[0] || j >= dims_[1] || k >= dims_[2]) return std::nan("");
-    return static_cast<double>(reinterpret_cast<const T*>(window_.slice(k))[j * dims_[0] + i]);
+  SampleRow<T> row(std::int64_t j, std::int64_t k) const {
+    if (j < 0 || k < 0 || j >= dims_[1] || k >= dims_[2]) return {};
+    return {reinterpret_cast<const T*>(window_.slice(k)) + j * dims_[0], dims_[0]};
   }
+
+  double operator()(std::int64_t i, std::int64_t j, std::int64_t k) const { return row(j, k)[i]; }
 
   // Central difference per unit length, one-sided where a neighbour is missing or NaN, 0 where both are.
   Vec3 gradient(std::array<std::int64_t, 3> at, const std::array<double, 3>& spacing) const {

@@ -1,7 +1,6 @@
 #include "extract/marching_cubes.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <limits>
 
@@ -34,15 +33,31 @@ void for_each_bit(std::uint64_t word, std::size_t w, Visit&& visit) {
   for (; word != 0; word &= word - 1) visit(static_cast<std::int64_t>(64 * w) + std::countr_zero(word));
 }
 
-// Replaces counts by the sums before them; returns the total.
-std::uint64_t exclusive_scan(std::vector<std::uint32_t>& counts) {
-  std::uint64_t sum = 0;
-  for (std::uint32_t& count : counts) {
-    const std::uint32_t own = count;
-    count = static_cast<std::uint32_t>(sum);
-    sum += own;
+// The rows of lattice edges that a row of cells touches: four along x, two along y, two along z.
+constexpr std::size_t edge_row(int axis, std::size_t dy, std::size_t dz) {
+  if (axis == 0) return dy + 2 * dz;
+  return axis == 1 ? 4 + dz : 6 + dy;
+}
+
+struct RowOfEdge {
+  std::uint8_t row, dx;
+};
+
+// Of the edges of a cell.
+constexpr std::array<RowOfEdge, kCellEdges> kRowOfEdge = [] {
+  std::array<RowOfEdge, kCellEdges> rows{};
+  for (std::size_t e = 0; e < rows.size(); ++e) {
+    const CellEdge edge = kEdgeTable[e];
+    rows[e] = {static_cast<std::uint8_t>(edge_row(edge.axis, edge.dy, edge.dz)), edge.dx};
   }
-  return sum;
+  return rows;
+}();
+
+// Replaces a count by the sum of those before it.
+void scan_one(std::uint32_t& count, std::uint64_t& sum) {
+  const std::uint32_t own = count;
+  count = static_cast<std::uint32_t>(sum);
+  sum += own;
 }
 
 }  // namespace
@@ -94,8 +109,9 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
     classify(window, next_layer_ + static_cast<std::int64_t>(n) + 1, static_cast<std::size_t>(job) % rows_,
              slices_[n + 1]);
   });
+  count_rows(count);
   count = layers_within(count, most_vertices);
-  number_vertices(count, piece);
+  make_room(count, piece);
   visit_sample_type(type_, [&]<class T>() { emit_vertices<T>(window, count, piece); });
   emit_triangles(count, piece);
   next_layer_ += static_cast<std::int64_t>(count);
@@ -116,8 +132,8 @@ void MarchingCubes::classify(const SliceWindow& window, std::int64_t k, std::siz
   classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, lattice_.dims[0], options_.rule, bits);
 }
 
-// Crossing bits of one row of layer n of the slab and of the slice above it, and how many there are.
-void MarchingCubes::find_crossings(std::size_t n, std::size_t row, std::uint32_t& count) {
+// Crossing bits of one row of layer n of the slab and of the slice above it; returns how many there are.
+std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   Slice& slice = slices_[n + 1];
   const std::size_t begin = row * words_;
   const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
@@ -125,7 +141,7 @@ void MarchingCubes::find_crossings(std::size_t n, std::size_t row, std::uint32_t
   const bool closed = options_.rule.closed;
   const bool has_y = row + 1 < rows_ && (closed || (j >= 0 && j + 1 < lattice_.dims[1]));
   const bool has_z = closed || (k >= 0 && k + 1 < lattice_.dims[2]);
-  count = 0;
+  std::uint32_t count = 0;
   for (std::size_t w = 0; w < words_; ++w) {
     const std::uint64_t bits = slice.inside[begin + w];
     const std::uint64_t carry = w + 1 < words_ ? slice.inside[begin + w + 1] << 63 : 0;
@@ -134,6 +150,7 @@ void MarchingCubes::find_crossings(std::size_t n, std::size_t row, std::uint32_t
     layers_[n].cross_z[begin + w] = has_z ? bits ^ slices_[n].inside[begin + w] : 0;
     count += ones(slice.cross_x[begin + w]) + ones(slice.cross_y[begin + w]) + ones(layers_[n].cross_z[begin + w]);
   }
+  return count;
 }
 
 // Crossings in the faces of an open volume: each is the end of two open edges, and has one to its name.
@@ -152,6 +169,57 @@ std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row)
   return count;
 }
 
+// Finds the crossings of every row, and counts them and the triangles.
+void MarchingCubes::count_rows(std::size_t layers) {
+  rows_of_slab_.resize(layers * rows_);
+  executor_.for_each(static_cast<std::int64_t>(rows_of_slab_.size()), kRowsPerBlock, [&](std::int64_t job) {
+    const std::size_t n = static_cast<std::size_t>(job) / rows_;
+    const std::size_t row = static_cast<std::size_t>(job) % rows_;
+    Row counts;
+    counts.vertices = find_crossings(n, row);
+    if (!options_.rule.closed) counts.on_border = crossings_on_border(n, row);
+    for_active_cells(
+        n, row, [](std::size_t) {},
+        [&](std::int64_t, std::uint32_t cell) {
+          counts.triangles += kCaseTable[cell].triangles;
+          ++counts.cells;
+        });
+    rows_of_slab_[static_cast<std::size_t>(job)] = counts;
+  });
+}
+
+// How many layers hold no more than `most_vertices`, one at least.
+std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_vertices) const {
+  std::uint64_t sum = 0;
+  for (std::size_t n = 0; n < layers; ++n) {
+    for (std::size_t row = 0; row < rows_; ++row) sum += rows_of_slab_[n * rows_ + row].vertices;
+    if (sum > most_vertices) return std::max<std::size_t>(n, 1);
+  }
+  return layers;
+}
+
+// Turns the counts of rows into the places where their vertices and triangles begin, and makes room for those.
+void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
+  rows_of_slab_.resize(layers * rows_);
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  for (Row& row : rows_of_slab_) {
+    piece.cells_crossed += row.cells;
+    piece.open_edges += row.on_border;
+    scan_one(row.vertices, vertices);
+    scan_one(row.triangles, triangles);
+  }
+  if (vertices + front_size_ >= std::numeric_limits<std::uint32_t>::max()) {
+    throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(vertices) +
+                     " vertices, expected fewer than 2^32: choose thinner slabs");
+  }
+  piece.positions.resize(vertices);
+  piece.ids.resize(vertices);
+  piece.normals.resize(options_.normals ? vertices : 0);
+  piece.triangles.resize(triangles);
+}
+
+// Numbers crossings word by word: z below the slice, then x and y on it.
 void MarchingCubes::number_row(std::size_t n, std::size_t row, std::uint32_t base) {
   for (std::size_t w = row * words_; w < (row + 1) * words_; ++w) {
     layers_[n].base[w] = base;
@@ -161,90 +229,78 @@ void MarchingCubes::number_row(std::size_t n, std::size_t row, std::uint32_t bas
   }
 }
 
-// Counts crossings row by row; returns how many layers hold no more than `most_vertices`, one at least.
-std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_vertices) {
-  row_counts_.resize(layers * rows_);
-  executor_.for_each(static_cast<std::int64_t>(row_counts_.size()), kRowsPerBlock, [&](std::int64_t job) {
-    const auto at = static_cast<std::size_t>(job);
-    find_crossings(at / rows_, at % rows_, row_counts_[at]);
-  });
-  std::uint64_t sum = 0;
-  for (std::size_t n = 0; n < layers; ++n) {
-    for (std::size_t row = 0; row < rows_; ++row) sum += row_counts_[n * rows_ + row];
-    if (sum > most_vertices) return std::max<std::size_t>(n, 1);
-  }
-  return layers;
-}
+// A row of lattice edges along an axis, between the samples of two rows, or of one row for axis x.
+template <class T, int Axis>
+struct MarchingCubes::EdgeRow {
+  SampleRow<T> low, high;  // high[i], of axis x high[i + 1], is the other end of the edge from low[i]
+  std::int64_t j, k;       // of the lower ends
+};
 
-// Numbers crossings row by row (z below the slice, then x and y on it) after the inherited ones, and makes room for
-// them.
-void MarchingCubes::number_vertices(std::size_t layers, SurfacePiece& piece) {
-  row_counts_.resize(layers * rows_);
-  const auto jobs = static_cast<std::int64_t>(row_counts_.size());
-  const std::uint64_t total = exclusive_scan(row_counts_);
-  if (total + front_size_ >= std::numeric_limits<std::uint32_t>::max()) {
-    throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(total) +
-                     " vertices, expected fewer than 2^32: choose thinner slabs");
-  }
-  std::atomic<std::uint64_t> on_border{0};
-  executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
-    const auto at = static_cast<std::size_t>(job);
-    number_row(at / rows_, at % rows_, front_size_ + row_counts_[at]);
-    if (!options_.rule.closed) {
-      on_border.fetch_add(crossings_on_border(at / rows_, at % rows_), std::memory_order_relaxed);
-    }
-  });
-  piece.open_edges = on_border;
-  piece.positions.resize(total);
-  piece.ids.resize(total);
-  piece.normals.resize(options_.normals ? total : 0);
-}
-
+// Numbers the crossings, after the inherited ones, and makes vertices of them.
 template <class T>
-void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) const {
-  const SampleView<T> sample(window);
-  const IsoRule& rule = options_.rule;
-  const auto emit = [&](std::int64_t bit, std::size_t row, std::int64_t k, std::size_t axis, bool inside,
-                        std::uint32_t number) {
-    const std::array<std::int64_t, 3> low{bit - 1, static_cast<std::int64_t>(row) - 1, k};
-    std::array<std::int64_t, 3> high = low;
-    ++high[axis];
-    const double f0 = sample(low[0], low[1], low[2]);
-    const double f1 = sample(high[0], high[1], high[2]);
-    const double t = crossing_parameter(f0, f1, rule.iso, inside);
-    std::array<double, 3> at{static_cast<double>(low[0]), static_cast<double>(low[1]), static_cast<double>(low[2])};
-    at[axis] += t;
-    const std::size_t slot = number - front_size_;
-    piece.positions[slot] = {at[0] * spacing_[0], at[1] * spacing_[1], at[2] * spacing_[2]};
-    piece.ids[slot] = lattice_.edge_id(low[0], low[1], low[2], static_cast<int>(axis));
-    if (!options_.normals) return;
-    if ((f0 == f0) != (f1 == f1)) {  // a cap on the border: the surface faces along the edge
-      Point cap{0, 0, 0};
-      cap[axis] = inside ? 1.0F : -1.0F;
-      piece.normals[slot] = cap;
-      return;
-    }
-    const Vec3 g0 = sample.gradient(low, spacing_);
-    const Vec3 g = g0 + t * (sample.gradient(high, spacing_) - g0);
-    piece.normals[slot] = unit_point(rule.above ? -g : g);
-  };
+void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) {
+  const SampleView<T> samples(window);
   executor_.for_each(static_cast<std::int64_t>(layers * rows_), kRowsPerBlock, [&](std::int64_t job) {
     const std::size_t n = static_cast<std::size_t>(job) / rows_;
     const std::size_t row = static_cast<std::size_t>(job) % rows_;
+    const std::int64_t j = static_cast<std::int64_t>(row) - 1;
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
+    const Slice& upper = slices_[n + 1];
+    number_row(n, row, front_size_ + rows_of_slab_[static_cast<std::size_t>(job)].vertices);
+    const SampleRow<T> here = samples.row(j, k + 1);
+    const EdgeRow<T, 2> along_z{samples.row(j, k), here, j, k};
+    const EdgeRow<T, 0> along_x{here, here, j, k + 1};
+    const EdgeRow<T, 1> along_y{here, samples.row(j + 1, k + 1), j, k + 1};
     for (std::size_t w = 0; w < words_; ++w) {
       const std::size_t at = row * words_ + w;
-      const Slice& upper = slices_[n + 1];
-      const auto emit_word = [&](std::uint64_t crossings, std::int64_t slice, std::size_t axis, std::uint64_t inside,
-                                 std::uint32_t number) {
-        for_each_bit(crossings, w,
-                     [&](std::int64_t bit) { emit(bit, row, slice, axis, (inside >> (bit & 63) & 1) != 0, number++); });
-      };
-      emit_word(layers_[n].cross_z[at], k, 2, slices_[n].inside[at], layers_[n].base[at]);
-      emit_word(upper.cross_x[at], k + 1, 0, upper.inside[at], upper.base[at]);
-      emit_word(upper.cross_y[at], k + 1, 1, upper.inside[at], upper.base[at] + ones(upper.cross_x[at]));
+      emit_word(samples, along_z, w, layers_[n].cross_z[at], slices_[n].inside[at], layers_[n].base[at], piece);
+      emit_word(samples, along_x, w, upper.cross_x[at], upper.inside[at], upper.base[at], piece);
+      emit_word(samples, along_y, w, upper.cross_y[at], upper.inside[at], upper.base[at] + ones(upper.cross_x[at]),
+                piece);
     }
   });
+}
+
+// The vertices of the crossings of one word, numbered from `number` on.
+template <class T, int Axis>
+void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axis>& edges, std::size_t w,
+                              std::uint64_t crossings, std::uint64_t inside, std::uint32_t number,
+                              SurfacePiece& piece) const {
+  if (crossings == 0) return;
+  const auto j = static_cast<double>(edges.j);
+  const auto k = static_cast<double>(edges.k);
+  const std::uint64_t first_id = lattice_.edge_id(-1, edges.j, edges.k, Axis);
+  Vec3* position = piece.positions.data() + (number - front_size_);
+  std::uint64_t* id = piece.ids.data() + (number - front_size_);
+  for_each_bit(crossings, w, [&](std::int64_t bit) {
+    const std::int64_t i = bit - 1;
+    const double f0 = edges.low[i];
+    const double f1 = edges.high[Axis == 0 ? i + 1 : i];
+    const bool low_inside = (inside >> (bit & 63) & 1) != 0;
+    const double t = crossing_parameter(f0, f1, options_.rule.iso, low_inside);
+    const double x = Axis == 0 ? static_cast<double>(i) + t : static_cast<double>(i);
+    *position++ = {x * spacing_[0], (Axis == 1 ? j + t : j) * spacing_[1], (Axis == 2 ? k + t : k) * spacing_[2]};
+    *id++ = first_id + 3 * static_cast<std::uint64_t>(bit);
+    if (options_.normals) {
+      piece.normals[number++ - front_size_] = normal_at(samples, {i, edges.j, edges.k}, Axis, t, f0, f1, low_inside);
+    }
+  });
+}
+
+// The normal of a crossing, outwards.
+template <class T>
+Point MarchingCubes::normal_at(const SampleView<T>& samples, const std::array<std::int64_t, 3>& low, std::size_t axis,
+                               double t, double f0, double f1, bool low_inside) const {
+  if ((f0 == f0) != (f1 == f1)) {  // a cap on the border: the surface faces along the edge
+    Point cap{0, 0, 0};
+    cap[axis] = low_inside ? 1.0F : -1.0F;
+    return cap;
+  }
+  std::array<std::int64_t, 3> high = low;
+  ++high[axis];
+  const Vec3 g0 = samples.gradient(low, spacing_);
+  const Vec3 g = g0 + t * (samples.gradient(high, spacing_) - g0);
+  return unit_point(options_.rule.above ? -g : g);
 }
 
 bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {
@@ -280,59 +336,57 @@ void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, EnterWord&&
   }
 }
 
+// Numbers of the crossings on the edges of the cell at a bit; where an edge has none the number means nothing.
+std::array<std::uint32_t, kCellEdges> MarchingCubes::CellWord::numbers(std::int64_t bit) const {
+  const std::array<std::uint64_t, 2> before{below(bit), below(bit) << 1 | 1};
+  const bool last = (bit & 63) == 63;
+  std::array<std::uint32_t, kCellEdges> number;
+  for (std::size_t e = 0; e < number.size(); ++e) {
+    const auto [r, dx] = kRowOfEdge[e];
+    number[e] = base[r] + ones(crossings[r] & before[dx]);
+    if (dx == 1 && last) number[e] = next_base[r];
+  }
+  return number;
+}
+
 MarchingCubes::CellWord MarchingCubes::cell_word(std::size_t n, std::size_t row, std::size_t w) const {
   CellWord word{};
-  for (std::size_t e = 0; e < kEdgeTable.size(); ++e) {
-    const CellEdge edge = kEdgeTable[e];
-    const Slice& slice = slices_[n + edge.dz];
-    const auto base_at = [&](std::size_t at) {
-      if (edge.axis == 2) return layers_[n].base[at];
-      return slice.base[at] + (edge.axis == 1 ? ones(slice.cross_x[at]) : 0);
-    };
-    const std::size_t at = (row + edge.dy) * words_ + w;
-    const auto& crossings = edge.axis == 2 ? layers_[n].cross_z : edge.axis == 1 ? slice.cross_y : slice.cross_x;
-    word.crossings[e] = crossings[at];
-    word.base[e] = base_at(at);
-    if (w + 1 < words_) word.next_base[e] = base_at(at + 1);
+  const bool has_next = w + 1 < words_;
+  const auto set = [&](std::size_t r, std::uint64_t crossings, std::uint32_t base) {
+    word.crossings[r] = crossings;
+    word.base[r] = base;
+  };
+  for (std::size_t high = 0; high < 2; ++high) {
+    const std::size_t at = (row + high) * words_ + w;
+    for (std::size_t dz = 0; dz < 2; ++dz) {
+      const Slice& slice = slices_[n + dz];
+      set(edge_row(0, high, dz), slice.cross_x[at], slice.base[at]);
+    }
+    const Layer& layer = layers_[n];
+    set(edge_row(2, high, 0), layer.cross_z[at], layer.base[at]);
+    if (has_next) word.next_base[edge_row(2, high, 0)] = layer.base[at + 1];
+    const Slice& slice = slices_[n + high];
+    const std::size_t low = row * words_ + w;
+    set(edge_row(1, 0, high), slice.cross_y[low], slice.base[low] + ones(slice.cross_x[low]));
+    if (has_next) word.next_base[edge_row(1, 0, high)] = slice.base[low + 1] + ones(slice.cross_x[low + 1]);
   }
   return word;
 }
 
-// Counts triangles per cell row, then writes them in lattice order.
+// Writes triangles in lattice order.
 void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) const {
-  std::vector<std::uint32_t> counts(layers * rows_);
-  std::vector<std::uint32_t> cells(layers * rows_);
-  const auto jobs = static_cast<std::int64_t>(counts.size());
-  executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
-    const auto at = static_cast<std::size_t>(job);
-    for_active_cells(
-        at / rows_, at % rows_, [](std::size_t) {},
-        [&](std::int64_t, std::uint32_t cell) {
-          counts[at] += kCaseTable[cell].triangles;
-          ++cells[at];
-        });
-  });
-  for (const std::uint32_t crossed : cells) piece.cells_crossed += crossed;
-  piece.triangles.resize(exclusive_scan(counts));
-  executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
-    const auto at = static_cast<std::size_t>(job);
-    const std::size_t n = at / rows_;
-    const std::size_t row = at % rows_;
-    auto* out = piece.triangles.data() + counts[at];
+  executor_.for_each(static_cast<std::int64_t>(layers * rows_), kRowsPerBlock, [&](std::int64_t job) {
+    const std::size_t n = static_cast<std::size_t>(job) / rows_;
+    const std::size_t row = static_cast<std::size_t>(job) % rows_;
+    auto* out = piece.triangles.data() + rows_of_slab_[static_cast<std::size_t>(job)].triangles;
     CellWord word{};
     for_active_cells(
         n, row, [&](std::size_t w) { word = cell_word(n, row, w); },
         [&](std::int64_t bit, std::uint32_t cell) {
-          const bool last_of_word = (bit & 63) == 63;
-          const std::array<std::uint64_t, 2> before{below(bit), below(bit) << 1 | 1};
-          const auto vertex = [&](std::size_t e) {
-            const std::size_t dx = kEdgeTable[e].dx;
-            if (last_of_word && dx == 1) return word.next_base[e];
-            return word.base[e] + ones(word.crossings[e] & before[dx]);
-          };
+          const std::array<std::uint32_t, kCellEdges> number = word.numbers(bit);
           const CellCase& shape = kCaseTable[cell];
           for (std::size_t t = 0; t < shape.triangles; ++t, ++out) {
-            for (std::size_t c = 0; c < 3; ++c) (*out)[c] = vertex(static_cast<std::size_t>(shape.edges[3 * t + c]));
+            for (std::size_t c = 0; c < 3; ++c) (*out)[c] = number[shape.edges[3 * t + c]];
           }
         });
   });

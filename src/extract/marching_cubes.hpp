@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "extract/gradient.hpp"
 #include "extract/rules.hpp"
 #include "extract/surface_piece.hpp"
 #include "parallel/parallel.hpp"
@@ -63,21 +64,41 @@ class MarchingCubes {
     std::vector<std::uint32_t> base;
   };
 
-  // The twelve edges of the cells of one word: their crossings, the number of the word's first, and of the next word's.
-  struct CellWord {
-    std::array<std::uint64_t, 12> crossings;
-    std::array<std::uint32_t, 12> base;
-    std::array<std::uint32_t, 12> next_base;
+  // What a row of a layer has: numbers of its own, then, of vertices and triangles, those of the rows before it.
+  struct Row {
+    std::uint32_t vertices = 0, triangles = 0;
+    std::uint32_t cells = 0;      // crossed
+    std::uint32_t on_border = 0;  // crossings, of an open volume
   };
 
+  // The eight rows of edges that the cells of one word touch: their crossings, the number of the word's first, and,
+  // along y and z, of the next word's.
+  struct CellWord {
+    std::array<std::uint64_t, 8> crossings;
+    std::array<std::uint32_t, 8> base;
+    std::array<std::uint32_t, 8> next_base;
+
+    std::array<std::uint32_t, 12> numbers(std::int64_t bit) const;
+  };
+
+  template <class T, int Axis>
+  struct EdgeRow;
+
   void classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const;
-  void find_crossings(std::size_t n, std::size_t row, std::uint32_t& count);
+  std::uint32_t find_crossings(std::size_t n, std::size_t row);
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
+  void count_rows(std::size_t layers);
+  std::size_t layers_within(std::size_t layers, std::uint64_t most_vertices) const;
+  void make_room(std::size_t layers, SurfacePiece& piece);
   void number_row(std::size_t n, std::size_t row, std::uint32_t base);
-  std::size_t layers_within(std::size_t layers, std::uint64_t most_vertices);
-  void number_vertices(std::size_t layers, SurfacePiece& piece);
   template <class T>
-  void emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) const;
+  void emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece);
+  template <class T, int Axis>
+  void emit_word(const SampleView<T>& samples, const EdgeRow<T, Axis>& edges, std::size_t w, std::uint64_t crossings,
+                 std::uint64_t inside, std::uint32_t number, SurfacePiece& piece) const;
+  template <class T>
+  Point normal_at(const SampleView<T>& samples, const std::array<std::int64_t, 3>& low, std::size_t axis, double t,
+                  double f0, double f1, bool low_inside) const;
   void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
   void list_front(SurfacePiece& piece);
   bool has_cells(std::int64_t k, std::size_t row) const;
@@ -97,7 +118,7 @@ class MarchingCubes {
   std::int64_t end_layer_;
   std::vector<Slice> slices_;  // slices_[0] is the front left by the slab before
   std::vector<Layer> layers_;
-  std::vector<std::uint32_t> row_counts_;
+  std::vector<Row> rows_of_slab_;
   std::vector<std::uint64_t> end_mask_;  // per word: the first and the last sample of a row
   std::uint32_t front_size_ = 0;
 };

@@ -21,6 +21,9 @@ class FinalOutput {
   // Fills in what has been written so far: counts, Euler number, components, digest.
   void report(MeshReport& report) const { output_.report(open_edges_, report); }
 
+  // Returns when the sink has everything. Throws what it threw.
+  void wait() { output_.wait(); }
+
   template <class Archive>
   void exchange(Archive& archive) {
     std::uint64_t open_edges = open_edges_;

@@ -7,6 +7,7 @@
 #include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
 #include "parallel/parallel.hpp"
+#include "pipeline/forecast_tile.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
 #include "slab/memory_model.hpp"
@@ -21,10 +22,11 @@ constexpr std::int64_t kThick = 15;
 constexpr std::int64_t kThickBlocks = 3;
 constexpr std::int64_t kMostBlocks = 24;
 constexpr double kSampledPart = 0.04;  // of the volume's bytes, and of its triangles that are simplified
-constexpr double kLeastBytes = 12e6;
+constexpr double kLeastBytes = 32e6;
 constexpr double kMostBytes = 256e6;
 constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
-constexpr double kMostTile = 40000;
+constexpr double kMostTile = 100000;
+constexpr double kTileBytes = 16e6;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 
 // How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
@@ -36,73 +38,38 @@ constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a gues
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
 
-// Some slices of a volume, cut to a tile.
-class Block final : public SliceSource {
+// Counts triangles.
+class CountingSink : public MeshSink {
  public:
-  Block(const VolumeInfo& volume, std::int64_t slices) : info_(volume) {
-    info_.dims[2] = slices;
-    samples_.resize(static_cast<std::size_t>(slices) * info_.slice_bytes());
+  void append(std::span<const Point> /*vertices*/, std::span<const Point> /*normals*/,
+              std::span<const std::array<std::uint64_t, 3>> triangles) override {
+    total += triangles.size();
   }
+  void finish() override {}
 
-  const VolumeInfo& info() const override { return info_; }
-  std::span<std::byte> samples() { return samples_; }
-
-  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    const std::size_t bytes = info_.slice_bytes();
-    std::memcpy(out.data(), samples_.data() + static_cast<std::size_t>(first) * bytes,
-                static_cast<std::size_t>(count) * bytes);
-  }
-
-  // The middle of it, with this part of both sides.
-  Block tile(double part) const {
-    Block cut(info_, info_.dims[2]);
-    std::array<std::int64_t, 2> from{};
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto side = static_cast<std::int64_t>(part * static_cast<double>(info_.dims[axis]));
-      cut.info_.dims[axis] =
-          std::clamp<std::int64_t>(side, std::min<std::int64_t>(2, info_.dims[axis]), info_.dims[axis]);
-      from[axis] = (info_.dims[axis] - cut.info_.dims[axis]) / 2;
-    }
-    const std::size_t each = sample_bytes(info_.type);
-    const std::size_t row = static_cast<std::size_t>(cut.info_.dims[0]) * each;
-    cut.samples_.resize(static_cast<std::size_t>(info_.dims[2]) * cut.info_.slice_bytes());
-    std::byte* out = cut.samples_.data();
-    for (std::int64_t k = 0; k < info_.dims[2]; ++k) {
-      for (std::int64_t j = 0; j < cut.info_.dims[1]; ++j, out += row) {
-        const std::int64_t at = (k * info_.dims[1] + from[1] + j) * info_.dims[0] + from[0];
-        std::memcpy(out, samples_.data() + static_cast<std::size_t>(at) * each, row);
-      }
-    }
-    return cut;
-  }
-
- private:
-  VolumeInfo info_;
-  std::vector<std::byte> samples_;
+  std::uint64_t total = 0;
 };
 
-// Counts triangles, and those in the middle third of the layers, which the block's ends hardly disturb.
-class CountingSink final : public MeshSink {
+// Tells where they are, by their first corners in samples: look(i, j, k).
+template <class Look>
+class LocatingSink final : public MeshSink {
  public:
-  CountingSink(double from, double to) : from_(from), to_(to) {}
+  LocatingSink(const std::array<double, 3>& spacing, const Look& look) : spacing_(spacing), look_(look) {}
 
   void append(std::span<const Point> vertices, std::span<const Point> /*normals*/,
               std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    for (const Point& vertex : vertices) heights_.push_back(vertex[2]);
-    total += triangles.size();
+    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
     for (const auto& t : triangles) {
-      const double height = (double{heights_[t[0]]} + double{heights_[t[1]]} + double{heights_[t[2]]}) / 3;
-      middle += height >= from_ && height < to_ ? 1 : 0;
+      const Point& at = vertices_[t[0]];
+      look_(double{at[0]} / spacing_[0], double{at[1]} / spacing_[1], double{at[2]} / spacing_[2]);
     }
   }
   void finish() override {}
 
-  std::uint64_t total = 0, middle = 0;
-  std::uint64_t undecided = 0;  // most of them after a slab
-
  private:
-  double from_, to_;
-  std::vector<float> heights_;
+  const std::array<double, 3>& spacing_;
+  const Look& look_;
+  std::vector<Point> vertices_;
 };
 
 struct BlockFacts {
@@ -118,16 +85,20 @@ class Forecaster {
     control_.measure = true;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
-    plan_blocks(control.memory);
+    plan_blocks();
   }
 
   Forecast run() {
     for (std::int64_t n = 0; n < blocks_; ++n) {
-      const bool thick = n % every_ == every_ / 2;
-      Block block(info_, thick ? thick_ : std::min(kThin, thick_));
-      const std::int64_t room = slices_ * (n + 1) / blocks_ - slices_ * n / blocks_;
-      volume_.read(slices_ * n / blocks_ + (room - block.info().dims[2]) / 2, block.info().dims[2], block.samples());
-      look_at(block, thick);
+      const std::int64_t begin = slices_ * n / blocks_;
+      const std::int64_t room = slices_ * (n + 1) / blocks_ - begin;
+      const std::int64_t thick = n % every_ == every_ / 2 ? thick_ : 0;
+      const std::int64_t thin = thick == 0 || room >= thick + kThin ? std::min(kThin, room) : 0;
+      const std::int64_t first = begin + (room - thin - thick) / 2;
+      BlockFacts facts;
+      if (thin > 0) facts = look_at_thin(first, thin);
+      if (thick > 0) facts = look_at_thick(first + thin, thick);
+      facts_.push_back(facts);
     }
     if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
     return conclude();
@@ -135,8 +106,8 @@ class Forecaster {
 
  private:
   // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of
-  // the volume, and of the memory there is.
-  void plan_blocks(std::uint64_t memory) {
+  // the volume.
+  void plan_blocks() {
     const auto slice = static_cast<double>(info_.slice_bytes());
     slices_ = info_.dims[2];
     if (!volume_.skips()) {
@@ -147,79 +118,116 @@ class Forecaster {
         std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
     const auto affordable = static_cast<std::int64_t>(budget / slice);
     thick_ = std::min(kThick, slices_);
-    if (memory > 0) thick_ = std::min(thick_, static_cast<std::int64_t>(static_cast<double>(memory) / 8 / slice));
-    thick_ = std::max(thick_, std::min(kThin, slices_));
     const std::int64_t thick_blocks = affordable >= 2 * kThickBlocks * thick_ ? kThickBlocks : 1;
     blocks_ = std::clamp<std::int64_t>((affordable - thick_blocks * thick_) / kThin + thick_blocks, 1, kMostBlocks);
     blocks_ = std::clamp<std::int64_t>(slices_ / thick_, 1, blocks_);
     every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
-  void look_at(Block& block, bool thick) {
-    BlockFacts facts;
-    Stopwatch watch;
-    facts.per_layer = static_cast<double>(count(block, 0).total) / layers(block);
-    watch.lap(seconds_extracting_);
-    facts.caps = options_.closed ? 2.0 * static_cast<double>(inside_on_sides(block)) / layers(block) : 0;
-    facts_.push_back(facts);
-    layers_ += layers(block);
-    if (thick && error_ > 0 && facts.per_layer > 0) simplify_tile(block, facts.per_layer);
+  BlockFacts look_at_thin(std::int64_t first, std::int64_t slices) {
+    map_ = TriangleMap(info_.dims);
+    const auto look = [&](double i, double j, double /*k*/) { map_.add(i, j); };
+    LocatingSink sink(info_.geometry.spacing, look);
+    return look_at(first, slices, sink, nullptr);
   }
 
-  void simplify_tile(const Block& block, double per_layer) {
+  BlockFacts look_at_thick(std::int64_t first, std::int64_t slices) {
+    CountingSink sink;
+    if (error_ == 0) return look_at(first, slices, sink, nullptr);
+    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes());
+    Tile tile(info_, map_.busy_part(std::min(1.0, kTileBytes / bytes)), slices);
+    const BlockFacts facts = look_at(first, slices, sink, &tile);
+    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer);
+    return facts;
+  }
+
+  // Counts the triangles of some slices, and fills a tile of them.
+  template <class Sink>
+  BlockFacts look_at(std::int64_t first, std::int64_t slices, Sink& sink, Tile* tile) {
+    std::uint64_t inside = 0;
+    Section section(volume_, first, slices, [&](std::int64_t n, std::span<const std::byte> slice) {
+      if (tile != nullptr) tile->take(n, slice);
+      if (options_.closed) inside += inside_on_sides(slice);
+    });
+    Stopwatch watch;
+    const MeshReport report = mesh(section, sink, 0, 0);
+    watch.lap(seconds_extracting_);
+    slices_read_ += static_cast<double>(slices);
+    return {static_cast<double>(report.triangles) / layers(section),
+            2.0 * static_cast<double>(inside) / layers(section)};
+  }
+
+  // Simplifies as much of a tile as is a small part of the volume's surface.
+  void simplify_part(const Tile& tile, double per_layer) {
     const double expected = per_layer * static_cast<double>(info_.dims[2]);
     const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
-    Block tile = block.tile(std::min(1.0, std::sqrt(wanted / (per_layer * layers(block)))));
-    CountingSink full = count(tile, 0);
+    Tile part = tile.cut(map_.busy_part(std::min(1.0, wanted / (per_layer * layers(tile)))));
+    TileCount full = count(part, 0);
     if (static_cast<double>(full.total) < wanted / 4) {  // the surface is elsewhere
-      tile = block.tile(1);
-      full = count(tile, 0);
+      part = tile;
+      full = count(part, 0);
     }
     Stopwatch watch;
-    const CountingSink left = count(tile, error_);
+    const TileCount left = count(part, error_);
     watch.lap(seconds_simplifying_);
     simplified_ += static_cast<double>(full.total);
     before_ += full.middle;
     after_ += left.middle;
-    depth_ = std::max(depth_, static_cast<double>(left.undecided) * layers(tile) / static_cast<double>(full.total + 1));
+    const double depth = static_cast<double>(left.undecided) * layers(part) / static_cast<double>(full.total + 1);
+    depth_ = std::max(depth_, depth);
   }
 
-  static double layers(const Block& block) {
-    return static_cast<double>(std::max<std::int64_t>(block.info().dims[2] - 1, 1));
+  struct TileCount {
+    std::uint64_t total = 0, middle = 0;  // triangles; in the middle third of the layers, which the ends hardly disturb
+    std::uint64_t undecided = 0;          // most of them after a slab
+  };
+
+  TileCount count(Tile& tile, double error) const {
+    const double third = layers(tile) / 3;
+    TileCount counted;
+    const auto look = [&](double /*i*/, double /*j*/, double k) {
+      counted.middle += k >= third && k < 2 * third ? 1 : 0;
+    };
+    LocatingSink sink(info_.geometry.spacing, look);
+    const MeshReport report = mesh(tile, sink, error, error > 0 ? 3 : 0);
+    counted.total = report.triangles;
+    for (const SlabRecord& record : report.sweep) {
+      counted.undecided = std::max(counted.undecided, record.undecided_triangles);
+    }
+    return counted;
   }
 
-  CountingSink count(Block& block, double error) const {
-    const double height = info_.geometry.spacing[2] * layers(block);
-    CountingSink sink(height / 3, 2 * height / 3);
+  // The open surface in samples.
+  MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
     MeshOptions options = options_;
     options.closed = false;
     options.normals = false;
     options.space = OutputSpace::kIndex;
     options.error = {error, false};
-    options.slab = error > 0 ? 3 : 0;
-    for (const SlabRecord& record : mesh_volume(block, sink, options, control_).sweep) {
-      sink.undecided = std::max(sink.undecided, record.undecided_triangles);
-    }
-    return sink;
+    options.slab = slab;
+    return mesh_volume(block, sink, options, control_);
   }
 
-  std::uint64_t inside_on_sides(Block& block) const {
+  // Samples on the sides of a slice.
+  std::uint64_t inside_on_sides(std::span<const std::byte> slice) const {
     const IsoRule rule = stored_rule(info_, options_);
     const std::int64_t nx = info_.dims[0];
     const std::int64_t ny = info_.dims[1];
     return visit_sample_type(info_.type, [&]<class T>() {
-      const T* const samples = reinterpret_cast<const T*>(block.samples().data());
+      const T* const samples = reinterpret_cast<const T*>(slice.data());
       std::uint64_t inside = 0;
-      const auto add = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-        const auto value = static_cast<double>(samples[(k * ny + j) * nx + i]);
+      const auto add = [&](std::int64_t i, std::int64_t j) {
+        const auto value = static_cast<double>(samples[j * nx + i]);
         inside += (rule.above ? value >= rule.iso : value <= rule.iso) ? 1 : 0;
       };
-      for (std::int64_t k = 0; k < block.info().dims[2]; ++k) {
-        for (std::int64_t i = 0; i < nx; ++i) add(i, 0, k), add(i, ny - 1, k);
-        for (std::int64_t j = 0; j < ny; ++j) add(0, j, k), add(nx - 1, j, k);
-      }
+      for (std::int64_t i = 0; i < nx; ++i) add(i, 0), add(i, ny - 1);
+      for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);
       return inside;
     });
+  }
+
+  static double layers(const SliceSource& block) {
+    return static_cast<double>(std::max<std::int64_t>(block.info().dims[2] - 1, 1));
   }
 
   Forecast conclude() const {
@@ -234,7 +242,7 @@ class Forecaster {
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profiles, options_.slab));
     forecast.least_bytes = to_count(kCapMargin * peak(profiles, 1) / kUsedPart);
-    forecast.seconds = seconds_extracting_ / layers_ * layers;
+    forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
   }
@@ -290,18 +298,20 @@ class Forecaster {
                             Executor(control_.threads).threads(),
                             error_ > 0,
                             options_.normals};
-    const double depth = error_ == 0 ? 0 : depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
+    const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
+    const SlabGoal& goal = slab_goal(error_ > 0);
     double most = model.fixed();
     double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       // What is read and classified was planned before it turned out how full it is.
-      const std::int64_t planned = std::min(next_slab(info_, asked, recent, per_layer), info_.dims[2] - done);
-      const auto ahead = static_cast<double>(std::min(slices_ahead(info_, planned), info_.dims[2] - done - planned));
+      const std::int64_t planned = std::min(next_slab(info_, goal, asked, recent, per_layer), info_.dims[2] - done);
+      const auto ahead =
+          static_cast<double>(std::min(slices_ahead(info_, goal, planned), info_.dims[2] - done - planned));
       ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals));
       recent = planned;
       const auto at = static_cast<double>(done);
@@ -326,13 +336,14 @@ class Forecaster {
   const MeshOptions& options_;
   RunControl control_;
   const std::uint64_t resident_ = resident_process_bytes();
-  double error_ = 0;         // length
-  std::int64_t slices_ = 0;  // that are looked at
-  std::int64_t thick_ = 0;   // slices of a thick block
+  double error_ = 0;             // length
+  std::int64_t slices_ = 0;      // that are looked at
+  std::int64_t thick_ = 0;       // slices of a thick block
+  TriangleMap map_{info_.dims};  // of the last thin block
   std::int64_t blocks_ = 0;
   std::int64_t every_ = 1;  // so many blocks one is thick
   std::vector<BlockFacts> facts_;
-  double layers_ = 0;                     // of all blocks
+  double slices_read_ = 0;                // in all blocks
   double simplified_ = 0;                 // triangles of tiles
   std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
   double left_ = 1;                       // share of the triangles that is left

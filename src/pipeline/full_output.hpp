@@ -19,6 +19,9 @@ class FullOutput {
 
   void report(MeshReport& report) const { output_.report(open_edges_, report); }
 
+  // Returns when the sink has everything. Throws what it threw.
+  void wait() { output_.wait(); }
+
   template <class Archive>
   void exchange(Archive& archive) {
     archive.list(front_);

@@ -53,6 +53,7 @@ class VolumeSweep {
     }
     finish_report();
     Stopwatch finishing;
+    wait_for_sink();
     sink_.finish();
     if (saves()) folder_->clear();
     finishing.lap(report_.seconds_write);
@@ -107,10 +108,11 @@ class VolumeSweep {
   SlabPlan next_slab() {
     const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
+    const SlabGoal& goal = slab_goal(simplifies_);
     SlabPlan plan;
-    plan.layers =
-        std::min(isoweave::next_slab(volume_, options_.slab, recent_layers_, per_layer), extractor_.layers_left());
-    plan.ahead = slices_ahead(volume_, plan.layers);
+    plan.layers = std::min(isoweave::next_slab(volume_, goal, options_.slab, recent_layers_, per_layer),
+                           extractor_.layers_left());
+    plan.ahead = slices_ahead(volume_, goal, plan.layers);
     plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : kMostSlabVertices;
     if (control_.memory > 0) fit_into_cap(plan, per_layer);
     return plan;
@@ -230,6 +232,11 @@ class VolumeSweep {
                         : ", samples from " + std::to_string(report_.min) + " to " + std::to_string(report_.max)));
   }
 
+  void wait_for_sink() {
+    output_.wait();
+    full_output_.wait();
+  }
+
   bool saves() const { return !control_.checkpoint.folder.empty(); }
 
   void stop_if_asked() {
@@ -253,6 +260,7 @@ class VolumeSweep {
     checkpoint.layer = layers_ - extractor_.layers_left();
     if (checkpoint.layer == saved_layer_) return;
     checkpoint.note = control_.checkpoint.note;
+    wait_for_sink();
     checkpoint.mark = sink_.mark();
     const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_);
     exchange(*writer);

@@ -89,6 +89,7 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   Recorder recorder(sink);
   FinalOutput output(world, report.locked_vertices > 0 ? recorder : sink, executor, control.measure);
   output.take(simplifier);
+  output.wait();
   report_simplifier(simplifier, report);
   output.report(report);
   if (report.locked_vertices > 0) report_check(check_mesh(recorder.mesh()), report);

@@ -8,9 +8,16 @@
 
 namespace isoweave {
 
-// A slab of this many triangles keeps all threads busy and stays small beside what a scan needs elsewhere.
-inline constexpr double kSlabTriangles = 160000;
-inline constexpr std::int64_t kSlabBytes = std::int64_t{64} << 20;
+// What a slab is to hold. Simplification wants all threads busy, at little cost beside what a scan needs elsewhere;
+// without it a slab goes through the caches several times.
+struct SlabGoal {
+  double triangles;
+  std::int64_t bytes;  // of its slices
+};
+inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{64} << 20};
+inline constexpr SlabGoal kFullSlab{100000, std::int64_t{4} << 20};
+
+inline const SlabGoal& slab_goal(bool simplifies) { return simplifies ? kSimplifiedSlab : kFullSlab; }
 
 // A slab that turns out to be fuller is cut, where no thickness is asked for.
 inline constexpr std::uint64_t kMostSlabVertices = 120000;
@@ -19,27 +26,28 @@ inline constexpr std::uint64_t kMostSlabVertices = 120000;
 inline constexpr double kUsedPart = 0.8;
 
 // Layers whose slices are worth holding at a time.
-inline std::int64_t most_layers(const VolumeInfo& volume) {
+inline std::int64_t most_layers(const VolumeInfo& volume, const SlabGoal& goal) {
   const auto bytes = static_cast<std::int64_t>(volume.slice_bytes());
-  return std::clamp(kSlabBytes / std::max<std::int64_t>(bytes, 1), std::int64_t{4}, std::int64_t{64});
+  return std::clamp(goal.bytes / std::max<std::int64_t>(bytes, 1), std::int64_t{4}, std::int64_t{64});
 }
 
-// As many layers as hold kSlabTriangles.
-inline std::int64_t automatic_slab(const VolumeInfo& volume, double triangles_per_layer) {
-  return std::min(most_layers(volume), static_cast<std::int64_t>(kSlabTriangles / (triangles_per_layer + 0.01)) + 1);
+// As many layers as hold the triangles wanted.
+inline std::int64_t automatic_slab(const VolumeInfo& volume, const SlabGoal& goal, double triangles_per_layer) {
+  return std::min(most_layers(volume, goal),
+                  static_cast<std::int64_t>(goal.triangles / (triangles_per_layer + 0.01)) + 1);
 }
 
 // Layers of the next slab, `recent` after the one before (0: it is the first), which had so many triangles per layer.
 // Slabs that are not asked for at most double, as the next layers may be much fuller.
-inline std::int64_t next_slab(const VolumeInfo& volume, std::int64_t asked, std::int64_t recent,
+inline std::int64_t next_slab(const VolumeInfo& volume, const SlabGoal& goal, std::int64_t asked, std::int64_t recent,
                               double triangles_per_layer) {
   if (asked > 0) return asked;
-  return std::min(recent > 0 ? 2 * recent : 8, automatic_slab(volume, triangles_per_layer));
+  return std::min(recent > 0 ? 2 * recent : 8, automatic_slab(volume, goal, triangles_per_layer));
 }
 
 // Slices of the next slab, to be read while one of `layers` layers is worked on.
-inline std::int64_t slices_ahead(const VolumeInfo& volume, std::int64_t layers) {
-  const std::int64_t most = kSlabBytes / std::max<std::int64_t>(static_cast<std::int64_t>(volume.slice_bytes()), 1);
+inline std::int64_t slices_ahead(const VolumeInfo& volume, const SlabGoal& goal, std::int64_t layers) {
+  const std::int64_t most = goal.bytes / std::max<std::int64_t>(static_cast<std::int64_t>(volume.slice_bytes()), 1);
   return std::clamp<std::int64_t>(most, 1, layers);
 }
 

@@ -10,6 +10,7 @@
 #include "measure/component_counter.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
+#include "pipeline/overlapped_sink.hpp"
 #include "pipeline/world.hpp"
 
 namespace isoweave {
@@ -23,9 +24,9 @@ struct OutputCorner {
 
 class SurfaceOutput {
  public:
-  // measure: digest and components.
+  // measure: digest and components. With several threads the sink gets a piece while the next one is made.
   SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure)
-      : world_(world), sink_(sink), executor_(executor), measure_(measure) {}
+      : world_(world), executor_(executor), measure_(measure), sink_(sink, executor.threads() > 1) {}
 
   std::uint64_t vertices() const { return vertices_; }
   ComponentCounter& components() { return components_; }
@@ -34,12 +35,13 @@ class SurfaceOutput {
   // position(n), normal(n): of the n-th of them, called by any thread.
   template <class Position, class Normal>
   std::uint32_t add_vertices(std::size_t count, bool normals, const Position& position, const Normal& normal) {
-    points_.resize(count);
-    normals_.resize(normals ? count : 0);
+    Piece& piece = pieces_[next_];
+    piece.points.resize(count);
+    piece.normals.resize(normals ? count : 0);
     executor_.for_each(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t i) {
       const auto n = static_cast<std::size_t>(i);
-      points_[n] = world_.point(position(n));
-      if (normals) normals_[n] = world_.normal(normal(n));
+      piece.points[n] = world_.point(position(n));
+      if (normals) piece.normals[n] = world_.normal(normal(n));
     });
     vertices_ += count;
     return measure_ ? components_.add(count) : 0;
@@ -51,19 +53,24 @@ class SurfaceOutput {
   void add_triangles(std::size_t count, const NumberOf& number, const CornerOf& corner) {
     const std::array<std::size_t, 3> turn =
         world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
-    numbers_.resize(count);
+    Piece& piece = pieces_[next_];
+    piece.triangles.resize(count);
     executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t begin, std::int64_t end) {
       std::uint64_t digest = 0;
       for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-        numbers_[n] = {number(n, turn[0]), number(n, turn[1]), number(n, turn[2])};
+        piece.triangles[n] = {number(n, turn[0]), number(n, turn[1]), number(n, turn[2])};
         if (measure_) digest += measure({corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])});
       }
       digest_.fetch_add(digest, std::memory_order_relaxed);
     });
     triangles_ += count;
-    sink_.append({points_.data(), points_.size()}, {normals_.data(), normals_.size()},
-                 {numbers_.data(), numbers_.size()});
+    sink_.append({piece.points.data(), piece.points.size()}, {piece.normals.data(), piece.normals.size()},
+                 {piece.triangles.data(), piece.triangles.size()});
+    next_ ^= 1;
   }
+
+  // Returns when the sink has everything. Throws what it threw.
+  void wait() { sink_.wait(); }
 
   // Fills in counts, Euler number, components and digest of what has been written.
   void report(std::uint64_t open_edges, MeshReport& report) const;
@@ -88,17 +95,22 @@ class SurfaceOutput {
                            world_.point(corners[2].position));
   }
 
+  struct Piece {
+    Array<Point> points;
+    Array<Point> normals;
+    Array<std::array<std::uint64_t, 3>> triangles;
+  };
+
   const World& world_;
-  MeshSink& sink_;
   const Executor& executor_;
   bool measure_;
   ComponentCounter components_;
-  Array<Point> points_;
-  Array<Point> normals_;
-  Array<std::array<std::uint64_t, 3>> numbers_;
+  std::array<Piece, 2> pieces_;  // one is made, the other one is with the sink
+  std::size_t next_ = 0;
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
   std::atomic<std::uint64_t> digest_{0};
+  OverlappedSink sink_;  // ends before what it reads
 };
 
 }  // namespace isoweave

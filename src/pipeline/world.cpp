@@ -24,11 +24,6 @@ World::World(const Geometry& geometry, OutputSpace space) {
   }
 }
 
-Point World::point(Vec3 p) const {
-  return {static_cast<float>(dot(rows_[0], p) + origin_.x), static_cast<float>(dot(rows_[1], p) + origin_.y),
-          static_cast<float>(dot(rows_[2], p) + origin_.z)};
-}
-
 Point World::normal(Point n) const {
   const Vec3 v{n[0], n[1], n[2]};
   const Vec3 turned{dot(cofactors_[0], v), dot(cofactors_[1], v), dot(cofactors_[2], v)};

@@ -13,7 +13,10 @@ class World {
   World() = default;  // leaves positions as they are
   World(const Geometry& geometry, OutputSpace space);
 
-  Point point(Vec3 p) const;
+  Point point(Vec3 p) const {
+    return {static_cast<float>(dot(rows_[0], p) + origin_.x), static_cast<float>(dot(rows_[1], p) + origin_.y),
+            static_cast<float>(dot(rows_[2], p) + origin_.z)};
+  }
 
   // Normals are covectors: they turn with the inverse transpose, here by its multiple, the cofactors.
   Point normal(Point n) const;

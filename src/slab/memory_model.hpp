@@ -42,7 +42,7 @@ struct MemoryModel {
   }
 
   // On the way from extraction to the zone, or straight to the file.
-  double per_new() const { return (simplifies ? 45 : 69) + (normals ? 12 : 0); }
+  double per_new() const { return (simplifies ? 65 : 115) + (normals ? 12 : 0); }
 
   // In the zone, with half a vertex each.
   double per_held() const { return simplifies ? 160 + (normals ? 6 : 0) : 0; }

@@ -67,7 +67,8 @@ TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
     const files::Folder folder;
     std::vector<std::string> arguments = mesh({"--checkpoint", "run", "--every", "4layers", "--slab", "4"});
     for (int part = 0; part < 100; ++part) {
-      const Result result = run(folder.path(), arguments, after(folder, SIGKILL, random_delay(random)));
+      const std::chrono::milliseconds patience(10 * part);  // a busy machine must come to an end, too
+      const Result result = run(folder.path(), arguments, after(folder, SIGKILL, random_delay(random) + patience));
       if (result.code == 0) break;
       ASSERT_EQ(result.signal, SIGKILL) << result.err;
       ++kills;

@@ -150,12 +150,12 @@ TEST(Slabs, AreCutWhereTheyTurnOutTooFull) {
 TEST(Slabs, GrowByDoublingAtMost) {
   VolumeInfo volume;
   volume.dims = {256, 256, 256};
-  EXPECT_EQ(next_slab(volume, 7, 0, 0), 7) << "as asked";
-  EXPECT_EQ(next_slab(volume, 0, 0, 0), 8);
-  EXPECT_EQ(next_slab(volume, 0, 8, 10), 16);
-  EXPECT_EQ(next_slab(volume, 0, 64, 10), 64) << "no more than is worth holding";
-  EXPECT_EQ(next_slab(volume, 0, 64, 16000), 10);
-  EXPECT_EQ(next_slab(volume, 0, 64, 1e9), 1);
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 7, 0, 0), 7) << "as asked";
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 0, 0), 8);
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 8, 10), 16);
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 10), 64) << "no more than is worth holding";
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 16000), 10);
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 1e9), 1);
 }
 
 // A volume of more than 2^32 samples, wider than 2^16: all outside but a few samples far from the corner.

@@ -1,0 +1,84 @@
+// The parts of a volume that a forecast looks at: some slices of it, and a tile of those that is small enough to be
+// simplified.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+// Part of a slice, in samples.
+struct Rectangle {
+  std::array<std::int64_t, 2> from{}, size{};
+};
+
+// Where on a slice triangles lie: counts in a grid of bins.
+class TriangleMap {
+ public:
+  explicit TriangleMap(const std::array<std::int64_t, 3>& dims) : dims_(dims), counts_(kBins * kBins) {}
+
+  // A triangle at a place of the slice, in samples.
+  void add(double i, double j) { ++counts_[bin(j, 1) * kBins + bin(i, 0)]; }
+
+  // The square part of a slice (as far as samples are square) with about `part` of its area, nearest to the middle
+  // among those with at least half as many triangles as such a part has on average, or more of them than any other.
+  Rectangle busy_part(double part) const;
+
+ private:
+  static constexpr std::size_t kBins = 32;
+
+  std::size_t bin(double place, std::size_t axis) const;
+  std::uint64_t count(std::size_t i, std::size_t j, std::size_t side) const;
+
+  std::array<std::int64_t, 3> dims_;
+  std::vector<std::uint64_t> counts_;
+};
+
+// Samples of a part of some slices, in memory.
+class Tile final : public SliceSource {
+ public:
+  // With room for `slices` of them; the geometry is the volume's.
+  Tile(const VolumeInfo& volume, const Rectangle& part, std::int64_t slices);
+
+  const VolumeInfo& info() const override { return info_; }
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+
+  // Takes slice n from a whole one of the volume.
+  void take(std::int64_t n, std::span<const std::byte> slice);
+
+  // What of it lies in another part of the slices, or all of it if nothing does.
+  Tile cut(const Rectangle& part) const;
+
+ private:
+  std::size_t offset(std::int64_t n) const { return static_cast<std::size_t>(n) * info_.slice_bytes(); }
+
+  VolumeInfo info_;
+  Rectangle part_;
+  std::int64_t whole_row_;  // samples
+  std::vector<std::byte> samples_;
+};
+
+// Slices of a volume as a volume of their own. Every slice that is read is shown to `look`.
+class Section final : public SliceSource {
+ public:
+  using Look = std::function<void(std::int64_t n, std::span<const std::byte> slice)>;
+
+  Section(SliceSource& volume, std::int64_t first, std::int64_t slices, Look look);
+
+  const VolumeInfo& info() const override { return info_; }
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+
+ private:
+  SliceSource& volume_;
+  std::int64_t first_;
+  VolumeInfo info_;
+  Look look_;
+};
+
+}  // namespace isoweave
