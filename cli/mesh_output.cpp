@@ -16,6 +16,7 @@ std::string format_path(const OutputOptions& output) {
 void check(const OutputOptions& output) {
   if (output.to_stdout.empty()) return;
   parse_choice<bool>("--to-stdout", output.to_stdout, {{"ply", true}, {"stl", true}});
+  if (::isatty(STDOUT_FILENO) != 0) wrong_value("--to-stdout", "a pipe or a file as standard output", "a terminal");
 }
 
 }  // namespace

@@ -39,6 +39,10 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
   if (options.compress && !packs(format)) {
     throw CannotWrite(path + ": expected a name that ends in .glb or .precomputed for a compressed mesh");
   }
+  if (options.segment != 1 && format != MeshFormat::kPrecomputed) {
+    throw CannotWrite(path + ": expected a name that ends in .precomputed for an object with a number");
+  }
+  if (options.segment == 0) throw CannotWrite(path + ": expected a number of 1 or more for the object, found 0");
 }
 
 // What packing leaves, as measured on scans.

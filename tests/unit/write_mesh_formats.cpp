@@ -311,6 +311,8 @@ TEST(WriteMesh, OnlySomeFormatsAreCompressed) {
     EXPECT_THROW(open_mesh_file(folder / name, options), CannotWrite) << name;
     EXPECT_THROW(mesh_file_bytes(folder / name, 1, 1, options), CannotWrite) << name;
   }
+  EXPECT_THROW(open_mesh_file(folder / "a.ply", {.normals = false, .comments = {}, .segment = 2}), CannotWrite);
+  EXPECT_THROW(open_mesh_file(folder / "a.precomputed", {.normals = false, .comments = {}, .segment = 0}), CannotWrite);
   EXPECT_EQ(mesh_file_memory("a.glb", 1000, 1000), 0U);
   EXPECT_GT(mesh_file_memory("a.glb", 1000, 1000, options), 24000U);
   EXPECT_GT(mesh_file_memory("a.precomputed", 1000, 1000, options), 24000U);
