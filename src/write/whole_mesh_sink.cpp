@@ -74,7 +74,8 @@ std::array<std::uint16_t, 3> Grid16::place(const Point& point) const {
   return steps;
 }
 
-double Grid16::error() const { return std::sqrt(3.0) / 2 * step; }
+// With some room for the 32 bits that the box has in files, and the digits in which this is told.
+double Grid16::error() const { return 1.02 * std::sqrt(3.0) / 2 * step; }
 
 std::string rounding_note(const std::string& path, const Grid16& grid, const std::string& unit) {
   std::ostringstream text;

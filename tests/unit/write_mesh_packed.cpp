@@ -128,7 +128,7 @@ TEST(WritePackedGlb, UnpacksToTheMeshWithinTheErrorTold) {
     options.normals = normals;
     const std::vector<std::string> notes = write(folder / "a.glb", mesh, options);
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_NE(notes[0].find("rounded to 1/65535 of the longest side, by at most 0.000264 mm"), std::string::npos)
+    EXPECT_NE(notes[0].find("rounded to 1/65535 of the longest side, by at most 0.00027 mm"), std::string::npos)
         << notes[0];
 
     const std::string bytes = files::read_bytes(folder / "a.glb");
