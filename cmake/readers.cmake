@@ -1,11 +1,12 @@
-# Volume formats whose libraries may be missing. Each option is AUTO (read the format if the library is there), ON (stop
-# without it) or OFF. What is not read is compiled as an error that says so (src/volume/not_built.cpp).
+# Formats whose libraries may be missing. Each option is AUTO (take the format in if the library is there), ON (stop
+# without it) or OFF. What is left out is compiled as an error that says so (src/volume/not_built.cpp and
+# src/write/not_built.cpp).
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
-# isoweave_reader(NAME SOURCES TARGET PACKAGE...): finds a package, and drops the reader's sources without it.
+# isoweave_reader(NAME SOURCES TARGET PACKAGE...): finds a package, and drops the sources that need it without it.
 macro(isoweave_reader name sources target package)
-  set(ISOWEAVE_${name} AUTO CACHE STRING "Read ${name} through ${package}: AUTO, ON or OFF")
+  set(ISOWEAVE_${name} AUTO CACHE STRING "${name} through ${package}: AUTO, ON or OFF")
   set_property(CACHE ISOWEAVE_${name} PROPERTY STRINGS AUTO ON OFF)
   set(ISOWEAVE_HAS_${name} FALSE)
   if(ISOWEAVE_${name} STREQUAL AUTO)
@@ -20,7 +21,8 @@ macro(isoweave_reader name sources target package)
   list(APPEND ISOWEAVE_READERS ${name})
   if(NOT ISOWEAVE_HAS_${name})
     foreach(source ${sources})
-      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source}
+           ${PROJECT_SOURCE_DIR}/src/write/${source})
     endforeach()
   endif()
 endmacro()
@@ -41,6 +43,9 @@ isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome
 isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
 isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
 isoweave_reader(LZ4 "codec_lz4.cpp;vtk_lz4.cpp" IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
+# Packed meshes, which are written only.
+isoweave_reader(MESHOPTIMIZER glb_packed.cpp meshoptimizer::meshoptimizer meshoptimizer)
+isoweave_reader(DRACO precomputed_packed.cpp draco::draco draco)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)

@@ -205,7 +205,8 @@ TEST(CliCannotWrite, FilesOfLimitedSize) {
   const files::Folder folder;
   program::Setup setup;
   setup.file_limit = 4096;
-  for (const std::string output : {"out.ply", "out.stl", "out.obj"}) {
+  for (const std::string output :
+       {"out.ply", "out.stl", "out.obj", "out.off", "out.glb", "out.vtp", "out.3mf", "out.precomputed"}) {
     expect_failure(folder, {"mesh", "generate:sphere:48x48x48", "-o", output, "--iso", "0", "--error", "0"}, 4, output,
                    setup);
   }
@@ -215,7 +216,8 @@ TEST(CliCannotWrite, FilesOfLimitedSize) {
 TEST(CliCannotWrite, DiskFull) {
   const files::Folder folder;
   if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "may not mount a small disk";
-  for (const std::string output : {"out.ply", "out.stl", "out.obj"}) {
+  for (const std::string output :
+       {"out.ply", "out.stl", "out.obj", "out.off", "out.glb", "out.vtp", "out.3mf", "out.precomputed"}) {
     expect_failure(folder, {"mesh", "generate:sphere:64x64x64", "-o", output, "--iso", "0", "--error", "0"}, 4, output);
   }
   expect_failure(folder, {"generate", "sphere", "-o", "s.nrrd", "--size", "64"}, 4, "s.nrrd");
