@@ -68,7 +68,7 @@ void run_check(const CheckArguments& arguments) {
 void add_check_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
-  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL or OBJ")->required();
+  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_check(*arguments); });
 }

@@ -69,6 +69,7 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   const auto slices = static_cast<std::uint64_t>(info.dims[2]);
   const std::uint64_t samples = static_cast<std::uint64_t>(info.slice_samples()) * slices;
   std::string text = fmt::format("volume     {}, {}\n", path, info.format);
+  if (!info.part.empty()) text += fmt::format("part       {}\n", info.part);
   text += fmt::format("size       {} x {} x {} {}, {} samples, {}\n", info.dims[0], info.dims[1], info.dims[2],
                       sample_type_name(info.type), grouped(samples), byte_text(info.slice_bytes() * slices));
   text += fmt::format("spacing    {:.6g} x {:.6g} x {:.6g} {}\n", geometry.spacing[0], geometry.spacing[1],

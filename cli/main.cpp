@@ -65,6 +65,7 @@ int run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   isoweave::cli::ignore_write_signals();
+  isoweave::cli::occupy_standard_streams();
   try {
     return isoweave::cli::run(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
   } catch (const std::exception& error) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -35,7 +36,8 @@ std::string absolute_path(const std::string& path) { return std::filesystem::abs
 struct MeshArguments {
   InputOptions input;
   RunOptions run;
-  std::string output, iso, error = "0.2vox", quality = "normal", slab, inside = "above", normals = "none";
+  OutputOptions output;
+  std::string iso, error = "0.2vox", quality = "normal", slab, inside = "above", normals = "none";
   std::string space, memory, checkpoint, every, resume;
   bool open = false, closed = false, dry_run = false;
 };
@@ -47,7 +49,13 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"spacing", arguments.input.spacing},
           {"origin", arguments.input.origin},
           {"series", arguments.input.series},
-          {"output", absolute_path(arguments.output)},
+          {"dataset", arguments.input.dataset},
+          {"level", arguments.input.level},
+          {"channel", arguments.input.channel},
+          {"time", arguments.input.time},
+          {"output", absolute_path(arguments.output.path)},
+          {"compress", arguments.output.compress},
+          {"segment", arguments.output.segment},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
           {"iso", fmt::format("{}", options.iso)},
           {"error", arguments.error},
@@ -63,8 +71,9 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
 
 // The task of a saved state, and how it was to run where nothing else is said now.
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
-  arguments.input = {task.at("volume"), task.at("raw"), task.at("spacing"), task.at("origin"), task.at("series")};
-  arguments.output = task.at("output");
+  arguments.input = {task.at("volume"),  task.at("raw"),   task.at("spacing"), task.at("origin"), task.at("series"),
+                     task.at("dataset"), task.at("level"), task.at("channel"), task.at("time")};
+  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");
   arguments.error = task.at("error");
@@ -117,7 +126,8 @@ void make_checkpoint_folder(const std::string& folder) {
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
   // Without a state there is nothing to go on with: a run that ended before its first one.
-  for (const char* part : {"mesh.part", "faces.part", "positions.part"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part"})
+    std::filesystem::remove(path / part, error);
 }
 
 // A whole volume is one layer thicker than its slices when it is closed.
@@ -164,8 +174,18 @@ std::vector<std::string> comments(const MeshArguments& arguments, const MeshOpti
                       options.closed ? "closed" : "open", arguments.error, arguments.quality)};
 }
 
-std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshOptions& options) {
-  return mesh_file_bytes(arguments.output, forecast.vertices, forecast.triangles, options.normals);
+// How the mesh is to be written.
+MeshFileOptions file_options(const MeshArguments& arguments, const MeshOptions& options, const Geometry& geometry) {
+  MeshFileOptions file;
+  file.normals = options.normals;
+  file.comments = comments(arguments, options);
+  file.unit = geometry.unit;
+  file.space = space_text(geometry, options.space);
+  return mesh_file_options(arguments.output, std::move(file));
+}
+
+std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
+  return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
 }
 
 std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int threads) {
@@ -178,9 +198,13 @@ std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int thr
 }
 
 // What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
-Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control) {
-  const Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
-  output_bytes(forecast, arguments, options);
+Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                          const RunControl& control) {
+  Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
+  output_bytes(forecast, arguments, file);
+  const std::uint64_t writing = output_memory(arguments.output, forecast.vertices, forecast.triangles, file);
+  forecast.peak_bytes += writing;
+  forecast.least_bytes += writing;
   if (control.memory > 0 && forecast.least_bytes > control.memory) {
     throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more, found {}", arguments.input.path,
                                  std::ceil(static_cast<double>(forecast.least_bytes) * 1e-6), arguments.memory));
@@ -189,19 +213,19 @@ Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& opt
 }
 
 Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
-                 const MeshOptions& options, const std::optional<Forecast>& forecast) {
+                 const MeshOptions& options, const MeshFileOptions& file, const std::optional<Forecast>& forecast) {
   Json input = volume_json(info, arguments.input.path);
   add_range(input, report.min, report.max, report.nan);
   Json json = run_json(report, std::move(input));
   if (forecast) {
     json["memory"]["predicted_bytes"] = forecast->peak_bytes;
-    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, options));
+    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, file));
   }
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
   json["closed"] = options.closed;
   json["quality"] = arguments.quality;
-  json["output"] = arguments.output;
+  json["output"] = arguments.output.name();
   return json;
 }
 
@@ -211,7 +235,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   parse_slab(arguments.slab, 1);
-  check_different({arguments.input.path, arguments.output, run.report});
+  check_different({arguments.input.path, arguments.output.path, run.report});
 
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
@@ -224,14 +248,16 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   std::optional<AtomicFile> report_file;
   if (!run.report.empty()) report_file.emplace(run.report);
   if (arguments.iso == "auto") {
-    open_mesh_file(arguments.output);  // finds out now what would stop the run after the first pass
+    open_output(arguments.output,
+                mesh_file_options(arguments.output, {}));  // finds out now what would stop the run after the first pass
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
   }
+  MeshFileOptions file = file_options(arguments, options, info.geometry);
   std::optional<Forecast> forecast;
-  if (resume == nullptr) forecast = checked_forecast(arguments, options, control);
+  if (resume == nullptr) forecast = checked_forecast(arguments, options, file, control);
   if (arguments.dry_run) {
-    const std::uint64_t bytes = output_bytes(*forecast, arguments, options);
+    const std::uint64_t bytes = output_bytes(*forecast, arguments, file);
     const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_out(forecast_text(*forecast, bytes, threads));
     if (report_file)
@@ -245,9 +271,9 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     control.checkpoint.note = task_json(arguments, options).dump();
   }
   control.resume = resume;
-  const std::unique_ptr<MeshSink> sink = open_mesh_file(
-      arguments.output,
-      {options.normals, comments(arguments, options), arguments.checkpoint, resume != nullptr ? resume->mark : ""});
+  file.parts = arguments.checkpoint;
+  if (resume != nullptr) file.mark = resume->mark;
+  const std::unique_ptr<MeshSink> sink = open_output(arguments.output, file);
   if (!run.quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
@@ -255,18 +281,23 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = mesh_volume(*volume, *sink, options, control);
   printer.finish();
-  if (report_file) write_report(*report_file, report_json(report, info, arguments, options, forecast));
+  if (report_file) {
+    Json json = report_json(report, info, arguments, options, file, forecast);
+    json["notes"] = sink->notes();
+    write_report(*report_file, json);
+  }
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
+  print_notes(*sink);
   const auto slices = static_cast<double>(info.dims[2]);
-  print_summary(report, arguments.output, static_cast<double>(info.slice_samples()) * slices,
+  print_summary(report, arguments.output.name(), static_cast<double>(info.slice_samples()) * slices,
                 forecast ? &*forecast : nullptr);
 }
 
 void run_mesh(MeshArguments arguments) {
   if (arguments.resume.empty()) {
     if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
-    if (arguments.output.empty()) throw CLI::RequiredError("--output");
+    if (!arguments.output.given()) throw CLI::RequiredError("--output");
     if (arguments.iso.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
@@ -294,7 +325,7 @@ void add_mesh_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("mesh", "Volume to simplified surface");
   const auto arguments = std::make_shared<MeshArguments>();
   add_input_options(*verb, arguments->input);
-  verb->add_option("-o,--output", arguments->output, "Mesh to write: .ply, .stl or .obj");
+  add_output_options(*verb, arguments->output);
   verb->add_option("--iso", arguments->iso, "Value of the surface, or auto (Otsu's threshold)");
   verb->add_option("--error", arguments->error,
                    "Simplification error: a length in vox, mm, um, nm or the volume's unit; 0: none")
@@ -311,7 +342,8 @@ void add_mesh_verb(CLI::App& app) {
   verb->add_option("--memory", arguments->memory, "Cap on the memory of the process, such as 800M or 2G");
   verb->add_flag("--dry-run", arguments->dry_run, "Say what the run would take, from a sample of the volume");
   verb->add_option("--checkpoint", arguments->checkpoint,
-                   "Save the state of the run in this folder, to go on with after whatever ends it");
+                   "Save the state of the run in this folder, to go on with after whatever ends it")
+      ->excludes("--to-stdout");
   verb->add_option("--every", arguments->every, "How often: a number of layers or a time: 16layers, 90s, 5min, 2h")
       ->default_str("5min");
   add_run_options(*verb, arguments->run);

@@ -41,6 +41,14 @@ std::optional<double> to_finite(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+// A whole number from 0 on; nothing for an option that is not given.
+std::optional<std::int64_t> parse_index(std::string_view option, std::string_view text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<std::int64_t> value = to_number<std::int64_t>(text);
+  if (!value || *value < 0) wrong_value(option, "a whole number from 0 on", text);
+  return value;
+}
+
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error)) return true;
@@ -129,20 +137,31 @@ Quality parse_quality(std::string_view text) {
 }
 
 void add_input_options(CLI::App& verb, InputOptions& input) {
-  verb.add_option(
-      "VOLUME", input.path,
-      "Volume file, folder of slices, quoted pattern such as 'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
+  verb.add_option("VOLUME", input.path,
+                  "Volume file, folder of Zarr, N5 or slices, quoted pattern such as 'slices/*.tif', or "
+                  "generate:KIND:WxHxD[:TYPE[:SEED]]");
   verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID");
+  verb.add_option("--dataset", input.dataset,
+                  "Which array of an HDF5 file or of a Zarr or N5 folder, by its path in it");
+  verb.add_option("--level", input.level, "Which of the sizes of an image in OME-Zarr or N5, 0 being the full one");
+  verb.add_option("--channel", input.channel, "Which channel of an array, from 0");
+  verb.add_option("--time", input.time, "Which time of an array, from 0");
 }
 
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   if (!input.path.starts_with(kGeneratePrefix)) return std::nullopt;
   if (!input.raw.empty()) throw std::invalid_argument("--raw does not go with a generated volume");
   if (!input.origin.empty()) throw std::invalid_argument("--origin does not go with a generated volume");
-  if (!input.series.empty()) throw std::invalid_argument("--series does not go with a generated volume");
+  for (const auto& [option, value] : {std::pair{"--series", &input.series},
+                                      {"--dataset", &input.dataset},
+                                      {"--level", &input.level},
+                                      {"--channel", &input.channel},
+                                      {"--time", &input.time}}) {
+    if (!value->empty()) throw std::invalid_argument(fmt::format("{} does not go with a generated volume", option));
+  }
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
   if (parts.size() < 2 || parts.size() > 4) wrong_value("VOLUME", "generate:KIND:WxHxD[:TYPE[:SEED]]", input.path);
   GenerateOptions options;
@@ -169,6 +188,10 @@ std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
   if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
   if (!input.origin.empty()) options.origin = parse_triple("--origin", input.origin);
   options.series = input.series;
+  options.dataset = input.dataset;
+  options.level = parse_index("--level", input.level);
+  options.channel = parse_index("--channel", input.channel);
+  options.time = parse_index("--time", input.time);
   return open_volume(input.path, options);
 }
 

@@ -30,6 +30,7 @@ Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : 
 Json volume_json(const VolumeInfo& info, const std::string& path) {
   return {{"path", path},
           {"format", info.format},
+          {"part", info.part},
           {"dims", info.dims},
           {"type", sample_type_name(info.type)},
           {"spacing", info.geometry.spacing},

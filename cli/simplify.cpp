@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -19,7 +20,8 @@ Examples:
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
-  std::string input, output, error, quality = "normal";
+  std::string input, error, quality = "normal";
+  OutputOptions output;
   RunOptions run;
 };
 
@@ -31,34 +33,40 @@ Json report_json(const MeshReport& report, const TriangleMesh& mesh, const Simpl
                                 {"triangles", mesh.triangles.size()},
                                 {"vertices", mesh.vertices.size()}});
   json["quality"] = arguments.quality;
-  json["output"] = arguments.output;
+  json["output"] = arguments.output.name();
   return json;
 }
 
 void run_simplify(const SimplifyArguments& arguments) {
+  if (!arguments.output.given()) throw CLI::RequiredError("--output");
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   const SimplifyOptions options{parse_error_length("--error", arguments.error, ""), parse_quality(arguments.quality)};
-  check_different({arguments.input, arguments.output, run.report});
+  check_different({arguments.input, arguments.output.path, run.report});
 
   exit_on_signal();
   const TriangleMesh mesh = read_mesh(arguments.input);
   control.stop = &stop_on_signal();
   std::optional<AtomicFile> report_file;
   if (!run.report.empty()) report_file.emplace(run.report);
-  const std::unique_ptr<MeshSink> sink = open_mesh_file(
-      arguments.output, {false,
-                         {"isoweave " ISOWEAVE_VERSION,
-                          fmt::format("simplified, error {} quality {}", arguments.error, arguments.quality)}});
+  MeshFileOptions file;
+  file.comments = {"isoweave " ISOWEAVE_VERSION,
+                   fmt::format("simplified, error {} quality {}", arguments.error, arguments.quality)};
+  const std::unique_ptr<MeshSink> sink = open_output(arguments.output, mesh_file_options(arguments.output, file));
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = simplify_mesh(mesh, *sink, options, control);
   printer.finish();
-  if (report_file) write_report(*report_file, report_json(report, mesh, arguments));
+  if (report_file) {
+    Json json = report_json(report, mesh, arguments);
+    json["notes"] = sink->notes();
+    write_report(*report_file, json);
+  }
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
-  print_summary(report, arguments.output, 0);
+  print_notes(*sink);
+  print_summary(report, arguments.output.name(), 0);
 }
 
 }  // namespace
@@ -66,8 +74,8 @@ void run_simplify(const SimplifyArguments& arguments) {
 void add_simplify_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
   const auto arguments = std::make_shared<SimplifyArguments>();
-  verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL or OBJ")->required();
-  verb->add_option("-o,--output", arguments->output, "Mesh to write: .ply, .stl or .obj")->required();
+  verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  add_output_options(*verb, arguments->output);
   verb->add_option("--error", arguments->error, "Simplification error: a length in the mesh's unit, or vox; 0: none")
       ->required();
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();

@@ -1,11 +1,12 @@
-# Volume formats whose libraries may be missing. Each option is AUTO (read the format if the library is there), ON (stop
-# without it) or OFF. What is not read is compiled as an error that says so (src/volume/not_built.cpp).
+# Formats whose libraries may be missing. Each option is AUTO (take the format in if the library is there), ON (stop
+# without it) or OFF. What is left out is compiled as an error that says so (src/volume/not_built.cpp and
+# src/write/not_built.cpp).
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
-# isoweave_reader(NAME SOURCE TARGET PACKAGE...): finds a package, and drops the reader's source without it.
-macro(isoweave_reader name source target package)
-  set(ISOWEAVE_${name} AUTO CACHE STRING "Read ${name} through ${package}: AUTO, ON or OFF")
+# isoweave_reader(NAME SOURCES TARGET PACKAGE...): finds a package, and drops the sources that need it without it.
+macro(isoweave_reader name sources target package)
+  set(ISOWEAVE_${name} AUTO CACHE STRING "${name} through ${package}: AUTO, ON or OFF")
   set_property(CACHE ISOWEAVE_${name} PROPERTY STRINGS AUTO ON OFF)
   set(ISOWEAVE_HAS_${name} FALSE)
   if(ISOWEAVE_${name} STREQUAL AUTO)
@@ -19,15 +20,32 @@ macro(isoweave_reader name source target package)
   set(ISOWEAVE_${name}_TARGET ${target})
   list(APPEND ISOWEAVE_READERS ${name})
   if(NOT ISOWEAVE_HAS_${name})
-    list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source})
+    foreach(source ${sources})
+      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source}
+           ${PROJECT_SOURCE_DIR}/src/write/${source})
+    endforeach()
   endif()
 endmacro()
 
 # Messages of libtiff are taken per file since 4.5.
-isoweave_reader(TIFF tiff.cpp TIFF::TIFF TIFF 4.5)
+isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIFF::TIFF TIFF 4.5)
 isoweave_reader(PNG png.cpp PNG::PNG PNG)
 # Plain DICOM samples need no library.
-isoweave_reader(DICOM dicom_unpack.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)
+isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
+# Loaded when it is needed; headers only.
+isoweave_reader(HDF5 "hdf5.cpp;hdf5_dataset.cpp;hdf5_library.cpp" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5>
+                IsoweaveHdf5)
+# Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
+isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp"
+                $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
+isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
+isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
+isoweave_reader(LZ4 "codec_lz4.cpp;vtk_lz4.cpp" IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
+# Packed meshes, which are written only.
+isoweave_reader(MESHOPTIMIZER glb_packed.cpp meshoptimizer::meshoptimizer meshoptimizer)
+isoweave_reader(DRACO precomputed_packed.cpp draco::draco draco)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)
@@ -48,8 +66,14 @@ function(isoweave_select_reader_tests sources)
   if(NOT ISOWEAVE_HAS_PNG)
     list(FILTER left EXCLUDE REGEX "/volume_png\\.cpp$")
   endif()
-  if(NOT ISOWEAVE_HAS_DICOM)
+  if(NOT (ISOWEAVE_HAS_DICOM AND ISOWEAVE_HAS_JPEGLS AND ISOWEAVE_HAS_JPEG2000))
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_HDF5)
+    list(FILTER left EXCLUDE REGEX "/volume_hdf5\\.cpp$")
+  endif()
+  if(NOT ISOWEAVE_HAS_ZARR)
+    list(FILTER left EXCLUDE REGEX "/volume_(zarr|n5|ome_zarr)\\.cpp$")
   endif()
   set(${sources} ${left} PARENT_SCOPE)
 endfunction()

@@ -11,6 +11,9 @@ namespace isoweave::meshes {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+// Names that stand for every format of files that is written.
+inline constexpr std::array<const char*, 7> kFileNames{"a.ply", "a.stl", "a.obj", "a.off", "a.glb", "a.vtp", "a.3mf"};
+
 // The corner of the unit cube: closed, outward, volume 1/6.
 inline TriangleMesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}};

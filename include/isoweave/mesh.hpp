@@ -20,10 +20,11 @@ struct TriangleMesh {
   std::vector<Point> normals;                           // one per vertex, or none
 };
 
-// Reads PLY (binary little- and big-endian, ascii; polygons are fanned), STL (binary, ascii; corners with
-// equal coordinates become one vertex) or OBJ (v and f; polygons are fanned), told by content, then by name.
-// Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are kept when they are
-// numbered like the vertices, PLY normals always.
+// Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
+// vertex), OBJ (v and f), OFF, VTP (arrays appended raw and not compressed), and what open_mesh_file writes as GLB
+// (coordinates as stored, without the node's unit and axes; not compressed) and 3MF; told by content, then by name.
+// Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
+// kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always.
 TriangleMesh read_mesh(const std::string& path);
 
 // Where finished pieces of a mesh go. Not thread-safe. mesh_volume calls append() from a thread of its own while it
@@ -45,29 +46,60 @@ class MeshSink {
   // Makes what has been appended durable and returns a mark to go on from. Throws std::logic_error unless the sink
   // was opened to keep its parts.
   virtual std::string mark() { throw std::logic_error("this mesh cannot be continued later"); }
+
+  // What a user should know of the finished mesh, one line each: how far coordinates were rounded, say.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 struct MeshFileOptions {
-  bool normals = false;               // STL has no place for vertex normals and ignores them
-  std::vector<std::string> comments;  // one line each, into the header where the format has comments
+  bool normals = false;               // STL, 3MF and neuroglancer have no place for them and ignore them
+  std::vector<std::string> comments;  // one line each, into the file where the format has a place for them
 
   // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process; they
   // leave it when the mesh is finished. Empty: beside the target, and nothing is kept.
   std::string parts{};
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
+
+  // What the coordinates are, as far as it is known; said in the file where the format has a place for it.
+  std::string unit{};   // "mm", "um", "nm" or "m"
+  std::string space{};  // "LPS", "RAS" or "index"
+
+  // .glb: positions rounded to 16 bits of the longest side of their box (KHR_mesh_quantization), packed by
+  // meshoptimizer (EXT_meshopt_compression). .precomputed: neuroglancer's multi-resolution format, one level of detail,
+  // rounded likewise and packed by Draco. Refused for other formats and by builds without the library.
+  bool compress = false;
+  std::uint64_t segment = 1;  // .precomputed: the number of the object
 };
 
-// Writes a mesh file, the format by the name's ending: .ply (binary little-endian, 32-bit indices), .stl (binary),
-// .obj. The file appears under its name only when finish() has written, counted, flushed and renamed it;
-// until then it is a temporary file in the same folder, which the destructor removes.
-// Throws CannotWrite when the ending is unknown, the folder is missing or read-only, the disk is full, or the
-// format cannot hold the counts; when there are parts already and no mark, or a mark and no such parts. PLY needs room
-// for its faces twice while finish() runs; STL keeps the positions of all vertices in memory, 12 bytes each.
+// Writes a mesh file, the format by the name's ending; docs/formats.md says what each holds:
+//   .ply          binary little-endian, 32-bit indices
+//   .stl          binary; keeps the positions of all vertices in memory, 12 bytes each
+//   .obj, .off    text
+//   .glb          glTF 2.0; at most 4 GiB. The node turns the axes to y up and scales to metres, coordinates stay
+//   .vtp          VTK XML, appended raw, 64-bit indices
+//   .3mf          a zip archive; at most 2^31 vertices
+//   .precomputed  neuroglancer's legacy meshes in nanometres: a folder, which must not exist or be empty
+// The file or folder appears under its name only when finish() has written, counted, flushed and renamed it; until then
+// it is a temporary file in the same folder, which the destructor removes. Throws CannotWrite when the ending is
+// unknown, the folder is missing or read-only, the disk is full, or the format cannot hold the counts; when there are
+// parts already and no mark, or a mark and no such parts. All but STL and OBJ need room for the faces twice while
+// finish() runs, .precomputed for all. With `compress` the whole mesh is in memory then: see mesh_file_memory.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
-// Size of a mesh file of this name with so many vertices and triangles; of text about. Throws CannotWrite when the
-// format cannot hold them, or when the ending is unknown.
+// Writes a mesh to an open descriptor, a pipe say, when it is finished; until then it is in files without names in
+// $TMPDIR or /tmp. `format` is "ply" or "stl", `name` stands for the descriptor in messages. Throws
+// std::invalid_argument for another format, and when parts are to be kept; CannotWrite when the descriptor takes no
+// more: the program should ignore SIGPIPE. The descriptor stays open.
+std::unique_ptr<MeshSink> open_mesh_stream(int descriptor, const std::string& name, const std::string& format,
+                                           const MeshFileOptions& options = {});
+
+// Size of a mesh file of this name with so many vertices and triangles; of text and of packed files about. Throws
+// CannotWrite when the format cannot hold them, or when the ending is unknown.
 std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
-                              bool normals = false);
+                              const MeshFileOptions& options = {});
+
+// What writing such a file holds in memory beside some megabytes of buffers, about: 0 but for STL and with `compress`.
+std::uint64_t mesh_file_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
+                               const MeshFileOptions& options = {});
 
 }  // namespace isoweave

@@ -43,6 +43,8 @@ struct Geometry {
 struct VolumeInfo {
   std::string path;                           // as given
   std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "tiff", "png", "dicom", ...
+  std::string part;                           // what was chosen of it: "dataset /raw, channel 1"; empty: all there is
+  std::string header;                         // where `path` is a folder: the file that describes the volume, if any
   std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
   SampleType type = SampleType::kUint8;
   Geometry geometry;
@@ -91,12 +93,17 @@ struct OpenOptions {
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
   std::string series;                            // Series Instance UID: which one, where there are several (DICOM)
+  std::string dataset;                           // path of an array inside the file or folder (HDF5, Zarr, N5)
+  std::optional<std::int64_t> level;             // 0: full size; of an image kept at several sizes (OME-Zarr, N5)
+  std::optional<std::int64_t> channel;           // index along an array's axis of channels; none: the first
+  std::optional<std::int64_t> time;              // index along an array's axis of time; none: the first
 };
 
 // Opens a volume; the format is told by its content, then by its name: NRRD/NHDR, MetaImage
-// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, VTK images, raw. A folder, or a pattern
-// such as "slices/*.tif", is a series of one file per slice: TIFF or PNG in the order of the numbers in
-// their names, DICOM by position. A DICOM file stands for the series it belongs to. docs/formats.md says what is read
+// (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, VTK images, HDF5, raw. A folder of
+// Zarr, OME-Zarr or N5 is an array of chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of
+// one file per slice: TIFF or PNG in the order of the numbers in their names, DICOM by position. A DICOM file stands
+// for the series it belongs to. docs/formats.md says what is read
 // of each. Only headers are read here, and their claims are compared with the sizes of the files where those are known.
 // Throws BadInput when the file is missing, a folder without slices, of no known format or of one that
 // this build leaves out, or its header is wrong.

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "isoweave/error.hpp"
+#include "volume/input_file.hpp"
 
 namespace isoweave {
 namespace {
@@ -40,15 +41,11 @@ std::string state_path(const std::string& folder, std::uint64_t number) {
 Header read_header(StateReader& reader) {
   std::string format;
   reader.list(format);
-  if (format != kFormat) {
-    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found another file");
-  }
+  constexpr const char* kExpected = "a state saved by isoweave " ISOWEAVE_VERSION;
+  if (format != kFormat) bad_input(reader.path(), kExpected, "another file");
   std::string version;
   reader.list(version);
-  if (version != ISOWEAVE_VERSION) {
-    throw BadInput(reader.path() + ": expected a state saved by isoweave " ISOWEAVE_VERSION ", found one of version " +
-                   version);
-  }
+  if (version != ISOWEAVE_VERSION) bad_input(reader.path(), kExpected, "one of version " + version);
   Header header;
   header.exchange(reader);
   header.checkpoint.path = reader.path();
@@ -79,17 +76,20 @@ std::string numbers_text(std::span<const double> numbers) {
   return text.str();
 }
 
-// Size and time of change of the file that was opened, if it is one.
-std::string file_text(const std::string& path) {
+// What was chosen of the file that was opened, and size and time of change of that file or of the one that describes a
+// folder.
+std::string file_text(const VolumeInfo& volume) {
+  const std::string& path = volume.header.empty() ? volume.path : volume.header;
+  std::string part = volume.part.empty() ? "" : ", " + volume.part;
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return "";
-  return ", " + std::to_string(status.st_size) + " bytes changed at " + std::to_string(status.st_mtim.tv_sec) + "." +
-         std::to_string(status.st_mtim.tv_nsec);
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return part;
+  return part + ", " + std::to_string(status.st_size) + " bytes changed at " + std::to_string(status.st_mtim.tv_sec) +
+         "." + std::to_string(status.st_mtim.tv_nsec);
 }
 
 void require_same(const std::string& path, const char* what, const std::string& saved, const std::string& now) {
   if (saved == now) return;
-  throw BadInput(path + ": the " + what + " has changed: expected " + saved + ", found " + now);
+  bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   text << volume.dims[0] << " x " << volume.dims[1] << " x " << volume.dims[2] << ' ' << sample_type_name(volume.type)
        << ", spacing" << numbers_text(volume.geometry.spacing) << ", origin" << numbers_text(volume.geometry.origin)
        << ", axes" << numbers_text(volume.geometry.direction) << ", scale"
-       << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume.path);
+       << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume);
   identity.volume = text.str();
   text.str("");
   text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")

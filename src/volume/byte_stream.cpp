@@ -48,9 +48,10 @@ std::uint64_t FileStream::skip(std::uint64_t count) {
 }
 
 struct InflateStream::State {
-  State() {
+  explicit State(Form form) {
     constexpr int kZlibOrGzip = 15 + 32;
-    if (inflateInit2(&zlib, kZlibOrGzip) != Z_OK) throw std::bad_alloc();
+    constexpr int kRaw = -15;
+    if (inflateInit2(&zlib, form == Form::kRaw ? kRaw : kZlibOrGzip) != Z_OK) throw std::bad_alloc();
   }
   ~State() { inflateEnd(&zlib); }
   State(const State&) = delete;
@@ -62,10 +63,10 @@ struct InflateStream::State {
   bool member_done = false;
 };
 
-InflateStream::InflateStream(std::unique_ptr<ByteStream> input, std::string path)
-    : input_(std::move(input)), path_(std::move(path)), state_(std::make_unique<State>()) {
+InflateStream::InflateStream(std::unique_ptr<ByteStream> input, std::string path, Form form)
+    : input_(std::move(input)), path_(std::move(path)), state_(std::make_unique<State>(form)) {
   refill();
-  state_->gzip = state_->zlib.avail_in > 0 && state_->input[0] == std::byte{0x1f};
+  state_->gzip = form == Form::kZlibOrGzip && state_->zlib.avail_in > 0 && state_->input[0] == std::byte{0x1f};
 }
 
 InflateStream::~InflateStream() = default;

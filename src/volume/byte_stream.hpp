@@ -44,11 +44,13 @@ class FileStream final : public ByteStream {
   std::uint64_t end_;
 };
 
-// Inflates a zlib stream or the members of a gzip stream, told apart by their first bytes.
+// Inflates a zlib stream or the members of a gzip stream, told apart by their first bytes; or one without any wrapping.
 class InflateStream final : public ByteStream {
  public:
+  enum class Form { kZlibOrGzip, kRaw };
+
   // `path` names the input in messages.
-  InflateStream(std::unique_ptr<ByteStream> input, std::string path);
+  InflateStream(std::unique_ptr<ByteStream> input, std::string path, Form form = Form::kZlibOrGzip);
   ~InflateStream() override;
 
   std::size_t read(std::span<std::byte> out) override;

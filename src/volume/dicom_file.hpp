@@ -1,23 +1,23 @@
-// One DICOM file of one slice: what its header says, and its samples.
+// The slices of a DICOM file, one or one for each frame: what its header says of them, and their samples.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "isoweave/volume.hpp"
+#include "volume/dicom_elements.hpp"
 
 namespace isoweave {
 
 // Values as the file has them; what is not there is 0 or empty.
 struct DicomSlice {
-  std::string path;
+  std::string file;
+  std::string path;    // of the file, for messages; with the number of the frame where there are several
   std::string syntax;  // Transfer Syntax UID
   std::string series;  // Series Instance UID; programs that hide patients may drop it
   std::string description;
@@ -28,7 +28,6 @@ struct DicomSlice {
   int high = 0;    // the uppermost of those
   bool is_signed = false;
   int samples = 1;
-  bool enhanced = false;   // geometry is kept per frame
   bool has_table = false;  // from samples to values
   std::string photometric;
   std::string frames;
@@ -40,22 +39,27 @@ struct DicomSlice {
   std::string slope;
   std::string intercept;
 
-  // Where the samples lie: one range of the file, or, where they are packed, one for each fragment.
-  using Range = std::pair<std::uint64_t, std::uint64_t>;  // first byte, number of bytes
-  std::vector<Range> pixels;
+  // Where the samples lie: one range of the file, or, where they are packed, one for each fragment. A file that is
+  // deflated counts as inflated.
+  std::vector<DicomRange> pixels;
   bool packed = false;
+  std::uint64_t data_set = 0;         // its first byte
+  std::shared_ptr<DicomBytes> bytes;  // the open file, where it holds several frames
 
   std::uint64_t pixel_bytes() const;
 };
 
-// Nothing for a DICOM file that holds no image. Throws BadInput when the file is damaged, or of a transfer syntax that
-// is not read. Nothing is allocated that an element merely claims.
-std::optional<DicomSlice> read_dicom_header(const std::string& path);
+// The slices of a file, in the order of its frames; none for a DICOM file that holds no image. Throws BadInput when the
+// file is damaged, of a transfer syntax that is not read, or holds frames without saying where each of them lies.
+std::vector<DicomSlice> read_dicom_header(const std::string& path);
 
 // The samples, in the machine's byte order. Throws BadInput unless they are `bytes` of `type`.
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes);
 
-// Unpacks JPEG, JPEG-LS or JPEG 2000 samples. Throws BadInput when they do not decode to `bytes`.
-std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
+// Unpack samples after check_frame_header. Throw BadInput when they do not decode to `bytes`. The first takes JPEG-LS
+// too.
+std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
+std::vector<std::byte> unpack_jpegls(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
+std::vector<std::byte> unpack_jpeg2000(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
 
 }  // namespace isoweave

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -74,10 +73,6 @@ SampleType sample_type_of(const DicomSlice& slice) {
 }
 
 SliceKindFacts facts_of(const DicomSlice& slice) {
-  if (slice.enhanced) bad_input(slice.path, "one slice in each file", "an enhanced multi-frame image");
-  if (!slice.frames.empty() && parse_integer(slice.frames) != 1) {
-    bad_input(slice.path, "one frame in each file", quoted(slice.frames));
-  }
   if (slice.samples != 1 || !slice.photometric.starts_with("MONOCHROME")) {
     bad_input(slice.path, "grey samples (MONOCHROME1 or 2)",
               quoted(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
@@ -323,9 +318,9 @@ OpenedVolume open_dicom_series(const SliceFiles& slices, const std::string& chos
   SeriesByUid all;
   std::int64_t without_image = 0;
   for (const std::string& path : slices.files) {
-    const std::optional<DicomSlice> slice = read_dicom_header(path);
-    if (slice) all[slice->series].push_back(*slice);
-    if (!slice) ++without_image;
+    const std::vector<DicomSlice> slices_of_file = read_dicom_header(path);
+    for (const DicomSlice& slice : slices_of_file) all[slice.series].push_back(slice);
+    if (slices_of_file.empty()) ++without_image;
   }
   if (all.empty()) bad_input(slices.path, "DICOM images", std::to_string(without_image) + " files without one");
   OpenedVolume volume = volume_of(chosen_series(all, chosen, slices.path), slices.path);
@@ -338,19 +333,21 @@ OpenedVolume open_dicom_series(const SliceFiles& slices, const std::string& chos
 }
 
 OpenedVolume open_dicom_file(const std::string& path, const std::string& chosen) {
-  const std::optional<DicomSlice> self = read_dicom_header(path);
-  if (!self) bad_input(path, "a DICOM image", "a DICOM file without one");
-  if (!chosen.empty() && chosen != self->series) {
-    bad_input(path, "the series " + quoted(chosen), quoted(self->series));
-  }
+  const std::vector<DicomSlice> self = read_dicom_header(path);
+  if (self.empty()) bad_input(path, "a DICOM image", "a DICOM file without one");
+  const std::string& uid = self.front().series;
+  if (!chosen.empty() && chosen != uid) bad_input(path, "the series " + quoted(chosen), quoted(uid));
   Series series;
+  std::size_t files = 0;
   for (const std::string& name : dicom_files_beside(path)) {
-    const std::optional<DicomSlice> slice = read_dicom_header(name);
-    if (slice && slice->series == self->series) series.push_back(*slice);
+    const std::vector<DicomSlice> slices = read_dicom_header(name);
+    if (slices.empty() || slices.front().series != uid) continue;
+    ++files;
+    series.insert(series.end(), slices.begin(), slices.end());
   }
   OpenedVolume volume = volume_of(series, path);
-  if (series.size() > 1) {
-    volume.info.notes.push_back("the series of this file: " + std::to_string(series.size()) + " files of its folder");
+  if (files > 1) {
+    volume.info.notes.push_back("the series of this file: " + std::to_string(files) + " files of its folder");
   }
   return volume;
 }

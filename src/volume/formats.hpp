@@ -50,4 +50,12 @@ bool is_dicom(std::string_view head);
 // Bytes of a file that is_dicom needs.
 inline constexpr std::size_t kDicomHeadBytes = 132;
 
+// Its magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
+bool is_hdf5(const InputFile& file);
+OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options);
+
+// Whether a folder holds metadata of Zarr or N5.
+bool is_array_folder(const std::string& folder);
+OpenedVolume open_zarr(const std::string& path, const OpenOptions& options);
+
 }  // namespace isoweave

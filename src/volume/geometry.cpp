@@ -19,6 +19,12 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// Fourth powers of lengths and products of all three must be numbers too.
+constexpr double kSmallestStep = 1e-30;
+constexpr double kLargestStep = 1e30;
+
+bool is_usable_step(double length) { return length >= kSmallestStep && length <= kLargestStep; }
+
 // Some unit vector orthogonal to `a`: against the world axis that `a` leans to least.
 Vector3 any_normal(const Vector3& a) {
   std::size_t least = 0;
@@ -47,6 +53,9 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
     if (!std::isfinite(length) || !(length > 0)) {
       bad_input(path, "a positive, finite sample spacing on axis " + std::to_string(axis), number_text(length));
     }
+    if (!is_usable_step(length)) {
+      bad_input(path, "a sample spacing from 1e-30 to 1e30 on axis " + std::to_string(axis), number_text(length));
+    }
     geometry.spacing[axis] = length;
     for (std::size_t row = 0; row < 3; ++row) {
       units[axis][row] = axes.steps[axis][row] / length;
@@ -65,23 +74,14 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
 }
 
 std::string_view known_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kSpellings{{
-      {"mm", "mm"},
-      {"millimeter", "mm"},
-      {"millimeters", "mm"},
-      {"millimetre", "mm"},
-      {"um", "um"},
-      {"\xc2\xb5m", "um"},  // the micro sign
-      {"\xce\xbcm", "um"},  // the Greek letter
-      {"micron", "um"},
-      {"microns", "um"},
-      {"micrometer", "um"},
-      {"micrometre", "um"},
-      {"nm", "nm"},
-      {"nanometer", "nm"},
-      {"nanometre", "nm"},
-      {"m", "m"},
-      {"meter", "m"},
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kSpellings{{
+      {"mm", "mm"},          {"millimeter", "mm"}, {"millimeters", "mm"}, {"millimetre", "mm"},
+      {"um", "um"},          {"\xc2\xb5m", "um"},  // the micro sign
+      {"\xce\xbcm", "um"},                         // the Greek letter
+      {"micron", "um"},      {"microns", "um"},    {"micrometer", "um"},  {"micrometre", "um"},
+      {"nm", "nm"},          {"nanometer", "nm"},  {"nanometre", "nm"},   {"m", "m"},
+      {"meter", "m"},        {"meters", "m"},      {"metre", "m"},        {"micrometers", "um"},
+      {"micrometres", "um"}, {"nanometers", "nm"}, {"nanometres", "nm"},
   }};
   for (const auto& [spelling, unit] : kSpellings) {
     if (spelling == text) return unit;
@@ -93,6 +93,7 @@ void apply_overrides(Geometry& geometry, const OpenOptions& options) {
   if (options.spacing) {
     for (const double step : *options.spacing) {
       if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
+      if (!is_usable_step(step)) throw std::invalid_argument("spacing must lie between 1e-30 and 1e30");
     }
     geometry.spacing = *options.spacing;
   }

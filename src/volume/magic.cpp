@@ -1,4 +1,9 @@
-// Tells files by their first bytes, for the readers that a build may lack.
+// Tells files by their first bytes, and folders by their files, for the readers that a build may lack.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+
 #include "volume/formats.hpp"
 
 namespace isoweave {
@@ -17,6 +22,25 @@ bool is_png(std::string_view head) { return head.starts_with("\x89PNG\r\n\x1a\n"
 bool is_dicom(std::string_view head) {
   constexpr std::size_t kPreamble = 128;
   return head.size() >= kDicomHeadBytes && head.substr(kPreamble, 4) == "DICM";
+}
+
+bool is_hdf5(const InputFile& file) {
+  constexpr std::string_view kMagic = "\x89HDF\r\n\x1a\n";
+  constexpr std::uint64_t kFirstBlock = 512;
+  for (std::uint64_t at = 0; at < file.size(); at = at == 0 ? kFirstBlock : 2 * at) {
+    std::array<char, kMagic.size()> head{};
+    file.read_at(at, std::as_writable_bytes(std::span(head)));
+    if (std::equal(head.begin(), head.end(), kMagic.begin())) return true;
+  }
+  return false;
+}
+
+bool is_array_folder(const std::string& folder) {
+  static constexpr std::array<const char*, 5> kNames{"zarr.json", ".zarray", ".zgroup", ".zattrs", "attributes.json"};
+  return std::any_of(kNames.begin(), kNames.end(), [&folder](const char* name) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(std::filesystem::path(folder) / name, error);
+  });
 }
 
 }  // namespace isoweave

@@ -1,18 +1,18 @@
 // Stands in for the readers whose libraries the build lacks: an error that says which option brings them in.
+#include "volume/chunk_codecs.hpp"
 #include "volume/dicom_file.hpp"
 #include "volume/formats.hpp"
+#include "volume/vtk_streams.hpp"
 
 namespace isoweave {
 namespace {
 
-#if !defined(ISOWEAVE_HAS_TIFF) || !defined(ISOWEAVE_HAS_PNG) || !defined(ISOWEAVE_HAS_DICOM)
-[[noreturn]] void not_built(const std::string& path, std::string_view format, std::string_view library,
-                            std::string_view option) {
+[[noreturn, maybe_unused]] void not_built(const std::string& path, std::string_view format, std::string_view library,
+                                          std::string_view option) {
   bad_input(
       path, "a format of this build",
       std::string(format) + ", which needs " + std::string(library) + " (CMake option " + std::string(option) + "=ON)");
 }
-#endif
 
 }  // namespace
 
@@ -25,8 +25,59 @@ OpenedVolume open_png(const FilePtr& file) { not_built(file->path(), "PNG", "lib
 #endif
 
 #ifndef ISOWEAVE_HAS_DICOM
-std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
   not_built(slice.path, "DICOM with JPEG samples", "GDCM", "ISOWEAVE_DICOM");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_JPEGLS
+std::vector<std::byte> unpack_jpegls(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+  not_built(slice.path, "DICOM with JPEG-LS samples", "CharLS", "ISOWEAVE_JPEGLS");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_JPEG2000
+std::vector<std::byte> unpack_jpeg2000(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
+  not_built(slice.path, "DICOM with JPEG 2000 samples", "OpenJPEG", "ISOWEAVE_JPEG2000");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_HDF5
+OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions&) {
+  not_built(file->path(), "HDF5", "libhdf5", "ISOWEAVE_HDF5");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_ZARR
+OpenedVolume open_zarr(const std::string& path, const OpenOptions&) {
+  not_built(path, "Zarr or N5", "nlohmann-json", "ISOWEAVE_ZARR");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_ZSTD
+std::vector<std::byte> decode_zstd(std::span<const std::byte>, std::size_t, const std::string& path) {
+  not_built(path, "a chunk in zstd", "libzstd", "ISOWEAVE_ZSTD");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_BLOSC
+std::vector<std::byte> decode_blosc(std::span<const std::byte>, std::size_t, const std::string& path) {
+  not_built(path, "a chunk in Blosc", "libblosc", "ISOWEAVE_BLOSC");
+}
+#endif
+
+#ifndef ISOWEAVE_HAS_LZ4
+std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream>, std::uint64_t, std::uint64_t,
+                                           const std::string& path) {
+  not_built(path, "VTI with LZ4 blocks", "liblz4", "ISOWEAVE_LZ4");
+}
+
+std::vector<std::byte> decode_lz4(std::span<const std::byte>, std::size_t, const std::string& path) {
+  not_built(path, "a chunk in LZ4", "liblz4", "ISOWEAVE_LZ4");
+}
+
+std::vector<std::byte> decode_lz4_frames(std::span<const std::byte>, std::size_t, const std::string& path) {
+  not_built(path, "a chunk in LZ4", "liblz4", "ISOWEAVE_LZ4");
 }
 #endif
 

@@ -381,8 +381,10 @@ OpenedVolume open_nrrd(const FilePtr& file) {
   for (std::size_t n = 0; n < axes.size(); ++n) info.dims[n] = axes[n].size;
   const std::uint64_t bytes = checked_volume_bytes(info);
   set_axes(info, fields, axes);
+  // Text has no byte order: what is not read is said first.
+  const DataLayout layout = layout_of(fields, info.path);
   volume.swap_bytes = is_swapped(fields, info.type, info.path);
-  volume.samples = samples_of(file, fields, layout_of(fields, info.path), bytes);
+  volume.samples = samples_of(file, fields, layout, bytes);
   return volume;
 }
 

@@ -37,7 +37,8 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
   if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
   if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes";
-  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, or raw with a layout";
+  if (name.ends_with(".h5") || name.ends_with(".hdf5")) return "the magic of HDF5";
+  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, HDF5, or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
@@ -60,7 +61,7 @@ OpenedVolume open_by_name(const FilePtr& file) {
   bad_input(path, format_of_name(name), "other content");
 }
 
-OpenedVolume open_by_content(const FilePtr& file) {
+OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   const std::string head = file->head(kHeadBytes);
   if (head.starts_with("NRRD")) return open_nrrd(file);
   if (is_tiff(head)) return open_tiff(file, false);
@@ -71,6 +72,7 @@ OpenedVolume open_by_content(const FilePtr& file) {
   if (is_metaimage(head)) return open_metaimage(file);
   if (is_nifti(head)) return open_nifti(file, false);
   if (is_nifti(inflated_head(file, head))) return open_nifti(file, true);
+  if (is_hdf5(*file)) return open_hdf5(file, options);
   return open_by_name(file);
 }
 
@@ -78,25 +80,39 @@ void refuse_series(const std::string& path, const std::string& series) {
   if (!series.empty()) bad_input(path, "the DICOM series " + quoted(series), "no DICOM");
 }
 
+// Options that choose among what other formats do not have.
+void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
+  const bool asked = !options.dataset.empty() || options.level || options.channel || options.time;
+  const bool array = info.format == "hdf5" || info.format == "zarr" || info.format == "n5";
+  if (asked && !array)
+    bad_input(info.path, "HDF5, Zarr or N5 for --dataset, --level, --channel and --time", info.format);
+}
+
+OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
+  if (is_folder(path) && is_array_folder(path)) {
+    refuse_series(path, options.series);
+    return open_zarr(path, options);
+  }
+  const SliceFiles slices = find_slices(path);
+  if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options.series);
+  refuse_series(path, options.series);
+  return open_slice_series(slices);
+}
+
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
   if (options.raw) return open_raw(open_file(path), *options.raw);
-  const std::string& series = options.series;
-  if (is_folder(path) || is_pattern(path)) {
-    const SliceFiles slices = find_slices(path);
-    if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, series);
-    refuse_series(path, series);
-    return open_slice_series(slices);
-  }
+  if (is_folder(path) || is_pattern(path)) return open_folder(path, options);
   const FilePtr file = open_file(path);
-  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom_file(path, series);
-  refuse_series(path, series);
-  return open_by_content(file);
+  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom_file(path, options.series);
+  refuse_series(path, options.series);
+  return open_by_content(file, options);
 }
 
 }  // namespace
 
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
   OpenedVolume volume = open_any(path, options);
+  refuse_array_options(volume.info, options);
   apply_overrides(volume.info.geometry, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }

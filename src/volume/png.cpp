@@ -104,14 +104,23 @@ std::vector<std::byte> decoded(PngFile& png, std::size_t bytes) {
   return samples;
 }
 
+std::string kind_of(const PngFile& png) {
+  std::string colour = "colour type " + std::to_string(png.colour());
+  if (png.colour() == PNG_COLOR_TYPE_GRAY) colour = "grey";
+  if (png.colour() == PNG_COLOR_TYPE_GRAY_ALPHA) colour = "grey with transparency";
+  if (png.colour() == PNG_COLOR_TYPE_PALETTE) colour = "a palette";
+  if (png.colour() == PNG_COLOR_TYPE_RGB) colour = "RGB";
+  if (png.colour() == PNG_COLOR_TYPE_RGB_ALPHA) colour = "RGB with transparency";
+  return colour + " of " + std::to_string(png.bits()) + " bits";
+}
+
 }  // namespace
 
 OpenedVolume open_png(const FilePtr& file) {
   const auto png = std::make_shared<PngFile>(file);
   if (!png->read_header()) png->refuse("a readable PNG header");
   if (png->colour() != PNG_COLOR_TYPE_GRAY || (png->bits() != 8 && png->bits() != 16)) {
-    bad_input(file->path(), "grey samples of 8 or 16 bits",
-              "PNG colour type " + std::to_string(png->colour()) + " of " + std::to_string(png->bits()) + " bits");
+    bad_input(file->path(), "grey samples of 8 or 16 bits", kind_of(*png));
   }
   OpenedVolume volume;
   VolumeInfo& info = volume.info;

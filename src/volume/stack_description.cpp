@@ -157,6 +157,7 @@ LengthUnit length_unit(std::string_view text) {
   if (name.empty() || name == "pixel" || name == "pixels") return {};
   if (const std::string_view known = known_unit(name); !known.empty()) return {1, std::string(known), {}};
   if (name == "cm" || name == "centimeter") return {10, "mm", {}};
+  if (name == "angstrom") return {0.1, "nm", {}};
   if (name == "inch" || name == "in") return {25.4, "mm", {}};
   return {1, {}, "the unit " + quoted(text) + " is none of m, mm, um, nm and is left out"};
 }

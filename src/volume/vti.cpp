@@ -76,8 +76,8 @@ std::string_view name_of(std::string_view tag) { return tag.substr(0, tag.find_f
 
 struct VtiHeader {
   bool big_endian = false;
-  std::size_t word = 4;  // bytes of the numbers before an array
-  bool compressed = false;
+  std::size_t word = 4;             // bytes of the numbers before an array
+  std::optional<BlockForm> blocks;  // of compressed arrays
   std::string whole_extent;
   std::string origin;
   std::string spacing;
@@ -99,9 +99,13 @@ void take_file(VtiHeader& header, std::string_view tag, const std::string& path)
   }
   header.word = word == "UInt64" ? 8 : 4;
   const std::string compressor = xml_attribute(tag, "compressor");
-  header.compressed = !compressor.empty();
-  if (header.compressed && compressor != "vtkZLibDataCompressor") {
-    bad_input(path, "no compressor, or vtkZLibDataCompressor", quoted(compressor));
+  if (compressor.empty()) return;
+  if (compressor == "vtkZLibDataCompressor") {
+    header.blocks = BlockForm::kZlib;
+  } else if (compressor == "vtkLZ4DataCompressor") {
+    header.blocks = BlockForm::kLz4;
+  } else {
+    bad_input(path, "no compressor, vtkZLibDataCompressor or vtkLZ4DataCompressor", quoted(compressor));
   }
 }
 
@@ -290,7 +294,15 @@ BlockSizes read_block_sizes(ByteStream& stream, const VtiHeader& header, const F
         file->path(), "compressed blocks of " + std::to_string(bytes) + " bytes in all",
         std::to_string(blocks) + " of " + std::to_string(sizes.block) + ", the last of " + std::to_string(sizes.last));
   }
-  for (std::uint64_t n = 0; n < blocks; ++n) sizes.stored.push_back(words.next());
+  std::uint64_t stored = 0;
+  for (std::uint64_t n = 0; n < blocks; ++n) {
+    sizes.stored.push_back(words.next());
+    if (sizes.stored.back() > left - stored) {
+      bad_input(file->path(), "compressed blocks within " + std::to_string(left) + " bytes",
+                std::to_string(sizes.stored.back()) + " bytes in block " + std::to_string(n));
+    }
+    stored += sizes.stored.back();
+  }
   return sizes;
 }
 
@@ -306,10 +318,10 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const VtiHeader& hea
     return std::make_unique<NumberStream>(std::move(stream), type, samples, path);
   }
   if (header.base64) stream = std::make_unique<Base64Stream>(std::move(stream), path);
-  check_plausible(path, bytes, left, header.compressed ? kDeflateRatio : 1);
-  if (header.compressed) {
+  check_plausible(path, bytes, left, header.blocks ? kDeflateRatio : 1);
+  if (header.blocks) {
     BlockSizes sizes = read_block_sizes(*stream, header, file, bytes);
-    return std::make_unique<BlockStream>(std::move(stream), std::move(sizes), path);
+    return std::make_unique<BlockStream>(std::move(stream), *header.blocks, std::move(sizes), path);
   }
   const std::uint64_t said = WordReader(*stream, header, path).next();
   if (said != bytes) bad_input(path, std::to_string(bytes) + " bytes in the array", std::to_string(said));

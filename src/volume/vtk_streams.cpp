@@ -126,7 +126,13 @@ std::size_t Base64Stream::read(std::span<std::byte> out) {
 void BlockStream::enter_block() {
   const bool last = next_ + 1 == sizes_.stored.size() && sizes_.last > 0;
   left_ = last ? sizes_.last : sizes_.block;
-  block_ = std::make_unique<InflateStream>(std::make_unique<PartStream>(input_, sizes_.stored[next_]), path_);
+  const std::uint64_t stored = sizes_.stored[next_];
+  auto part = std::make_unique<PartStream>(input_, stored);
+  if (form_ == BlockForm::kLz4) {
+    block_ = open_lz4_block(std::move(part), stored, left_, path_);
+  } else {
+    block_ = std::make_unique<InflateStream>(std::move(part), path_);
+  }
   ++next_;
 }
 

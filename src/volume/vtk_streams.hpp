@@ -74,11 +74,18 @@ struct BlockSizes {
   std::vector<std::uint64_t> stored;
 };
 
-// zlib blocks one after another.
+enum class BlockForm { kZlib, kLz4 };
+
+// One LZ4 block of `stored` bytes that gives `bytes`, decoded whole when it is first read. Throws BadInput when a block
+// of that size cannot give so many, or does not.
+std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream> input, std::uint64_t stored, std::uint64_t bytes,
+                                           const std::string& path);
+
+// Compressed blocks one after another.
 class BlockStream final : public ByteStream {
  public:
-  BlockStream(std::unique_ptr<ByteStream> input, BlockSizes sizes, std::string path)
-      : input_(std::move(input)), sizes_(std::move(sizes)), path_(std::move(path)) {}
+  BlockStream(std::unique_ptr<ByteStream> input, BlockForm form, BlockSizes sizes, std::string path)
+      : input_(std::move(input)), form_(form), sizes_(std::move(sizes)), path_(std::move(path)) {}
 
   std::size_t read(std::span<std::byte> out) override;
 
@@ -87,6 +94,7 @@ class BlockStream final : public ByteStream {
   void leave_block();
 
   std::shared_ptr<ByteStream> input_;
+  BlockForm form_;
   BlockSizes sizes_;
   std::string path_;
   std::size_t next_ = 0;    // block

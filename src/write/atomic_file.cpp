@@ -29,12 +29,6 @@ constexpr int kAttempts = 100;
   throw CannotWrite(path + ": " + what + ": " + std::generic_category().message(error));
 }
 
-std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
-
 std::string name_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? path : path.substr(slash + 1);
@@ -64,17 +58,6 @@ std::string checked_target(const std::string& path) {
   return path;
 }
 
-std::string temporary_name(const std::string& target, std::random_device& random) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
-  const std::size_t slash = target.rfind('/');
-  std::string name = slash == std::string::npos ? "" : target.substr(0, slash + 1);
-  name += '.';
-  name += name_of(target).substr(0, kLongestNameKept);
-  name += '.';
-  for (int i = 0; i < 6; ++i) name += kLetters[random() % kLetters.size()];
-  return name + ".partial";
-}
-
 std::string descriptor_name(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
 
 // A file without a name, which the system frees however the process ends; -1 where there is no such thing, or no way to
@@ -86,12 +69,33 @@ int open_unnamed(const std::string& folder) {
   return -1;
 }
 
+}  // namespace
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+std::string temporary_name(const std::string& target) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
+  std::random_device random;
+  const std::size_t slash = target.rfind('/');
+  std::string name = slash == std::string::npos ? "" : target.substr(0, slash + 1);
+  name += '.';
+  name += name_of(target).substr(0, kLongestNameKept);
+  name += '.';
+  for (int i = 0; i < 6; ++i) name += kLetters[random() % kLetters.size()];
+  return name + ".partial";
+}
+
+namespace {
+
 // Creates a new file in the folder of `target`; says its name in `temporary` if it has one.
 int open_temporary(const std::string& path, const std::string& target, std::string& temporary) {
   if (const int fd = open_unnamed(folder_of(target)); fd >= 0) return fd;
-  std::random_device random;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const std::string name = temporary_name(target, random);
+    const std::string name = temporary_name(target);
     const int fd = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
     if (fd >= 0) {
       temporary = name;
@@ -103,7 +107,9 @@ int open_temporary(const std::string& path, const std::string& target, std::stri
   throw CannotWrite(path + ": no free temporary name in '" + folder_of(target) + "'");
 }
 
-// Makes the rename durable. A folder that may be written but not read, or a file system without this operation,
+}  // namespace
+
+// A folder that may be written but not read, or a file system without this operation,
 // leaves that to the system; the file itself is complete.
 void sync_folder(const std::string& path, const std::string& target) {
   const int fd = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -113,8 +119,6 @@ void sync_folder(const std::string& path, const std::string& target) {
   ::close(fd);
   if (result != 0 && error != EINVAL && error != ENOTSUP) cannot_write(path, "cannot flush the folder", error);
 }
-
-}  // namespace
 
 OutputDescriptor::OutputDescriptor(int fd, std::string path, std::uint64_t size)
     : fd_(fd), path_(std::move(path)), size_(size) {}
@@ -212,6 +216,19 @@ std::uint64_t OutputDescriptor::append_in_kernel(const OutputDescriptor& source)
   return static_cast<std::uint64_t>(offset);
 }
 
+void OutputDescriptor::copy_to(int descriptor, const std::string& name) {
+  flush();
+  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) cannot_write(name, "cannot write", errno);
+  OutputDescriptor other(copy, name);
+  std::vector<std::byte> block(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_)));
+  for (std::uint64_t done = 0; done < size_; done += block.size()) {
+    block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), size_ - done)));
+    read_back(done, block);
+    other.write_now(block);
+  }
+}
+
 void OutputDescriptor::sync() {
   flush();
   if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
@@ -257,9 +274,8 @@ void AtomicFile::commit() {
 // A name can be given to a file, but not in place of another file's: that takes a second step.
 void AtomicFile::name_file() {
   file_.sync();
-  std::random_device random;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    std::string name = temporary_name(target_, random);
+    std::string name = temporary_name(target_);
     if (file_.link_as(name)) {
       temporary_ = std::move(name);
       return;
@@ -302,9 +318,11 @@ OutputDescriptor open_part(const PartFile& part) {
 
 void remove_part(const PartFile& part) { ::unlink(part.path.c_str()); }
 
-int open_scratch(const std::string& path) {
+int open_scratch(const std::string& path) { return open_scratch_in(folder_of(checked_target(path)), path); }
+
+int open_scratch_in(const std::string& folder, const std::string& path) {
   std::string temporary;
-  const int fd = open_temporary(path, checked_target(path), temporary);
+  const int fd = open_temporary(path, folder + "/scratch", temporary);
   if (!temporary.empty()) ::unlink(temporary.c_str());
   return fd;
 }

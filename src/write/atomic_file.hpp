@@ -32,6 +32,9 @@ class OutputDescriptor {
   // Appends all that was written to `source`.
   void append(OutputDescriptor& source);
 
+  // Writes all of it to another descriptor, which stays open. `name` stands for that one in messages.
+  void copy_to(int descriptor, const std::string& name);
+
   // Makes what was written durable.
   void sync();
 
@@ -73,6 +76,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
+  OutputDescriptor& descriptor() { return file_; }
   void write(std::span<const std::byte> bytes) { file_.write(bytes); }
 
   // Replaces bytes written before, for counts in a header.
@@ -107,5 +111,17 @@ void remove_part(const PartFile& part);
 
 // Opens a scratch file beside `path`, already without a name: the system frees it however the process ends.
 int open_scratch(const std::string& path);
+
+// The same in a folder; `path` is the name used in messages.
+int open_scratch_in(const std::string& folder, const std::string& path);
+
+// The folder that `path` lies in.
+std::string folder_of(const std::string& path);
+
+// A name beside `target` that says what it is, with letters by chance.
+std::string temporary_name(const std::string& target);
+
+// Makes a rename to `target` durable; `path` is the name used in messages.
+void sync_folder(const std::string& path, const std::string& target);
 
 }  // namespace isoweave

@@ -1,13 +1,13 @@
 #include "write/mesh_file_sink.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
+#include <utility>
 
 #include "isoweave/error.hpp"
+#include "write/atomic_folder.hpp"
 
 namespace isoweave {
 namespace {
@@ -19,64 +19,109 @@ bool all_finite(std::span<const Point> points) {
                      [](const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); });
 }
 
-std::string lower_case_ending(const std::string& path) {
-  const std::size_t name = path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1;
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string::npos || dot < name) return "";
-  std::string ending = path.substr(dot);
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+std::string temporary_folder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  return error ? "/tmp" : folder.string();
+}
+
+std::deque<std::uint64_t> parse_mark(const MeshFileOptions& options) {
+  std::deque<std::uint64_t> numbers;
+  if (options.mark.empty()) return numbers;
+  std::istringstream text(options.mark);
+  for (std::uint64_t number = 0; text >> number;) numbers.push_back(number);
+  if (!text.eof() || numbers.size() < 3 || options.parts.empty()) {
+    throw std::invalid_argument("expected the mark of a mesh and the folder of its parts, found '" + options.mark +
+                                "' and '" + options.parts + "'");
   }
-  return ending;
+  return numbers;
 }
 
 }  // namespace
 
-MeshFileSink::MeshFileSink(const std::string& path, const MeshFileOptions& options)
-    : path_(path),
-      options_(options),
-      begin_(parse_mark(options)),
-      file_(options.parts.empty() ? AtomicFile(path) : AtomicFile(path, part(kMeshPart, begin_.bytes))),
-      vertices_(begin_.vertices),
-      triangles_(begin_.triangles) {}
-
-MeshFileSink::Mark MeshFileSink::parse_mark(const MeshFileOptions& options) {
-  Mark mark;
-  if (options.mark.empty()) return mark;
-  std::istringstream text(options.mark);
-  std::string rest;
-  const bool read = static_cast<bool>(text >> mark.vertices >> mark.triangles >> mark.bytes >> mark.side_bytes);
-  if (!read || text >> rest || options.parts.empty()) {
-    throw std::invalid_argument("expected the mark of a mesh and the folder of its parts, found '" + options.mark +
-                                "' and '" + options.parts + "'");
+MeshFileSink::MeshFileSink(MeshTarget target, const MeshFileOptions& options)
+    : target_(std::move(target)), options_(options), saved_(parse_mark(options)) {
+  if (continued()) {
+    vertices_ = next_saved();
+    triangles_ = next_saved();
   }
-  return mark;
+  open_file();
+}
+
+void MeshFileSink::open_file() {
+  const std::uint64_t bytes = continued() ? next_saved() : 0;
+  switch (target_.kind) {
+    case MeshTarget::Kind::kFile:
+      if (options_.parts.empty()) {
+        atomic_.emplace(target_.path);
+      } else {
+        atomic_.emplace(target_.path, part(kMeshPart, bytes));
+      }
+      break;
+    case MeshTarget::Kind::kFolder:
+      AtomicFolder::check_free(target_.path);
+      break;
+    case MeshTarget::Kind::kStream:
+      if (!options_.parts.empty()) throw std::invalid_argument(path() + ": a stream cannot be continued later");
+      stream_.emplace(open_side_scratch(), path());
+      break;
+  }
+}
+
+std::uint64_t MeshFileSink::next_saved() {
+  if (saved_.empty()) throw std::invalid_argument("the mark '" + options_.mark + "' is not one of this format");
+  const std::uint64_t number = saved_.front();
+  saved_.pop_front();
+  return number;
+}
+
+std::vector<std::uint64_t> MeshFileSink::saved_state(std::size_t count) {
+  std::vector<std::uint64_t> numbers(count);
+  for (std::uint64_t& number : numbers) number = next_saved();
+  return numbers;
 }
 
 PartFile MeshFileSink::part(const std::string& name, std::uint64_t size) const {
   return {options_.parts + "/" + name, continued() ? std::optional(size) : std::nullopt};
 }
 
+int MeshFileSink::open_side_scratch() const {
+  switch (target_.kind) {
+    case MeshTarget::Kind::kFolder:
+      return open_scratch_in(folder_of(without_slashes(path())), path());
+    case MeshTarget::Kind::kStream:
+      return open_scratch_in(temporary_folder(), path());
+    case MeshTarget::Kind::kFile:
+      break;
+  }
+  return open_scratch(path());
+}
+
 OutputDescriptor& MeshFileSink::open_side(const std::string& name) {
-  side_name_ = name;
-  return options_.parts.empty() ? side_.emplace(open_scratch(path_), path_)
-                                : side_.emplace(open_part(part(name, begin_.side_bytes)));
+  side_names_.push_back(name);
+  if (options_.parts.empty()) return sides_.emplace_back(open_side_scratch(), path());
+  return sides_.emplace_back(open_part(part(name, continued() ? next_saved() : 0)));
 }
 
 std::string MeshFileSink::mark() {
   require_open();
   if (options_.parts.empty()) return MeshSink::mark();
   write_held_back();
-  file_.sync();
-  if (side_) side_->sync();
-  const std::uint64_t side_bytes = side_ ? side_->size() : 0;
-  return std::to_string(vertices_) + " " + std::to_string(triangles_) + " " + std::to_string(file_.size()) + " " +
-         std::to_string(side_bytes);
+  std::vector<std::uint64_t> numbers{vertices_, triangles_, atomic_ ? file().size() : 0};
+  if (atomic_) file().sync();
+  for (OutputDescriptor& side : sides_) {
+    side.sync();
+    numbers.push_back(side.size());
+  }
+  for (const std::uint64_t number : state()) numbers.push_back(number);
+  std::string text;
+  for (const std::uint64_t number : numbers) text += (text.empty() ? "" : " ") + std::to_string(number);
+  return text;
 }
 
 void MeshFileSink::require_open() const {
-  if (state_ == State::kFinished) throw std::logic_error(path_ + ": the mesh is already finished");
-  if (state_ == State::kFailed) throw std::logic_error(path_ + ": an earlier write failed, the mesh cannot go on");
+  if (state_ == State::kFinished) throw std::logic_error(path() + ": the mesh is already finished");
+  if (state_ == State::kFailed) throw std::logic_error(path() + ": an earlier write failed, the mesh cannot go on");
 }
 
 void MeshFileSink::check_piece(std::span<const Point> vertices, std::span<const Point> normals,
@@ -109,29 +154,37 @@ void MeshFileSink::finish() {
   require_open();
   state_ = State::kFailed;
   complete();
-  file_.commit();
-  if (side_ && !options_.parts.empty()) remove_part(part(side_name_, 0));
+  if (atomic_) atomic_->commit();
+  if (stream_) stream_->copy_to(target_.descriptor, path());
+  if (!options_.parts.empty()) {
+    for (const std::string& name : side_names_) remove_part(part(name, 0));
+  }
   state_ = State::kFinished;
 }
 
 void MeshFileSink::check_written(std::uint64_t expected_bytes, std::span<const std::byte> header) {
-  if (file_.size() != expected_bytes) {
-    throw CannotWrite(path_ + ": its counts make " + std::to_string(expected_bytes) + " bytes, " +
-                      std::to_string(file_.size()) + " were written");
+  if (file().size() != expected_bytes) {
+    throw CannotWrite(path() + ": its counts make " + std::to_string(expected_bytes) + " bytes, " +
+                      std::to_string(file().size()) + " were written");
   }
   std::vector<std::byte> found(header.size());
-  file_.read_back(0, found);
+  file().read_back(0, found);
   if (!std::equal(header.begin(), header.end(), found.begin())) {
-    throw CannotWrite(path_ + ": its header does not read back as it was written");
+    throw CannotWrite(path() + ": its header does not read back as it was written");
   }
 }
 
-void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (have > kMost || more > kMost - have) {
-    throw CannotWrite(path + ": the format holds at most " + std::to_string(kMost) + " " + what +
-                      ", the mesh has more");
-  }
+MeshFileOptions without_normals(MeshFileOptions options) {
+  options.normals = false;
+  return options;
+}
+
+std::vector<std::string> comment_lines(const MeshFileOptions& options) {
+  std::vector<std::string> lines;
+  for (const std::string& comment : options.comments) lines.push_back(one_line(comment));
+  if (!options.space.empty()) lines.push_back("SPACE=" + one_line(options.space));
+  if (!options.unit.empty()) lines.push_back("UNIT=" + one_line(options.unit));
+  return lines;
 }
 
 std::string one_line(const std::string& comment) {
@@ -142,46 +195,16 @@ std::string one_line(const std::string& comment) {
   return line;
 }
 
-namespace {
-
-enum class MeshFormat { kPly, kStl, kObj };
-
-MeshFormat format_of(const std::string& path) {
-  const std::string ending = lower_case_ending(path);
-  if (ending == ".ply") return MeshFormat::kPly;
-  if (ending == ".stl") return MeshFormat::kStl;
-  if (ending == ".obj") return MeshFormat::kObj;
-  throw CannotWrite(path + ": expected a name that ends in .ply, .stl or .obj");
-}
-
-}  // namespace
-
-std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options) {
-  switch (format_of(path)) {
-    case MeshFormat::kPly:
-      return open_ply(path, options);
-    case MeshFormat::kStl:
-      return open_stl(path, options);
-    case MeshFormat::kObj:
-      break;
+std::optional<double> unit_in(const std::string& unit, const std::string& other) {
+  constexpr std::array<std::pair<const char*, int>, 4> kPowers{{{"m", 9}, {"mm", 6}, {"um", 3}, {"nm", 0}}};
+  std::optional<int> from;
+  std::optional<int> to;
+  for (const auto& [name, power] : kPowers) {
+    if (unit == name) from = power;
+    if (other == name) to = power;
   }
-  return open_obj(path, options);
-}
-
-std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, std::uint64_t triangles, bool normals) {
-  constexpr std::uint64_t kObjVertexBytes = 32;  // a line of text
-  constexpr std::uint64_t kObjFaceBytes = 24;
-  switch (format_of(path)) {
-    case MeshFormat::kPly:
-      check_count_fits(path, "vertices", 0, vertices);
-      return vertices * (normals ? 24 : 12) + triangles * 13;
-    case MeshFormat::kStl:
-      check_count_fits(path, "triangles", 0, triangles);
-      return triangles * 50;
-    case MeshFormat::kObj:
-      break;
-  }
-  return vertices * kObjVertexBytes * (normals ? 2 : 1) + triangles * kObjFaceBytes * (normals ? 2 : 1);
+  if (!from || !to) return std::nullopt;
+  return *from >= *to ? std::pow(10.0, *from - *to) : 1 / std::pow(10.0, *to - *from);
 }
 
 }  // namespace isoweave

@@ -1,13 +1,16 @@
-// What the mesh writers share: checked arguments, counts, and the order append... finish.
+// What the mesh writers share: checked arguments, counts, the files behind a sink, and the order append... finish.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "isoweave/mesh.hpp"
 #include "write/atomic_file.hpp"
@@ -15,6 +18,15 @@
 namespace isoweave {
 
 using Triangle64 = std::array<std::uint64_t, 3>;
+
+// What a finished mesh becomes.
+struct MeshTarget {
+  enum class Kind { kFile, kFolder, kStream };
+
+  std::string path;  // as the user gave it; what stands for a stream in messages
+  Kind kind = Kind::kFile;
+  int descriptor = -1;  // of a stream
+};
 
 class MeshFileSink : public MeshSink {
  public:
@@ -26,14 +38,21 @@ class MeshFileSink : public MeshSink {
   std::string mark() final;
 
  protected:
-  MeshFileSink(const std::string& path, const MeshFileOptions& options);
+  MeshFileSink(MeshTarget target, const MeshFileOptions& options);
 
   // Whether the mesh goes on from a mark.
   bool continued() const { return !options_.mark.empty(); }
 
-  // A second file that pieces are written to: beside the mesh's own part, or, where no parts are kept, without a name.
-  // To be opened by the constructor or never.
+  // The file that becomes the mesh. A folder has none.
+  OutputDescriptor& file() { return atomic_ ? atomic_->descriptor() : *stream_; }
+
+  // A further file that pieces are written to: beside the mesh's own part, or, where no parts are kept, without a name.
+  // To be opened by the constructor, always in the same order, or never.
   OutputDescriptor& open_side(const std::string& name);
+
+  // What else a format must know to go on, as numbers; and those of the mark, to be taken once all sides are open.
+  virtual std::vector<std::uint64_t> state() const { return {}; }
+  std::vector<std::uint64_t> saved_state(std::size_t count);
 
   // Writes a checked piece; `normals` is empty unless the options ask for them. vertices() and triangles() still
   // count what came before it.
@@ -49,9 +68,8 @@ class MeshFileSink : public MeshSink {
   // Throws CannotWrite when the file is not as long as its counts say, or does not begin with `header`.
   void check_written(std::uint64_t expected_bytes, std::span<const std::byte> header);
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return target_.path; }
   const MeshFileOptions& options() const { return options_; }
-  AtomicFile& file() { return file_; }
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t triangles() const { return triangles_; }
 
@@ -59,37 +77,48 @@ class MeshFileSink : public MeshSink {
   enum class State { kOpen, kFailed, kFinished };
 
   PartFile part(const std::string& name, std::uint64_t size) const;
+  void open_file();
+  int open_side_scratch() const;
+  std::uint64_t next_saved();
   void check_piece(std::span<const Point> vertices, std::span<const Point> normals,
                    std::span<const Triangle64> triangles) const;
   void require_open() const;
 
-  // How far a mesh has come; as text it is the mark.
-  struct Mark {
-    std::uint64_t vertices = 0, triangles = 0, bytes = 0, side_bytes = 0;
-  };
-
-  static Mark parse_mark(const MeshFileOptions& options);
-
-  std::string path_;
+  MeshTarget target_;
   MeshFileOptions options_;
-  Mark begin_;
-  AtomicFile file_;
-  std::string side_name_;
-  std::optional<OutputDescriptor> side_;
-  std::uint64_t vertices_;
-  std::uint64_t triangles_;
+  std::deque<std::uint64_t> saved_;  // numbers of the mark that nobody has taken yet
+  std::optional<AtomicFile> atomic_;
+  std::optional<OutputDescriptor> stream_;
+  std::vector<std::string> side_names_;
+  std::deque<OutputDescriptor> sides_;
+  std::uint64_t vertices_ = 0;
+  std::uint64_t triangles_ = 0;
   State state_ = State::kOpen;
 };
 
-// Throws CannotWrite when a 32-bit count in the file cannot say `have` + `more`.
-void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more);
+// Options as they are for a format without a place for normals.
+MeshFileOptions without_normals(MeshFileOptions options);
+
+// The comments, and one each for the space and the unit in the way that 3D Slicer reads: "SPACE=LPS", "UNIT=mm".
+std::vector<std::string> comment_lines(const MeshFileOptions& options);
 
 // The text of a comment as one line: control characters, line ends above all, become blanks.
 std::string one_line(const std::string& comment);
 
-std::unique_ptr<MeshSink> open_ply(const std::string& path, const MeshFileOptions& options);
-std::unique_ptr<MeshSink> open_stl(const std::string& path, const MeshFileOptions& options);
-std::unique_ptr<MeshSink> open_obj(const std::string& path, const MeshFileOptions& options);
+// How long one of the unit is in terms of the other: metres for "m", nanometres for "nm". Nothing for a unit that is
+// not known.
+std::optional<double> unit_in(const std::string& unit, const std::string& other);
+
+std::unique_ptr<MeshSink> open_ply(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_stl(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_obj(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_off(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_glb(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_packed_glb(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_vtp(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_3mf(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_precomputed(const MeshTarget& target, const MeshFileOptions& options);
+std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, const MeshFileOptions& options);
 
 // Little-endian stores that advance `out`.
 inline void store_u32(std::byte*& out, std::uint32_t value) {
@@ -98,6 +127,24 @@ inline void store_u32(std::byte*& out, std::uint32_t value) {
 
 inline void store_point(std::byte*& out, const Point& point) {
   for (const float coordinate : point) store_u32(out, std::bit_cast<std::uint32_t>(coordinate));
+}
+
+inline void store_indices(std::byte*& out, const Triangle64& triangle) {
+  for (const std::uint64_t index : triangle) store_u32(out, static_cast<std::uint32_t>(index));
+}
+
+// Writes records of one size, thousands at a time. encode(out, n) stores the n-th and advances `out` by its size.
+template <class Encode>
+void write_records(OutputDescriptor& file, std::vector<std::byte>& buffer, std::size_t count, std::size_t record_bytes,
+                   const Encode& encode) {
+  constexpr std::size_t kAtOnce = 4096;
+  buffer.resize(kAtOnce * record_bytes);
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t end = std::min(count, first + kAtOnce);
+    std::byte* out = buffer.data();
+    for (std::size_t n = first; n < end; ++n) encode(out, n);
+    file.write(std::span(buffer).first((end - first) * record_bytes));
+  }
 }
 
 }  // namespace isoweave

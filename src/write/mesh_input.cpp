@@ -91,6 +91,15 @@ void MeshInput::skip(std::uint64_t bytes) {
   }
 }
 
+void MeshInput::move_to(std::uint64_t position) {
+  if (position > size_) {
+    fail("truncated: expected data at byte " + std::to_string(position) + ", found " + std::to_string(size_) +
+         " bytes in all");
+  }
+  position_ = position;
+  next_ = filled_ = 0;
+}
+
 bool MeshInput::read_line(std::string& line) {
   line.clear();
   int c = get();
@@ -119,6 +128,23 @@ std::string MeshInput::head(std::size_t bytes) const {
   const ssize_t got = ::pread(fd_, text.data(), bytes, 0);
   text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   return text;
+}
+
+void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
+  for (const std::vector<Point>* points : {&mesh.vertices, &mesh.normals}) {
+    for (const Point& point : *points) {
+      for (const float coordinate : point) {
+        if (!std::isfinite(coordinate)) input.fail("a vertex or normal has a coordinate that is not finite");
+      }
+    }
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < mesh.vertices.size()) continue;
+      input.fail("a triangle refers to vertex " + std::to_string(index) + ", the file has " +
+                 std::to_string(mesh.vertices.size()) + ", counted from 0");
+    }
+  }
 }
 
 std::string_view take_word(std::string_view& rest) {

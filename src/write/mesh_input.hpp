@@ -39,6 +39,9 @@ class MeshInput {
   void read(std::span<std::byte> out);
   void skip(std::uint64_t bytes);
 
+  // Goes on from this byte, wherever it was. Fails when the file is not so long.
+  void move_to(std::uint64_t position);
+
   // The next line without its end ("\n" or "\r\n"); false at the end of the file.
   bool read_line(std::string& line);
 
@@ -121,7 +124,14 @@ class PolygonFan {
 
 inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
 
+// Fails when a coordinate is not finite, or when a triangle refers to a vertex that is not there.
+void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
+
 TriangleMesh read_ply(MeshInput& input);
+TriangleMesh read_off(MeshInput& input);
+TriangleMesh read_vtp(MeshInput& input);
+TriangleMesh read_glb(MeshInput& input);
+TriangleMesh read_3mf(MeshInput& input);
 TriangleMesh read_stl_binary(MeshInput& input);
 TriangleMesh read_stl_ascii(MeshInput& input);
 TriangleMesh read_obj(MeshInput& input);

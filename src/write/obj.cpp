@@ -1,42 +1,29 @@
 // Wavefront OBJ, text. Coordinates have the fewest digits that read back as the same float32.
-#include <charconv>
-
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_text.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr std::size_t kTextAtOnce = std::size_t{1} << 16;
-
-template <class Number>
-void print(std::string& text, Number number) {
-  char digits[32];
-  const std::to_chars_result result = std::to_chars(digits, digits + sizeof(digits), number);
-  text.append(digits, result.ptr);
-}
-
 class ObjSink final : public MeshFileSink {
  public:
-  ObjSink(const std::string& path, const MeshFileOptions& options) : MeshFileSink(path, options) {
+  ObjSink(const MeshTarget& target, const MeshFileOptions& options) : MeshFileSink(target, options) {
     text_bytes_ = file().size();
     if (continued()) return;
-    for (const std::string& comment : options.comments) text_ += "# " + one_line(comment) + "\n";
+    for (const std::string& comment : comment_lines(options)) text_ += "# " + comment + "\n";
   }
 
  private:
   void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
                    std::span<const Triangle64> triangles) override {
-    for (const Point& vertex : vertices) print_point("v", vertex);
-    for (const Point& normal : normals) print_point("vn", normal);
+    for (const Point& vertex : vertices) print_line("v", vertex);
+    for (const Point& normal : normals) print_line("vn", normal);
     for (const Triangle64& triangle : triangles) print_face(triangle);
   }
 
-  void print_point(const char* keyword, const Point& point) {
+  void print_line(const char* keyword, const Point& point) {
     text_ += keyword;
-    for (const float coordinate : point) {
-      text_ += ' ';
-      print(text_, coordinate);
-    }
+    print_point(text_, point);
     end_line();
   }
 
@@ -78,8 +65,8 @@ class ObjSink final : public MeshFileSink {
 
 }  // namespace
 
-std::unique_ptr<MeshSink> open_obj(const std::string& path, const MeshFileOptions& options) {
-  return std::make_unique<ObjSink>(path, options);
+std::unique_ptr<MeshSink> open_obj(const MeshTarget& target, const MeshFileOptions& options) {
+  return std::make_unique<ObjSink>(target, options);
 }
 
 }  // namespace isoweave

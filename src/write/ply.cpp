@@ -1,15 +1,12 @@
 // PLY, binary little-endian. All vertices stand before all faces in the file, but pieces bring both: the faces go
 // to a scratch file beside the target and are appended at the end.
-#include <algorithm>
-#include <vector>
-
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_format.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::size_t kFaceBytes = 1 + 3 * 4;
-constexpr std::size_t kRecordsAtOnce = 4096;
 
 // The counts are known last, so the header is written twice and must keep its length: a comment line takes the digits
 // that the counts do not need. (Padding the numbers themselves trips readers that split lines at single blanks.)
@@ -18,7 +15,7 @@ std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, 
   const std::string vertex_count = std::to_string(vertices);
   const std::string face_count = std::to_string(faces);
   std::string text = "ply\nformat binary_little_endian 1.0\n";
-  for (const std::string& comment : options.comments) text += "comment " + one_line(comment) + "\n";
+  for (const std::string& comment : comment_lines(options)) text += "comment " + comment + "\n";
   text += "comment padding " + std::string(kDigits - vertex_count.size() - face_count.size(), '.') + "\n";
   text += "element vertex " + vertex_count + "\nproperty float x\nproperty float y\nproperty float z\n";
   if (options.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
@@ -28,8 +25,8 @@ std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, 
 
 class PlySink final : public MeshFileSink {
  public:
-  PlySink(const std::string& path, const MeshFileOptions& options)
-      : MeshFileSink(path, options), faces_(open_side("faces.part")) {
+  PlySink(const MeshTarget& target, const MeshFileOptions& options)
+      : MeshFileSink(target, options), faces_(open_side("faces.part")) {
     const std::string header = header_text(options, 0, 0);
     header_bytes_ = header.size();
     if (!continued()) file().write(std::as_bytes(std::span(header)));
@@ -41,34 +38,14 @@ class PlySink final : public MeshFileSink {
   void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
                    std::span<const Triangle64> triangles) override {
     check_count_fits(path(), "vertices", this->vertices(), vertices.size());
-    write_vertices(vertices, normals);
-    write_faces(triangles);
-  }
-
-  void write_vertices(std::span<const Point> vertices, std::span<const Point> normals) {
-    records_.resize(kRecordsAtOnce * vertex_bytes());
-    for (std::size_t first = 0; first < vertices.size(); first += kRecordsAtOnce) {
-      const std::size_t end = std::min(vertices.size(), first + kRecordsAtOnce);
-      std::byte* out = records_.data();
-      for (std::size_t i = first; i < end; ++i) {
-        store_point(out, vertices[i]);
-        if (!normals.empty()) store_point(out, normals[i]);
-      }
-      file().write(std::span(records_).first((end - first) * vertex_bytes()));
-    }
-  }
-
-  void write_faces(std::span<const Triangle64> triangles) {
-    records_.resize(kRecordsAtOnce * kFaceBytes);
-    for (std::size_t first = 0; first < triangles.size(); first += kRecordsAtOnce) {
-      const std::size_t end = std::min(triangles.size(), first + kRecordsAtOnce);
-      std::byte* out = records_.data();
-      for (std::size_t i = first; i < end; ++i) {
-        *out++ = std::byte{3};
-        for (const std::uint64_t index : triangles[i]) store_u32(out, static_cast<std::uint32_t>(index));
-      }
-      faces_.write(std::span(records_).first((end - first) * kFaceBytes));
-    }
+    write_records(file(), records_, vertices.size(), vertex_bytes(), [&](std::byte*& out, std::size_t n) {
+      store_point(out, vertices[n]);
+      if (!normals.empty()) store_point(out, normals[n]);
+    });
+    write_records(faces_, records_, triangles.size(), kFaceBytes, [&](std::byte*& out, std::size_t n) {
+      *out++ = std::byte{3};
+      store_indices(out, triangles[n]);
+    });
   }
 
   void complete() override {
@@ -86,8 +63,8 @@ class PlySink final : public MeshFileSink {
 
 }  // namespace
 
-std::unique_ptr<MeshSink> open_ply(const std::string& path, const MeshFileOptions& options) {
-  return std::make_unique<PlySink>(path, options);
+std::unique_ptr<MeshSink> open_ply(const MeshTarget& target, const MeshFileOptions& options) {
+  return std::make_unique<PlySink>(target, options);
 }
 
 }  // namespace isoweave

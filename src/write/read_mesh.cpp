@@ -44,12 +44,20 @@ TriangleMesh read_mesh(const std::string& path) {
   const std::string head = input.head(4096);
   const bool named_obj = has_ending(path, ".obj");
   if (starts_with_word(head, "ply")) return mesh_io::read_ply(input);
+  if (head.starts_with("glTF")) return mesh_io::read_glb(input);
+  if (head.starts_with("PK\3\4")) return mesh_io::read_3mf(input);
+  if (head.find("<VTKFile") != std::string::npos) return mesh_io::read_vtp(input);
+  if (starts_with_word(head, "OFF") || starts_with_word(head, "NOFF")) return mesh_io::read_off(input);
   if (!named_obj && mesh_io::is_binary_stl(input)) return mesh_io::read_stl_binary(input);
   if (!named_obj && starts_with_word(head, "solid")) return mesh_io::read_stl_ascii(input);
   if (has_ending(path, ".stl")) return mesh_io::read_stl_binary(input);
   if (has_ending(path, ".ply")) input.fail("does not begin with the line 'ply'");
+  if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
+  if (has_ending(path, ".vtp")) input.fail("does not begin with a '<VTKFile' tag");
+  if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
+  if (has_ending(path, ".off")) input.fail("does not begin with the line 'OFF' or 'NOFF'");
   if (named_obj || looks_like_obj(head)) return mesh_io::read_obj(input);
-  input.fail("is not a PLY, STL or OBJ file");
+  input.fail("is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
 }
 
 }  // namespace isoweave

@@ -1,26 +1,30 @@
 // STL, binary. Each triangle repeats its corners, and may refer to any vertex appended so far: the positions of all
-// vertices stay in memory, 12 bytes each, and in a file beside the part where the mesh may be continued later. (PLY and
-// OBJ keep none.)
+// vertices stay in memory, 12 bytes each, and in a file beside the part where the mesh may be continued later. (The
+// other formats keep none.)
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_format.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kCountAt = 80;
 constexpr std::size_t kTriangleBytes = 50;
-constexpr std::size_t kTrianglesAtOnce = 4096;
 
 // A header that begins with "solid" would announce the ascii dialect.
-std::vector<std::byte> header_bytes(std::uint32_t triangles) {
-  constexpr std::string_view kText = "binary STL, written by isoweave";
+std::vector<std::byte> header_bytes(const MeshFileOptions& options, std::uint32_t triangles) {
+  std::string text = "binary STL, written by isoweave";
+  if (!options.space.empty()) text += " SPACE=" + one_line(options.space);
+  if (!options.unit.empty()) text += " UNIT=" + one_line(options.unit);
+  text.resize(kCountAt);
   std::vector<std::byte> header(kHeaderBytes);
-  std::transform(kText.begin(), kText.end(), header.begin(), [](char c) { return static_cast<std::byte>(c); });
-  std::byte* count = header.data() + 80;
+  std::transform(text.begin(), text.end(), header.begin(), [](char c) { return static_cast<std::byte>(c); });
+  std::byte* count = header.data() + kCountAt;
   store_u32(count, triangles);
   return header;
 }
@@ -42,29 +46,19 @@ Point facet_normal(const Point& a, const Point& b, const Point& c) {
 
 class StlSink final : public MeshFileSink {
  public:
-  StlSink(const std::string& path, const MeshFileOptions& options) : MeshFileSink(path, without_normals(options)) {
+  StlSink(const MeshTarget& target, const MeshFileOptions& options) : MeshFileSink(target, without_normals(options)) {
     if (!options.parts.empty()) kept_positions_ = &open_side("positions.part");
-    continued() ? read_positions_back() : file().write(header_bytes(0));
+    continued() ? read_positions_back() : file().write(header_bytes(options, 0));
   }
 
  private:
-  static MeshFileOptions without_normals(MeshFileOptions options) {
-    options.normals = false;
-    return options;
-  }
-
   void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
                    std::span<const Triangle64> triangles) override {
     check_count_fits(path(), "triangles", this->triangles(), triangles.size());
     positions_.insert(positions_.end(), vertices.begin(), vertices.end());
     if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(vertices));
-    records_.resize(kTrianglesAtOnce * kTriangleBytes);
-    for (std::size_t first = 0; first < triangles.size(); first += kTrianglesAtOnce) {
-      const std::size_t end = std::min(triangles.size(), first + kTrianglesAtOnce);
-      std::byte* out = records_.data();
-      for (std::size_t i = first; i < end; ++i) store_triangle(out, triangles[i]);
-      file().write(std::span(records_).first((end - first) * kTriangleBytes));
-    }
+    write_records(file(), records_, triangles.size(), kTriangleBytes,
+                  [&](std::byte*& out, std::size_t n) { store_triangle(out, triangles[n]); });
   }
 
   void store_triangle(std::byte*& out, const Triangle64& triangle) const {
@@ -77,7 +71,7 @@ class StlSink final : public MeshFileSink {
   }
 
   void complete() override {
-    const std::vector<std::byte> header = header_bytes(static_cast<std::uint32_t>(triangles()));
+    const std::vector<std::byte> header = header_bytes(options(), static_cast<std::uint32_t>(triangles()));
     file().overwrite(0, header);
     check_written(kHeaderBytes + triangles() * kTriangleBytes, header);
   }
@@ -94,8 +88,8 @@ class StlSink final : public MeshFileSink {
 
 }  // namespace
 
-std::unique_ptr<MeshSink> open_stl(const std::string& path, const MeshFileOptions& options) {
-  return std::make_unique<StlSink>(path, options);
+std::unique_ptr<MeshSink> open_stl(const MeshTarget& target, const MeshFileOptions& options) {
+  return std::make_unique<StlSink>(target, options);
 }
 
 }  // namespace isoweave

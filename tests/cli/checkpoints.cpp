@@ -126,6 +126,43 @@ TEST(CliCheckpoint, ResumesFromAnywhere) {
   EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
 }
 
+// The volume as the second channel of an array of Zarr, in chunks of 8 slices; the first is left out.
+void put_array(const files::Folder& folder) {
+  ASSERT_EQ(run(folder.path(), {"generate", "gyroid", "--size", "96x96x160", "--type", "uint8", "-o", "a.raw"}).code,
+            0);
+  const std::string samples = files::read_bytes(folder / "a.raw");
+  std::filesystem::create_directories(folder / "a/deep");
+  const std::size_t chunk = 8 * 96 * 96;
+  for (std::size_t n = 0; n < 20; ++n) {
+    files::write_bytes(folder / ("a/deep/1." + std::to_string(n) + ".0.0"), samples.substr(n * chunk, chunk));
+  }
+  files::write_bytes(folder / "a/deep/.zattrs", R"({"_ARRAY_DIMENSIONS": ["c", "z", "y", "x"]})");
+  files::write_bytes(folder / "a/.zgroup", R"({"zarr_format": 2})");
+  files::write_bytes(folder / "a/deep/.zarray", R"({"zarr_format": 2, "shape": [2, 160, 96, 96], "order": "C",
+    "chunks": [1, 8, 96, 96], "dtype": "|u1", "fill_value": 0, "compressor": null, "filters": null})");
+}
+
+TEST(CliCheckpoint, AnArrayIsResumedByItsPart) {
+  const files::Folder folder;
+  put_array(folder);
+  if (run(folder.path(), {"info", "a"}).err.find("nlohmann") != std::string::npos) GTEST_SKIP() << "built without Zarr";
+  const Result result = run(folder.path(),
+                            {"mesh", "a", "--dataset", "deep", "--channel", "1", "-o", "out.ply", "--iso", "127.5",
+                             "--report", "out.json", "--checkpoint", "run", "--slab", "2", "--threads", "1"},
+                            after(folder, SIGINT, std::chrono::milliseconds(0)));
+  ASSERT_EQ(result.code, 130) << result.err;
+  const std::string metadata = files::read_bytes(folder / "a/deep/.zarray");
+  const auto changed = std::filesystem::last_write_time(folder / "a/deep/.zarray");
+  files::write_bytes(folder / "a/deep/.zarray", metadata + " ");
+  const Result refused = run(folder.path(), {"mesh", "--resume", "run", "--quiet"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("the volume has changed"), std::string::npos) << refused.err;
+  files::write_bytes(folder / "a/deep/.zarray", metadata);
+  std::filesystem::last_write_time(folder / "a/deep/.zarray", changed);
+  ASSERT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
+  EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
+}
+
 void expect_refused(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
                     const std::string& says) {
   const std::vector<std::string> before = listing(folder);

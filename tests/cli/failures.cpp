@@ -125,6 +125,11 @@ TEST(CliBadInput, NothingThereAndNoFile) {
   files::write_bytes(folder / "box.nrrd", nrrd("8 8 8", "uchar", 512));
   expect_failure(folder, mesh("box.nrrd", {"--series", "1.2"}), 3, "expected the DICOM series '1.2', found no DICOM");
   expect_failure(folder, mesh(kSmall, {"--series", "1.2"}), 2, "--series does not go with a generated volume");
+  for (const std::string option : {"--dataset", "--level", "--channel", "--time"}) {
+    expect_failure(folder, mesh("box.nrrd", {option, "1"}), 3, "expected HDF5, Zarr or N5 for --dataset, --level");
+    expect_failure(folder, mesh(kSmall, {option, "1"}), 2, option + " does not go with a generated volume");
+  }
+  expect_failure(folder, mesh("box.nrrd", {"--level", "-1"}), 2, "--level: expected a whole number from 0 on");
   expect_failure(folder, {"info", "nothing.nrrd"}, 3, "nothing.nrrd");
   expect_failure(folder, {"check", "nothing.ply"}, 3, "nothing.ply");
   expect_failure(folder, {"check", "."}, 3, ".");
@@ -200,7 +205,8 @@ TEST(CliCannotWrite, FilesOfLimitedSize) {
   const files::Folder folder;
   program::Setup setup;
   setup.file_limit = 4096;
-  for (const std::string output : {"out.ply", "out.stl", "out.obj"}) {
+  for (const std::string output :
+       {"out.ply", "out.stl", "out.obj", "out.off", "out.glb", "out.vtp", "out.3mf", "out.precomputed"}) {
     expect_failure(folder, {"mesh", "generate:sphere:48x48x48", "-o", output, "--iso", "0", "--error", "0"}, 4, output,
                    setup);
   }
@@ -210,7 +216,8 @@ TEST(CliCannotWrite, FilesOfLimitedSize) {
 TEST(CliCannotWrite, DiskFull) {
   const files::Folder folder;
   if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "may not mount a small disk";
-  for (const std::string output : {"out.ply", "out.stl", "out.obj"}) {
+  for (const std::string output :
+       {"out.ply", "out.stl", "out.obj", "out.off", "out.glb", "out.vtp", "out.3mf", "out.precomputed"}) {
     expect_failure(folder, {"mesh", "generate:sphere:64x64x64", "-o", output, "--iso", "0", "--error", "0"}, 4, output);
   }
   expect_failure(folder, {"generate", "sphere", "-o", "s.nrrd", "--size", "64"}, 4, "s.nrrd");

@@ -110,7 +110,7 @@ TEST(CliReport, HasTheKeysThatChecksReadOn) {
 TEST(CliReport, AgreesWithTheFileInEveryFormat) {
   const files::Folder folder;
   std::string digest;
-  for (const std::string format : {"ply", "stl", "obj"}) {
+  for (const std::string format : {"ply", "stl", "obj", "off", "glb", "vtp", "3mf"}) {
     const std::string name = "out." + format;
     succeed(folder, {"mesh", "generate:noise:32x32x32:float32", "-o", name, "--iso", "0.5", "--report", "r.json"});
     const Json report = json_file(folder / "r.json");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "files.hpp"
+#include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "surfaces.hpp"
 
@@ -28,9 +29,10 @@ MeshReport run_whole(const SurfaceCase& surface, const MeshOptions& options) {
 // threads and a slab of its own.
 class InterruptedRun {
  public:
-  InterruptedRun(const SurfaceCase& surface, const MeshOptions& options) : surface_(surface), options_(options) {}
+  InterruptedRun(const SurfaceCase& surface, const MeshOptions& options, std::string name = "a.ply")
+      : surface_(surface), options_(options), name_(std::move(name)) {}
 
-  std::string mesh_path() const { return folder_ / "a.ply"; }
+  std::string mesh_path() const { return folder_ / name_; }
   std::string state_folder() const { return folder_ / "run"; }
 
   MeshReport finish_in_steps(int slabs_each) {
@@ -66,6 +68,7 @@ class InterruptedRun {
 
   SurfaceCase surface_;
   MeshOptions options_;
+  std::string name_;
   files::Folder folder_;
 };
 
@@ -109,6 +112,20 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Resumed, ::testing::Values("noise", "gyroid", "box", "specks", "white"));
+
+TEST(Checkpoints, EveryFormatGoesOnToTheSameMesh) {
+  const SurfaceCase surface{{"noise", {20, 20, 40}, SampleType::kUint8}, true, 0.3};
+  MeshOptions options = mesh_options(surface);
+  options.normals = true;
+  const MeshReport whole = run_whole(surface, options);
+  for (const char* name : meshes::kFileNames) {
+    InterruptedRun run(surface, options, name);
+    run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, 5) << name;
+    EXPECT_TRUE(std::filesystem::is_empty(run.state_folder())) << name;
+    EXPECT_EQ(check_mesh(read_mesh(run.mesh_path())).digest, whole.digest) << name;
+  }
+}
 
 // Fails at a slice, as a disk does, until it is told to work.
 class FailingVolume final : public SliceSource {
@@ -269,6 +286,15 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
   foreign.commit();
   std::filesystem::remove(folder_ / "state-0");
   expect_refused<BadInput>([&] { read_checkpoint(folder_.path()); }, "found another file");
+}
+
+TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
+  StateWriter writer(folder_ / "state-0");
+  writer.list(std::string("isoweave state 1\n"));
+  writer.list(std::string("1\n2"));
+  writer.commit();
+  std::filesystem::remove(folder_ / "state-1");
+  expect_refused<BadInput>([&] { read_checkpoint(folder_.path()); }, "version 1?2");
 }
 
 TEST_F(SavedState, ShortOrMissingPartsAreRefused) {

@@ -75,23 +75,16 @@ TriangleMesh awkward_cube() {
   return mesh;
 }
 
-TEST(ReadMesh, PlyRoundTripKeepsEveryBit) {
-  TriangleMesh mesh = awkward_cube();
-  mesh.normals.assign(8, {0, 0.6F, -0.8F});
-  const TriangleMesh back = write_and_read(mesh, "a.ply");
-  EXPECT_EQ(bits(back.vertices), bits(mesh.vertices));
-  EXPECT_EQ(bits(back.normals), bits(mesh.normals));
-  EXPECT_EQ(back.triangles, mesh.triangles);
-}
-
-TEST(ReadMesh, ObjRoundTripKeepsEveryBit) {
-  TriangleMesh mesh = awkward_cube();
-  EXPECT_TRUE(write_and_read(mesh, "a.obj").normals.empty());
-  mesh.normals.assign(8, {0, 0.6F, -0.8F});
-  const TriangleMesh back = write_and_read(mesh, "a.obj");
-  EXPECT_EQ(bits(back.vertices), bits(mesh.vertices));
-  EXPECT_EQ(bits(back.normals), bits(mesh.normals));
-  EXPECT_EQ(back.triangles, mesh.triangles);
+TEST(ReadMesh, RoundTripsKeepEveryBit) {
+  for (const std::string name : {"a.ply", "a.obj", "a.off", "a.vtp", "a.glb", "a.3mf"}) {
+    TriangleMesh mesh = awkward_cube();
+    EXPECT_TRUE(write_and_read(mesh, name).normals.empty()) << name;
+    mesh.normals.assign(8, {0, 0.6F, -0.8F});
+    const TriangleMesh back = write_and_read(mesh, name);
+    EXPECT_EQ(bits(back.vertices), bits(mesh.vertices)) << name;
+    EXPECT_EQ(bits(back.normals), bits(name == "a.3mf" ? std::vector<Point>{} : mesh.normals)) << name;
+    EXPECT_EQ(back.triangles, mesh.triangles) << name;
+  }
 }
 
 // STL numbers vertices anew, so only the triangles themselves can be compared.
@@ -108,7 +101,7 @@ TEST(ReadMesh, StlRoundTripKeepsTrianglesAndWeldsCorners) {
 }
 
 TEST(ReadMesh, EmptyMeshesRoundTrip) {
-  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
+  for (const char* name : meshes::kFileNames) {
     const files::Folder folder;
     open_mesh_file(folder / name, {.normals = false, .comments = {"nothing"}})->finish();
     const TriangleMesh mesh = read_mesh(folder / name);
@@ -219,7 +212,7 @@ TEST(ReadMesh, FormatIsToldByContentBeforeTheName) {
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   EXPECT_NO_THROW(parse("wrong.obj", ply));
   EXPECT_EQ(parse("no-ending", "# c\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size(), 1U);
-  EXPECT_EQ(failure("a.bin", "hello"), "is not a PLY, STL or OBJ file");
+  EXPECT_EQ(failure("a.bin", "hello"), "is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
   EXPECT_EQ(failure("a.ply", "hello"), "does not begin with the line 'ply'");
   EXPECT_EQ(failure("a.obj", ""), "is empty, expected a mesh file");
 }

@@ -270,5 +270,20 @@ TEST(Nifti, SurvivesRandomChanges) {
   expect_flips_are_safe(folder, "c.nii.gz", gzipped(nifti_file({})), 100);
 }
 
+// Found by fuzzing: a vector shorter than the smallest normal number has no direction of unit length.
+TEST(Nifti, RefusesSpacingThatCannotBeComputedWith) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.version = 2;
+  for (const double step : {1e-310, 1e-31, 1e31}) {
+    fields.pixdim[2] = step;
+    const std::string path = folder.put("a.nii", nifti_header(fields) + stored(ramp<std::int16_t>(30)));
+    EXPECT_TRUE(contains(refusal(path), "a sample spacing from 1e-30 to 1e30 on axis 1")) << refusal(path);
+    OpenOptions options;
+    options.spacing = {1, step, 1};
+    EXPECT_THROW(open_volume(path, options), BadInput);
+  }
+}
+
 }  // namespace
 }  // namespace isoweave::testing

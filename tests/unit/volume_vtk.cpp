@@ -1,79 +1,9 @@
-#include "volume_helpers.hpp"
+#include "vti_helpers.hpp"
 
 namespace isoweave::testing {
 namespace {
 
-const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(4 * 3 * 5);
-
-std::string base64(const std::string& bytes) {
-  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t n = 0; n < 3; ++n) {
-      bits = bits << 8 | (at + n < bytes.size() ? static_cast<unsigned char>(bytes[at + n]) : 0U);
-    }
-    for (std::size_t n = 0; n < 4; ++n) text += at + n > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * n) & 63];
-  }
-  return text;
-}
-
-// How an array is written.
-struct VtiForm {
-  bool big = false;
-  bool wide = false;      // numbers of 8 bytes before an array
-  std::size_t block = 0;  // bytes of the compressed blocks; 0: not compressed
-  bool appended = false;
-  bool base64 = true;
-  std::string attributes = "type=\"Int16\" Name=\"a\"";
-  std::string scalars = {};
-  std::string place = R"(WholeExtent="0 3 0 2 0 4" Origin="0 0 0" Spacing="1 1 1")";
-  std::string extent = "0 3 0 2 0 4";
-};
-
-std::string word(const VtiForm& form, std::uint64_t value) {
-  return form.wide ? bytes_of(value, form.big) : bytes_of(static_cast<std::uint32_t>(value), form.big);
-}
-
-std::string encoded(const VtiForm& form, const std::string& bytes) { return form.base64 ? base64(bytes) : bytes; }
-
-// The array with its sizes, as VTK writes it: those of compressed blocks are a piece of base64 of their own.
-std::string array_of(const VtiForm& form, const std::string& samples) {
-  if (form.block == 0) return encoded(form, word(form, samples.size()) + samples);
-  std::string sizes;
-  std::string blocks;
-  std::uint64_t count = 0;
-  for (std::size_t at = 0; at < samples.size(); at += form.block, ++count) {
-    const std::string block = zlibbed(samples.substr(at, form.block));
-    sizes += word(form, block.size());
-    blocks += block;
-  }
-  sizes = word(form, count) + word(form, form.block) + word(form, samples.size() % form.block) + sizes;
-  return encoded(form, sizes) + encoded(form, blocks);
-}
-
-std::string vti(const VtiForm& form, const std::string& array) {
-  std::string text = "<?xml version=\"1.0\"?>\n<!-- <VTKFile type='no'> -->\n<VTKFile type=\"ImageData\" byte_order=\"";
-  text += form.big ? "BigEndian\"" : "LittleEndian\"";
-  if (form.wide) text += " header_type=\"UInt64\"";
-  if (form.block > 0) text += " compressor=\"vtkZLibDataCompressor\"";
-  text += ">\n<ImageData " + form.place +
-          ">\n<FieldData><DataArray type=\"Int8\" Name=\"f\" format=\"ascii\">1</DataArray>";
-  text += "</FieldData><Piece Extent=\"" + form.extent + "\">\n<PointData Scalars=\"" + form.scalars + "\">\n";
-  text += "<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\" format=\"ascii\"> 1 2 3 </DataArray>\n";
-  text +=
-      "<DataArray " + form.attributes + " format=\"" + (form.appended ? "appended\" offset=\"2\"/>" : "binary\">\n  ");
-  if (!form.appended) text += array + "\n</DataArray>";
-  text += "</PointData></Piece></ImageData>\n";
-  if (form.appended) {
-    text += std::string("<AppendedData encoding=\"") + (form.base64 ? "base64" : "raw") + "\">\n  _";
-    // Another array, two characters long.
-    text += "AA" + array + "\n</AppendedData>";
-  }
-  return text + "\n</VTKFile>\n";
-}
-
-std::string whole(const VtiForm& form) { return vti(form, array_of(form, stored(kSamples, form.big))); }
+using namespace vti_files;
 
 TEST(Vti, ReadsEveryEncoding) {
   const TempFolder folder;
@@ -92,6 +22,33 @@ TEST(Vti, ReadsEveryEncoding) {
     }
   }
 }
+
+#ifdef ISOWEAVE_HAS_LZ4
+TEST(Vti, ReadsLz4Blocks) {
+  const TempFolder folder;
+  VtiForm form;
+  form.lz4 = true;
+  for (const std::size_t block : {6U, 50U, 4096U}) {
+    form.block = block;
+    EXPECT_EQ(read_file<std::int16_t>(folder.put("a.vti", whole(form))), kSamples) << block;
+  }
+  const auto array = [&](std::uint32_t size, std::uint32_t stored, const std::string& block) {
+    const std::string sizes = bytes_of(1U) + bytes_of(size) + bytes_of(0U) + bytes_of(stored);
+    return vti(form, base64(sizes) + base64(block));
+  };
+  // Twenty sevens: one as it is, six copies of what stands one byte before, thirteen as they are.
+  const std::string sevens = std::string("\x12\7\1\0\xd0", 5) + std::string(13, '\7');
+  form.attributes = "type=\"UInt8\" Name=\"a\"";
+  form.extent = "0 19 0 0 0 0";
+  form.place = "WholeExtent=\"" + form.extent + "\"";
+  EXPECT_EQ(read_file<std::uint8_t>(folder.put("a.vti", array(20, 18, sevens))), std::vector<std::uint8_t>(20, 7));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", array(20, 17, sevens))), "LZ4 blocks of 20 bytes, found damaged"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", array(20, 5000, sevens))), "5000 bytes in block 0"));
+  form.extent = "0 9999 0 0 0 0";
+  form.place = "WholeExtent=\"" + form.extent + "\"";
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", array(10000, 18, sevens))), "which cannot hold them"));
+}
+#endif
 
 TEST(Vti, ReadsNumbersInText) {
   const TempFolder folder;
@@ -166,7 +123,7 @@ TEST(Vti, RefusesWhatItDoesNotRead) {
   VtiForm packed;
   packed.block = 50;
   EXPECT_TRUE(contains(with("ImageData\"", "PolyData\""), "expected VTK XML of type ImageData, found 'PolyData'"));
-  EXPECT_TRUE(contains(with("vtkZLib", "vtkLZ4", packed), "found 'vtkLZ4DataCompressor'"));
+  EXPECT_TRUE(contains(with("vtkZLib", "vtkLZMA", packed), "found 'vtkLZMADataCompressor'"));
   EXPECT_TRUE(contains(with("type=\"Int16\"", "type=\"Int64\""), "found 'Int64'"));
   EXPECT_TRUE(contains(with("format=\"binary\"", "format=\"odd\""), "found 'odd'"));
   EXPECT_TRUE(contains(with("Extent=\"0 3", "Extent=\"0 x"), "six whole numbers as an extent"));

@@ -193,8 +193,8 @@ TEST(AtomicFile, FailingWriteSaysWhyAndLeavesNothing) {
 TEST(AtomicFile, MeshWritersLeaveNothingWhenTheDiskIsFull) {
   const TriangleMesh mesh = meshes::grid(300);
   const std::vector<std::array<std::uint64_t, 3>> triangles(mesh.triangles.size(), {0, 1, 302});
-  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
-    for (const rlim_t limit_bytes : {1U << 10U, 1200U << 10U, 2500U << 10U}) {
+  for (const char* name : {"a.ply", "a.stl", "a.obj", "a.off", "a.glb", "a.vtp", "a.precomputed"}) {
+    for (const rlim_t limit_bytes : {1U << 10U, 1200U << 10U, 1900U << 10U}) {
       const files::Folder folder;
       const FileSizeLimit limit(limit_bytes);
       EXPECT_THROW(
@@ -212,7 +212,7 @@ TEST(AtomicFile, MeshWritersLeaveNothingWhenTheDiskIsFull) {
 
 TEST(AtomicFile, MeshWritersLeaveNothingWithoutFinish) {
   const files::Folder folder;
-  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
+  for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.off", "a.glb", "a.vtp", "a.3mf", "a.precomputed"}) {
     const auto sink = open_mesh_file(folder / name);
     sink->append(meshes::cube().vertices, {}, {});
   }

@@ -1,4 +1,5 @@
-// What the three mesh writers put on the disk, byte by byte. Round trips through read_mesh are in read_mesh_*.cpp.
+// What the writers of PLY, STL and OBJ put on the disk, byte by byte, and what all writers refuse. Round trips through
+// read_mesh are in read_mesh_*.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "isoweave/mesh.hpp"
 #include "meshes.hpp"
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_format.hpp"
 
 namespace isoweave {
 namespace {
@@ -89,7 +91,7 @@ TEST(WriteMesh, ObjFacesNameNormals) {
 
 TEST(WriteMesh, UnknownEndingIsAnError) {
   const files::Folder folder;
-  for (const char* name : {"a.xyz", "a", "ply", "a.ply.gz", "b.stl/a"}) {
+  for (const char* name : {"a.xyz", "a", "ply", "a.ply.gz", "b.stl/a", "a.ply/", "precomputed"}) {
     EXPECT_THROW(open_mesh_file(folder / name), CannotWrite) << name;
   }
   EXPECT_TRUE(folder.entries().empty());
@@ -97,7 +99,7 @@ TEST(WriteMesh, UnknownEndingIsAnError) {
 
 TEST(WriteMesh, BadArgumentsAreRefused) {
   const files::Folder folder;
-  for (const char* name : {"a.ply", "a.stl", "a.obj"}) {
+  for (const char* name : meshes::kFileNames) {
     const auto sink = open_mesh_file(folder / name);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_THROW(sink->append({}, {}, kOneTriangle), std::invalid_argument) << "no vertex yet";

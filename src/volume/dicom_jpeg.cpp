@@ -1,9 +1,7 @@
-// JPEG, JPEG-LS and JPEG 2000 samples of DICOM files through the codecs of GDCM.
+// JPEG samples of DICOM files, lossless or not, through the codecs of GDCM.
 #include <gdcmDataElement.h>
 #include <gdcmFragment.h>
-#include <gdcmJPEG2000Codec.h>
 #include <gdcmJPEGCodec.h>
-#include <gdcmJPEGLSCodec.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 #include <gdcmTransferSyntax.h>
@@ -41,17 +39,7 @@ gdcm::DataElement pixel_data(std::span<const std::byte> packed) {
   return element;
 }
 
-std::unique_ptr<gdcm::ImageCodec> codec_for(const gdcm::TransferSyntax& syntax) {
-  std::unique_ptr<gdcm::ImageCodec> codec = std::make_unique<gdcm::JPEGCodec>();
-  if (codec->CanDecode(syntax)) return codec;
-  codec = std::make_unique<gdcm::JPEGLSCodec>();
-  if (codec->CanDecode(syntax)) return codec;
-  codec = std::make_unique<gdcm::JPEG2000Codec>();
-  if (codec->CanDecode(syntax)) return codec;
-  return nullptr;
-}
-
-bool decodes(gdcm::ImageCodec& codec, const gdcm::DataElement& packed, gdcm::DataElement& samples) {
+bool decodes(gdcm::JPEGCodec& codec, const gdcm::DataElement& packed, gdcm::DataElement& samples) {
   try {
     return codec.Decode(packed, samples);
   } catch (const std::exception&) {
@@ -61,22 +49,22 @@ bool decodes(gdcm::ImageCodec& codec, const gdcm::DataElement& packed, gdcm::Dat
 
 }  // namespace
 
-std::vector<std::byte> unpack_dicom(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes) {
+std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes) {
   keep_gdcm_quiet();
   const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(slice.syntax.c_str()));
-  const std::unique_ptr<gdcm::ImageCodec> codec = codec_for(syntax);
-  if (!codec) bad_input(slice.path, "JPEG, JPEG-LS or JPEG 2000 samples", isoweave::quoted(slice.syntax));
+  gdcm::JPEGCodec codec;
+  if (!codec.CanDecode(syntax)) bad_input(slice.path, "JPEG samples", isoweave::quoted(slice.syntax));
   const std::array<unsigned int, 3> dims{static_cast<unsigned int>(slice.columns),
                                          static_cast<unsigned int>(slice.rows), 1};
-  codec->SetNumberOfDimensions(2);
-  codec->SetDimensions(dims.data());
-  codec->SetPlanarConfiguration(0);
-  codec->SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-  codec->SetPixelFormat(gdcm::PixelFormat(1, static_cast<unsigned short>(slice.bits),
-                                          static_cast<unsigned short>(slice.stored),
-                                          static_cast<unsigned short>(slice.high), slice.is_signed ? 1 : 0));
+  codec.SetNumberOfDimensions(2);
+  codec.SetDimensions(dims.data());
+  codec.SetPlanarConfiguration(0);
+  codec.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  codec.SetPixelFormat(gdcm::PixelFormat(1, static_cast<unsigned short>(slice.bits),
+                                         static_cast<unsigned short>(slice.stored),
+                                         static_cast<unsigned short>(slice.high), slice.is_signed ? 1 : 0));
   gdcm::DataElement unpacked;
-  const bool decoded = decodes(*codec, pixel_data(packed), unpacked);
+  const bool decoded = decodes(codec, pixel_data(packed), unpacked);
   const gdcm::ByteValue* value = decoded ? unpacked.GetByteValue() : nullptr;
   if (value == nullptr) bad_input(slice.path, "decodable DICOM samples", "damaged data");
   if (value->GetLength() != bytes) {

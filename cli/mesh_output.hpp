@@ -1,0 +1,47 @@
+// Where a mesh goes: the options that mesh and simplify share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+
+namespace isoweave::cli {
+
+inline constexpr const char* kMeshEndings = ".ply, .stl, .obj, .off, .glb, .vtp, .3mf or .precomputed";
+
+struct OutputOptions {
+  std::string path;
+  std::string to_stdout;  // "ply" or "stl" instead of a path
+  bool compress = false;
+  std::uint64_t segment = 1;
+
+  bool given() const { return !path.empty() || !to_stdout.empty(); }
+
+  // What stands for it in messages and reports.
+  std::string name() const { return to_stdout.empty() ? path : "standard output"; }
+};
+
+void add_output_options(CLI::App& verb, OutputOptions& output);
+
+// Puts in what the options say.
+MeshFileOptions mesh_file_options(const OutputOptions& output, MeshFileOptions options);
+
+std::unique_ptr<MeshSink> open_output(const OutputOptions& output, const MeshFileOptions& options);
+
+// mesh_file_bytes and mesh_file_memory for it.
+std::uint64_t output_bytes(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
+                           const MeshFileOptions& options);
+std::uint64_t output_memory(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
+                            const MeshFileOptions& options);
+
+// What the axes of the output mean, as far as it is known: "LPS", "RAS", "index" or nothing.
+std::string space_text(const Geometry& geometry, OutputSpace space);
+
+// Says what the sink has to tell of its mesh.
+void print_notes(const MeshSink& sink);
+
+}  // namespace isoweave::cli

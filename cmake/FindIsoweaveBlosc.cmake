@@ -1,0 +1,10 @@
+# Blosc, a codec of chunks in Zarr and N5; it comes without a package file for CMake.
+find_path(IsoweaveBlosc_INCLUDE_DIR blosc.h)
+find_library(IsoweaveBlosc_LIBRARY blosc)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveBlosc REQUIRED_VARS IsoweaveBlosc_INCLUDE_DIR IsoweaveBlosc_LIBRARY)
+if(IsoweaveBlosc_FOUND AND NOT TARGET IsoweaveBlosc::IsoweaveBlosc)
+  add_library(IsoweaveBlosc::IsoweaveBlosc INTERFACE IMPORTED)
+  target_include_directories(IsoweaveBlosc::IsoweaveBlosc INTERFACE ${IsoweaveBlosc_INCLUDE_DIR})
+  target_link_libraries(IsoweaveBlosc::IsoweaveBlosc INTERFACE ${IsoweaveBlosc_LIBRARY})
+endif()

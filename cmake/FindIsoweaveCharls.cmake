@@ -1,0 +1,10 @@
+# CharLS 2.2 or newer, for JPEG-LS.
+find_path(IsoweaveCharls_INCLUDE_DIR charls/charls_jpegls_decoder.h)
+find_library(IsoweaveCharls_LIBRARY charls)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveCharls REQUIRED_VARS IsoweaveCharls_LIBRARY IsoweaveCharls_INCLUDE_DIR)
+if(IsoweaveCharls_FOUND AND NOT TARGET IsoweaveCharls::IsoweaveCharls)
+  add_library(IsoweaveCharls::IsoweaveCharls INTERFACE IMPORTED)
+  target_include_directories(IsoweaveCharls::IsoweaveCharls INTERFACE ${IsoweaveCharls_INCLUDE_DIR})
+  target_link_libraries(IsoweaveCharls::IsoweaveCharls INTERFACE ${IsoweaveCharls_LIBRARY})
+endif()

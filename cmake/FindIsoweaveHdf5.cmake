@@ -1,0 +1,17 @@
+# HDF5, of which only the headers are used when building: the library is loaded when the first HDF5 file is met.
+find_path(IsoweaveHdf5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial)
+find_library(IsoweaveHdf5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveHdf5 REQUIRED_VARS IsoweaveHdf5_INCLUDE_DIR IsoweaveHdf5_LIBRARY)
+if(IsoweaveHdf5_FOUND AND NOT TARGET IsoweaveHdf5::IsoweaveHdf5)
+  # The name under which systems that have the library without its headers have it, too.
+  file(REAL_PATH ${IsoweaveHdf5_LIBRARY} IsoweaveHdf5_RUNTIME)
+  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${IsoweaveHdf5_RUNTIME} OUTPUT_VARIABLE IsoweaveHdf5_FACTS ERROR_QUIET)
+  if(IsoweaveHdf5_FACTS MATCHES "SONAME +([^ \n]+)")
+    cmake_path(REPLACE_FILENAME IsoweaveHdf5_RUNTIME ${CMAKE_MATCH_1})
+  endif()
+  add_library(IsoweaveHdf5::IsoweaveHdf5 INTERFACE IMPORTED)
+  target_include_directories(IsoweaveHdf5::IsoweaveHdf5 INTERFACE ${IsoweaveHdf5_INCLUDE_DIR})
+  target_compile_definitions(IsoweaveHdf5::IsoweaveHdf5 INTERFACE ISOWEAVE_HDF5_LIBRARY="${IsoweaveHdf5_RUNTIME}")
+  target_link_libraries(IsoweaveHdf5::IsoweaveHdf5 INTERFACE ${CMAKE_DL_LIBS})
+endif()

@@ -1,0 +1,10 @@
+# liblz4, for VTI and for chunks of Zarr and N5. It comes without a package file for CMake.
+find_path(IsoweaveLz4_INCLUDE_DIR lz4.h)
+find_library(IsoweaveLz4_LIBRARY lz4)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveLz4 REQUIRED_VARS IsoweaveLz4_INCLUDE_DIR IsoweaveLz4_LIBRARY)
+if(IsoweaveLz4_FOUND AND NOT TARGET IsoweaveLz4::IsoweaveLz4)
+  add_library(IsoweaveLz4::IsoweaveLz4 INTERFACE IMPORTED)
+  target_include_directories(IsoweaveLz4::IsoweaveLz4 INTERFACE ${IsoweaveLz4_INCLUDE_DIR})
+  target_link_libraries(IsoweaveLz4::IsoweaveLz4 INTERFACE ${IsoweaveLz4_LIBRARY})
+endif()

@@ -1,0 +1,10 @@
+# OpenJPEG, for JPEG 2000. Its own package file stops where its command line tools are not installed beside the library.
+find_path(IsoweaveOpenJpeg_INCLUDE_DIR openjpeg.h PATH_SUFFIXES openjpeg-2.5 openjpeg-2.4)
+find_library(IsoweaveOpenJpeg_LIBRARY openjp2)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveOpenJpeg REQUIRED_VARS IsoweaveOpenJpeg_LIBRARY IsoweaveOpenJpeg_INCLUDE_DIR)
+if(IsoweaveOpenJpeg_FOUND AND NOT TARGET IsoweaveOpenJpeg::IsoweaveOpenJpeg)
+  add_library(IsoweaveOpenJpeg::IsoweaveOpenJpeg INTERFACE IMPORTED)
+  target_include_directories(IsoweaveOpenJpeg::IsoweaveOpenJpeg INTERFACE ${IsoweaveOpenJpeg_INCLUDE_DIR})
+  target_link_libraries(IsoweaveOpenJpeg::IsoweaveOpenJpeg INTERFACE ${IsoweaveOpenJpeg_LIBRARY})
+endif()

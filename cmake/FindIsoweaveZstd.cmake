@@ -1,0 +1,10 @@
+# Zstandard, a codec of chunks in Zarr and N5; the targets of its package file differ from system to system.
+find_path(IsoweaveZstd_INCLUDE_DIR zstd.h)
+find_library(IsoweaveZstd_LIBRARY zstd)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(IsoweaveZstd REQUIRED_VARS IsoweaveZstd_INCLUDE_DIR IsoweaveZstd_LIBRARY)
+if(IsoweaveZstd_FOUND AND NOT TARGET IsoweaveZstd::IsoweaveZstd)
+  add_library(IsoweaveZstd::IsoweaveZstd INTERFACE IMPORTED)
+  target_include_directories(IsoweaveZstd::IsoweaveZstd INTERFACE ${IsoweaveZstd_INCLUDE_DIR})
+  target_link_libraries(IsoweaveZstd::IsoweaveZstd INTERFACE ${IsoweaveZstd_LIBRARY})
+endif()

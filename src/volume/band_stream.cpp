@@ -1,0 +1,95 @@
+#include "volume/band_stream.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace isoweave {
+
+BandStream::BandStream(std::int64_t slices, std::size_t slice_bytes, std::int64_t depth)
+    : slices_(slices), slice_bytes_(slice_bytes), depth_(std::min(depth, slices)) {}
+
+std::uint64_t BandStream::band_bytes(std::int64_t band) const {
+  const std::int64_t first = band * depth_;
+  return first >= slices_ ? 0 : static_cast<std::uint64_t>(std::min(depth_, slices_ - first)) * slice_bytes_;
+}
+
+void BandStream::fill_band(std::span<std::byte> band) {
+  const std::int64_t first = band_ * depth_;
+  fill(first, std::min(depth_, slices_ - first), band);
+}
+
+void BandStream::advance(std::uint64_t bytes) {
+  used_ += bytes;
+  if (used_ < band_bytes(band_)) return;
+  ++band_;
+  used_ = 0;
+  filled_ = false;
+}
+
+std::size_t BandStream::read(std::span<std::byte> out) {
+  std::size_t done = 0;
+  while (done < out.size() && band_bytes(band_) > 0) {
+    const auto whole = static_cast<std::size_t>(band_bytes(band_));
+    const std::size_t step = std::min(out.size() - done, whole - static_cast<std::size_t>(used_));
+    if (!filled_ && step == whole) {
+      fill_band(out.subspan(done, whole));
+    } else {
+      if (!filled_) {
+        buffer_.resize(whole);
+        fill_band(buffer_);
+        filled_ = true;
+      }
+      std::memcpy(out.data() + done, buffer_.data() + used_, step);
+    }
+    done += step;
+    advance(step);
+  }
+  return done;
+}
+
+std::uint64_t BandStream::skip(std::uint64_t count) {
+  std::uint64_t done = 0;
+  while (done < count && band_bytes(band_) > 0) {
+    const std::uint64_t step = std::min(count - done, band_bytes(band_) - used_);
+    done += step;
+    advance(step);
+  }
+  return done;
+}
+
+namespace {
+
+template <std::size_t kBytes>
+void copy_typed(const std::byte* from, std::byte* to, const BlockCopy& copy) {
+  constexpr auto kStep = static_cast<std::int64_t>(kBytes);
+  for (std::int64_t k = 0; k < copy.size[2]; ++k) {
+    for (std::int64_t j = 0; j < copy.size[1]; ++j) {
+      const std::byte* source = from + (k * copy.from_step[2] + j * copy.from_step[1]) * kStep;
+      std::byte* target = to + (k * copy.to_step[2] + j * copy.to_step[1]) * kStep;
+      if (copy.from_step[0] == 1 && copy.to_step[0] == 1) {
+        std::memcpy(target, source, static_cast<std::size_t>(copy.size[0]) * kBytes);
+        continue;
+      }
+      for (std::int64_t i = 0; i < copy.size[0]; ++i) {
+        std::memcpy(target + i * copy.to_step[0] * kStep, source + i * copy.from_step[0] * kStep, kBytes);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void copy_block(const std::byte* from, std::byte* to, const BlockCopy& copy, std::size_t sample_bytes) {
+  switch (sample_bytes) {
+    case 1:
+      return copy_typed<1>(from, to, copy);
+    case 2:
+      return copy_typed<2>(from, to, copy);
+    case 4:
+      return copy_typed<4>(from, to, copy);
+    default:
+      return copy_typed<8>(from, to, copy);
+  }
+}
+
+}  // namespace isoweave

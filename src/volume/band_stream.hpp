@@ -1,0 +1,50 @@
+// Samples that are stored in blocks several slices deep: a band of slices, as deep as a block, is held at a time, so
+// that every block is decoded once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "volume/byte_stream.hpp"
+
+namespace isoweave {
+
+class BandStream : public ByteStream {
+ public:
+  std::size_t read(std::span<std::byte> out) override;
+  std::uint64_t skip(std::uint64_t count) override;
+  bool skips() const override { return true; }
+
+ protected:
+  // `depth`: slices of a band, at least 1; bands begin at its multiples.
+  BandStream(std::int64_t slices, std::size_t slice_bytes, std::int64_t depth);
+
+  // Makes slices [first, first + count), one band or the last piece of one.
+  virtual void fill(std::int64_t first, std::int64_t count, std::span<std::byte> band) = 0;
+
+ private:
+  std::uint64_t band_bytes(std::int64_t band) const;
+  void fill_band(std::span<std::byte> band);
+  void advance(std::uint64_t bytes);
+
+  std::int64_t slices_;
+  std::size_t slice_bytes_;
+  std::int64_t depth_;
+  std::int64_t band_ = 0;   // the band that is read from
+  std::uint64_t used_ = 0;  // bytes of it
+  bool filled_ = false;     // whether buffer_ holds it
+  std::vector<std::byte> buffer_;
+};
+
+// Copies samples between two layouts. Along axis a there are size[a], from_step[a] and to_step[a] samples apart.
+struct BlockCopy {
+  std::array<std::int64_t, 3> size{1, 1, 1};
+  std::array<std::int64_t, 3> from_step{0, 0, 0};
+  std::array<std::int64_t, 3> to_step{0, 0, 0};
+};
+void copy_block(const std::byte* from, std::byte* to, const BlockCopy& copy, std::size_t sample_bytes);
+
+}  // namespace isoweave

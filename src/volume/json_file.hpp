@@ -1,0 +1,33 @@
+// Metadata in JSON: files of bounded size and depth, and members of the types that are expected.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isoweave {
+
+using Json = nlohmann::json;
+
+// Throws BadInput when the file cannot be read, is larger than any metadata should be, or is no JSON.
+Json read_json(const std::string& path);
+
+// The member of an object; nullptr when there is none, or `json` is no object.
+const Json* member(const Json& json, std::string_view key);
+
+// A text member; empty when there is none, or it is no text.
+std::string text_member(const Json& json, std::string_view key);
+
+// An integer that fits; nothing for any other value.
+std::optional<std::int64_t> integer_of(const Json& json);
+
+// A list of integers. Throws BadInput naming `path` and the key for anything else.
+std::vector<std::int64_t> integers_member(const Json& json, std::string_view key, const std::string& path);
+
+// A list of finite numbers; nothing for anything else.
+std::optional<std::vector<double>> numbers_of(const Json* json);
+
+}  // namespace isoweave

@@ -1,0 +1,26 @@
+// The multiscales of OME-Zarr 0.1 to 0.5: one image at several sizes, its axes, and where its samples lie.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volume/array_places.hpp"
+#include "volume/json_file.hpp"
+
+namespace isoweave {
+
+struct Multiscale {
+  struct Level {
+    std::string path;
+    AxisPlaces places;  // with the transformations of the level and of the whole applied
+  };
+  std::vector<Level> levels;  // the largest first
+  Json axis_names;            // a list of texts; null where none are given
+};
+
+// The first image that `attributes` describe; nothing when they describe none. Throws BadInput naming `path` for a
+// description that is wrong, and for transformations other than scales and translations.
+std::optional<Multiscale> multiscale_of(const Json& attributes, const std::string& path);
+
+}  // namespace isoweave

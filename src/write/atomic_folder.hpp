@@ -1,0 +1,38 @@
+// Output folders that are complete or absent.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace isoweave {
+
+// A folder that appears under its name only on commit(). Until then it is `.NAME.XXXXXX.partial` beside it, which the
+// destructor removes with all that is in it. All failures are CannotWrite.
+class AtomicFolder {
+ public:
+  // Throws what check_free() throws.
+  explicit AtomicFolder(const std::string& path);
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+  // Throws unless nothing, or an empty folder, has the name.
+  static void check_free(const std::string& path);
+
+  // Creates a file in it.
+  void write_file(const std::string& name, std::span<const std::byte> bytes);
+
+  // The path under which a file of this name can be written into the folder until it is committed.
+  std::string file(const std::string& name) const { return temporary_ + "/" + name; }
+
+  void commit();
+
+ private:
+  std::string path_;       // without slashes at the end
+  std::string temporary_;  // empty once it was renamed
+};
+
+std::string without_slashes(std::string path);
+
+}  // namespace isoweave

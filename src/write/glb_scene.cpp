@@ -1,0 +1,77 @@
+#include "write/glb_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "write/mesh_file_sink.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+
+// As a quaternion. RAS: half a turn about the middle of y and z, (x, y, z) -> (-x, z, y). Others: a quarter turn about
+// x, (x, y, z) -> (x, z, -y).
+std::array<double, 4> turn_to_y_up(const std::string& space) {
+  const double half = std::sqrt(0.5);
+  if (space == "RAS") return {0, half, half, 0};
+  return {-half, 0, 0, half};
+}
+
+}  // namespace
+
+void Bounds::add(std::span<const Point> points) {
+  for (const Point& point : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], point[axis]);
+      high[axis] = std::max(high[axis], point[axis]);
+    }
+  }
+}
+
+GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
+  GltfJson json;
+  json["asset"] = {{"version", "2.0"}, {"generator", kGltfGenerator}};
+  GltfJson& extras = json["asset"]["extras"];
+  extras["comments"] = options.comments;
+  extras["unit"] = options.unit;
+  extras["space"] = options.space;
+  json["scene"] = 0;
+  json["scenes"] = {{{"nodes", {0}}}};
+  GltfJson root{{"rotation", turn_to_y_up(options.space)}};
+  const double metres = unit_in(options.unit, "m").value_or(1);
+  if (metres != 1) root["scale"] = {metres, metres, metres};
+  if (placed.is_null()) {
+    root["mesh"] = 0;
+    json["nodes"] = {root};
+  } else {
+    root["children"] = {1};
+    json["nodes"] = {root, placed};
+  }
+  return json;
+}
+
+std::string gltf_text(const GltfJson& scene) { return scene.dump(-1, ' ', false, GltfJson::error_handler_t::replace); }
+
+std::vector<std::byte> glb_begin(const std::string& json, std::uint64_t json_bytes, std::uint64_t total) {
+  if (json.size() > json_bytes) throw std::logic_error("the scene of a GLB file is longer than was foreseen");
+  std::vector<std::byte> bytes(kGlbHeaderBytes + json_bytes, std::byte{' '});
+  std::byte* out = bytes.data();
+  for (const std::uint64_t word : {std::uint64_t{kGlbMagic}, std::uint64_t{2}, total, json_bytes}) {
+    store_u32(out, static_cast<std::uint32_t>(word));
+  }
+  store_u32(out, kJsonChunk);
+  std::transform(json.begin(), json.end(), out, [](char c) { return static_cast<std::byte>(c); });
+  return bytes;
+}
+
+std::vector<std::byte> glb_chunk(std::uint64_t bytes) {
+  std::vector<std::byte> header(kGlbChunkHeaderBytes);
+  std::byte* out = header.data();
+  store_u32(out, static_cast<std::uint32_t>(bytes));
+  store_u32(out, kBinChunk);
+  return header;
+}
+
+}  // namespace isoweave

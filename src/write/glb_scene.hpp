@@ -1,0 +1,53 @@
+// What GLB files of all kinds share: the scene around the mesh, and the container around scene and data.
+//
+// Coordinates stay those of the volume. glTF means metres in a right-handed frame with y up and z to the front, so the
+// root node scales by the unit (not at all where it is not known) and turns the axes: the patient's superior is up and
+// anterior is in front for LPS and RAS; for anything else z is up.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave {
+
+using GltfJson = nlohmann::ordered_json;
+
+// glTF's numbers for types of components, targets of buffers and modes of primitives.
+inline constexpr int kGltfByte = 5120, kGltfUint16 = 5123, kGltfUint32 = 5125, kGltfFloat = 5126;
+inline constexpr int kGltfVertices = 34962, kGltfIndices = 34963;
+inline constexpr int kGltfPoints = 0;
+
+inline constexpr std::uint64_t kGlbHeaderBytes = 20;       // of the file, and of its JSON chunk
+inline constexpr std::uint64_t kGlbChunkHeaderBytes = 8;   // of the BIN chunk
+inline constexpr const char* kGltfGenerator = "isoweave";  // read_mesh knows its own files by it
+
+// Smallest and largest coordinates.
+struct Bounds {
+  Point low{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+            std::numeric_limits<float>::infinity()};
+  Point high{-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+             -std::numeric_limits<float>::infinity()};
+
+  void add(std::span<const Point> points);
+};
+
+// "asset", "scene", "scenes" and the root node, which holds mesh 0 or, if `placed` says where it lies, a node that
+// does.
+GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
+
+// As text; whatever bytes comments have.
+std::string gltf_text(const GltfJson& scene);
+
+// The file header and the JSON chunk, filled up with blanks to `json_bytes`. `total`: bytes of the file.
+std::vector<std::byte> glb_begin(const std::string& json, std::uint64_t json_bytes, std::uint64_t total);
+
+// The header of the BIN chunk.
+std::vector<std::byte> glb_chunk(std::uint64_t bytes);
+
+}  // namespace isoweave

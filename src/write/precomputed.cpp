@@ -1,0 +1,83 @@
+// neuroglancer's legacy meshes: a folder with `info`, the list of an object's fragments, and one fragment: a count,
+// positions in nanometres, indices. Positions and indices wait in files of their own.
+#include <nlohmann/json.hpp>
+
+#include "isoweave/error.hpp"
+#include "write/atomic_folder.hpp"
+#include "write/mesh_file_sink.hpp"
+#include "write/mesh_format.hpp"
+
+namespace isoweave {
+namespace {
+
+class PrecomputedSink final : public MeshFileSink {
+ public:
+  PrecomputedSink(const MeshTarget& target, const MeshFileOptions& options)
+      : MeshFileSink(target, without_normals(options)),
+        nanometres_(unit_in(options.unit, "nm")),
+        positions_(open_side("positions.part")),
+        faces_(open_side("faces.part")) {}
+
+  std::vector<std::string> notes() const override {
+    if (nanometres_) return {};
+    return {path() + ": the unit is not known, coordinates were written as if they were nanometres"};
+  }
+
+ private:
+  void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
+                   std::span<const Triangle64> triangles) override {
+    check_count_fits(path(), "vertices", this->vertices(), vertices.size());
+    write_records(positions_, records_, vertices.size(), 12,
+                  [&](std::byte*& out, std::size_t n) { store_point(out, scaled(vertices[n])); });
+    write_records(faces_, records_, triangles.size(), 12,
+                  [&](std::byte*& out, std::size_t n) { store_indices(out, triangles[n]); });
+  }
+
+  Point scaled(const Point& point) const {
+    Point result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result[axis] = static_cast<float>(double{point[axis]} * nanometres_.value_or(1));
+    }
+    return result;
+  }
+
+  void complete() override {
+    const std::string object = std::to_string(options().segment);
+    AtomicFolder folder(path());
+    const auto write_json = [&](const std::string& name, const nlohmann::ordered_json& json) {
+      const std::string text = json.dump() + "\n";
+      folder.write_file(name, std::as_bytes(std::span(text)));
+    };
+    write_json("info", {{"@type", "neuroglancer_legacy_mesh"}});
+    write_json(object + ":0", {{"fragments", {object + ":0:0"}}});
+    write_fragment(folder.file(object + ":0:0"));
+    folder.commit();
+  }
+
+  void write_fragment(const std::string& name) {
+    AtomicFile fragment(name);
+    std::array<std::byte, 4> count{};
+    std::byte* out = count.data();
+    store_u32(out, static_cast<std::uint32_t>(vertices()));
+    fragment.write(count);
+    fragment.append(positions_);
+    fragment.append(faces_);
+    if (fragment.size() != 4 + vertices() * 12 + triangles() * 12) {
+      throw CannotWrite(path() + ": its counts and its size differ");
+    }
+    fragment.commit();
+  }
+
+  std::optional<double> nanometres_;  // of a unit
+  OutputDescriptor& positions_;
+  OutputDescriptor& faces_;
+  std::vector<std::byte> records_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshSink> open_precomputed(const MeshTarget& target, const MeshFileOptions& options) {
+  return std::make_unique<PrecomputedSink>(target, options);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,122 @@
+// VTP, VTK's XML polygons: a head that says where arrays lie, then the arrays in raw bytes, each behind its length.
+// Sizes and indices have 64 bits, in the machine's byte order. Points are written as they come, behind a place kept for
+// the head; normals and indices wait in files of their own.
+#include "write/mesh_file_sink.hpp"
+#include "write/xml_text.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::uint64_t kWord = 8;
+constexpr std::uint64_t kPointBytes = 12;
+constexpr std::uint64_t kTriangleBytes = 24;
+
+// VTK writes strings as the numbers of their characters, and a 0.
+std::string string_array(const std::string& name, const std::string& value) {
+  std::string text = "<Array type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">";
+  for (const char c : one_line(value)) text += std::to_string(static_cast<int>(static_cast<unsigned char>(c))) + " ";
+  return text + "0</Array>\n";
+}
+
+std::string data_array(const std::string& type_and_name, int components, std::uint64_t offset) {
+  return "<DataArray type=" + type_and_name + " NumberOfComponents=\"" + std::to_string(components) +
+         "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+}
+
+std::string head_text(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t triangles) {
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"";
+  text += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+  text += "\" header_type=\"UInt64\">\n";
+  for (const std::string& comment : options.comments) text += "<!-- " + xml_comment(comment) + " -->\n";
+  text += "<PolyData>\n<FieldData>\n" + string_array("SPACE", options.space) + string_array("UNIT", options.unit) +
+          "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(vertices) +
+          "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+          std::to_string(triangles) + "\">\n";
+  std::uint64_t at = kWord + vertices * kPointBytes;
+  if (options.normals) {
+    text += "<PointData Normals=\"Normals\">\n" + data_array("\"Float32\" Name=\"Normals\"", 3, at) + "</PointData>\n";
+    at += kWord + vertices * kPointBytes;
+  }
+  text += "<Points>\n" + data_array("\"Float32\" Name=\"Points\"", 3, 0) + "</Points>\n<Polys>\n" +
+          data_array("\"Int64\" Name=\"connectivity\"", 1, at) +
+          data_array("\"Int64\" Name=\"offsets\"", 1, at + kWord + triangles * kTriangleBytes) +
+          "</Polys>\n</Piece>\n</PolyData>\n";
+  return text;
+}
+
+// The head, filled up with blanks, up to the first array.
+std::string padded_head(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t triangles) {
+  constexpr std::uint64_t kMany = std::uint64_t{1} << 58;
+  std::string text = head_text(options, vertices, triangles);
+  text.resize(std::max(text.size(), head_text(options, kMany, kMany).size()), ' ');
+  return text + "\n<AppendedData encoding=\"raw\">\n_";
+}
+
+class VtpSink final : public MeshFileSink {
+ public:
+  VtpSink(const MeshTarget& target, const MeshFileOptions& options)
+      : MeshFileSink(target, options), faces_(open_side("faces.part")) {
+    if (options.normals) normals_ = &open_side("normals.part");
+    const std::string head = padded_head(options, 0, 0);
+    head_bytes_ = head.size();
+    if (continued()) return;
+    file().write(std::as_bytes(std::span(head)));
+    write_word(0);
+  }
+
+ private:
+  void write_word(std::uint64_t word) { file().write(std::as_bytes(std::span(&word, 1))); }
+
+  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
+                   std::span<const Triangle64> triangles) override {
+    file().write(std::as_bytes(vertices));
+    if (normals_ != nullptr) normals_->write(std::as_bytes(normals));
+    faces_.write(std::as_bytes(triangles));
+  }
+
+  void complete() override {
+    if (normals_ != nullptr) append_array(*normals_);
+    append_array(faces_);
+    write_offsets();
+    constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>";
+    file().write(std::as_bytes(std::span(kEnd)));
+
+    const std::string head = padded_head(options(), vertices(), triangles());
+    const std::uint64_t points = vertices() * kPointBytes;
+    file().overwrite(0, std::as_bytes(std::span(head)));
+    file().overwrite(head.size(), std::as_bytes(std::span(&points, 1)));
+    const std::uint64_t arrays = options().normals ? 4 : 3;
+    check_written(
+        head_bytes_ + arrays * kWord + (arrays - 2) * points + triangles() * (kTriangleBytes + kWord) + kEnd.size(),
+        std::as_bytes(std::span(head)));
+  }
+
+  void append_array(OutputDescriptor& array) {
+    write_word(array.size());
+    file().append(array);
+  }
+
+  // Where each triangle ends among the corners: 3, 6, 9...
+  void write_offsets() {
+    constexpr std::uint64_t kAtOnce = 8192;
+    write_word(triangles() * kWord);
+    std::vector<std::uint64_t> offsets(kAtOnce);
+    for (std::uint64_t done = 0; done < triangles(); done += kAtOnce) {
+      offsets.resize(static_cast<std::size_t>(std::min(kAtOnce, triangles() - done)));
+      for (std::uint64_t n = 0; n < offsets.size(); ++n) offsets[n] = 3 * (done + n + 1);
+      file().write(std::as_bytes(std::span(offsets)));
+    }
+  }
+
+  OutputDescriptor& faces_;
+  OutputDescriptor* normals_ = nullptr;
+  std::uint64_t head_bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshSink> open_vtp(const MeshTarget& target, const MeshFileOptions& options) {
+  return std::make_unique<VtpSink>(target, options);
+}
+
+}  // namespace isoweave

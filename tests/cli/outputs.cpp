@@ -1,0 +1,157 @@
+// Where meshes go: formats, standard output, spaces and units.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace isoweave {
+namespace {
+
+using Json = nlohmann::json;
+using program::listing;
+using program::Result;
+using program::run;
+
+constexpr const char* kVolume = "generate:gyroid:24x24x24:uint8";
+
+std::vector<std::string> mesh(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"mesh", kVolume, "--iso", "127.5"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+void expect_failure(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
+                    const std::string& says, const program::Setup& setup = {}) {
+  const Result result = run(folder.path(), arguments, setup);
+  EXPECT_EQ(result.code, code) << result.err;
+  EXPECT_EQ(result.signal, 0);
+  EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
+  EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(listing(folder), std::vector<std::string>{});
+}
+
+TEST(CliStandardOutput, CarriesTheBytesOfTheFileAndNothingElse) {
+  const files::Folder folder;
+  for (const std::string format : {"ply", "stl"}) {
+    ASSERT_EQ(run(folder.path(), mesh({"-o", "a." + format})).code, 0);
+    const Result streamed = run(folder.path(), mesh({"--to-stdout", format, "--progress", "always"}));
+    EXPECT_EQ(streamed.code, 0);
+    EXPECT_TRUE(streamed.out == files::read_bytes(folder / ("a." + format))) << format;
+    EXPECT_NE(streamed.err.find("standard output: "), std::string::npos) << streamed.err;
+  }
+  const Result simplified = run(folder.path(), {"simplify", "a.ply", "--to-stdout=stl", "--error", "1", "--quiet"});
+  EXPECT_EQ(simplified.code, 0);
+  EXPECT_EQ(simplified.err, "");
+  files::write_bytes(folder / "s.stl", simplified.out);
+  EXPECT_EQ(run(folder.path(), {"check", "s.stl"}).code, 0);
+}
+
+TEST(CliStandardOutput, WrongUseIsRefused) {
+  const files::Folder folder;
+  expect_failure(folder, mesh({"--to-stdout", "obj"}), 2, "--to-stdout: expected one of ply, stl, found 'obj'");
+  expect_failure(folder, mesh({"--to-stdout", "ply", "-o", "a.ply"}), 2, "--to-stdout");
+  expect_failure(folder, mesh({"--to-stdout", "ply", "--checkpoint", "run"}), 2, "--to-stdout");
+  expect_failure(folder, mesh({"--to-stdout", "ply", "--compress"}), 4, "compressed");
+  expect_failure(folder, mesh({"--to-stdout"}), 2, "--to-stdout");
+}
+
+TEST(CliStandardOutput, WhoeverStopsReadingIsAnError) {
+  const files::Folder folder;
+  program::Setup setup;
+  setup.out_path = "/dev/full";
+  if (::access("/dev/full", W_OK) == 0) {
+    expect_failure(folder, mesh({"--to-stdout", "ply", "--quiet"}), 4, "standard output: cannot write: No space",
+                   setup);
+  }
+  // A shell closes it, or the program behind a pipe ends early.
+  const std::string command =
+      ISOWEAVE_BINARY " mesh generate:gyroid:24x24x24:uint8 --iso 127.5 --to-stdout ply --quiet 2>err";
+  for (const std::string& line : {command + " >&-; echo $? >code", "(" + command + "; echo $? >code) | true"}) {
+    ASSERT_EQ(std::system(("cd '" + folder.path() + "' && { " + line + "; }").c_str()), 0);
+    EXPECT_EQ(files::read_bytes(folder / "code"), "4\n") << line;
+    const std::string err = files::read_bytes(folder / "err");
+    EXPECT_TRUE(program::is_one_line(err)) << err;
+    EXPECT_NE(err.find("standard output: cannot write"), std::string::npos) << err;
+  }
+}
+
+TEST(CliOutputs, SpaceAndUnitAreInTheFile) {
+  const files::Folder folder;
+  const std::string header =
+      "NRRD0005\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspace: left-posterior-superior\n"
+      "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (10,20,30)\nspace units: \"um\" \"um\" \"um\"\n"
+      "encoding: raw\n\n";
+  files::write_bytes(folder / "v.nrrd", header + std::string(256, '\0') + std::string(256, '\1'));
+  const std::vector<std::pair<std::string, std::string>> spaces{
+      {"", "SPACE=LPS"}, {"lps", "SPACE=LPS"}, {"ras", "SPACE=RAS"}, {"index", "SPACE=index"}};
+  for (const auto& [option, text] : spaces) {
+    for (const std::string name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+      std::vector<std::string> arguments{"mesh", "v.nrrd", "-o", name, "--iso", "0.5"};
+      if (!option.empty()) arguments.insert(arguments.end(), {"--space", option});
+      ASSERT_EQ(run(folder.path(), arguments).code, 0);
+      const std::string bytes = files::read_bytes(folder / name);
+      EXPECT_NE(bytes.find(text), std::string::npos) << name << option;
+      EXPECT_NE(bytes.find("UNIT=um"), std::string::npos) << name;
+    }
+  }
+  // Where the volume does not say, nothing is claimed.
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "a.ply", "--space", "lps"})).code, 0);
+  EXPECT_EQ(files::read_bytes(folder / "a.ply").find("SPACE="), std::string::npos);
+}
+
+TEST(CliOutputs, PackedMeshesTellTheirError) {
+  const files::Folder folder;
+  for (const std::string name : {"a.glb", "a.precomputed"}) {
+    const Result result = run(folder.path(), mesh({"-o", name, "--compress", "--report", "r.json"}));
+    if (result.code == 4) {
+      EXPECT_NE(result.err.find("expected a build with"), std::string::npos) << result.err;
+      continue;
+    }
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("rounded"), std::string::npos) << result.err;
+    const Json report = Json::parse(files::read_bytes(folder / "r.json"));
+    EXPECT_NE(report["notes"].dump().find("rounded"), std::string::npos) << report["notes"];
+  }
+}
+
+TEST(CliOutputs, LimitsAreFoundBeforeTheRun) {
+  const files::Folder folder;
+  // 9 G triangles.
+  const std::vector<std::string> huge{"mesh", "generate:white:400x400x50000:uint8", "--iso", "127.5", "--error", "0"};
+  for (const auto& [name, says] : {std::pair<std::string, std::string>{"a.glb", "at most 4294967295 bytes"},
+                                   {"a.3mf", "at most 2147483648 vertices"}}) {
+    std::vector<std::string> arguments = huge;
+    arguments.insert(arguments.end(), {"-o", name});
+    expect_failure(folder, arguments, 4, says);
+  }
+}
+
+TEST(CliOutputs, PackedMeshesNeedMemoryThatIsForeseen) {
+  const files::Folder folder;
+  const auto forecast = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "mesh", "generate:noise:96x96x96:uint8", "--iso", "127.5", "--error", "0", "--dry-run", "--report", "r.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(folder.path(), arguments).code, 0);
+    return Json::parse(files::read_bytes(folder / "r.json"))["forecast"]["peak_bytes"].get<std::uint64_t>();
+  };
+  EXPECT_GT(forecast({"-o", "a.glb", "--compress"}), forecast({"-o", "a.glb"}) + 10'000'000);
+}
+
+TEST(CliOutputs, AFolderIsNotWrittenOver) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "a.precomputed"})).code, 0);
+  const Result again = run(folder.path(), mesh({"-o", "a.precomputed"}));
+  EXPECT_EQ(again.code, 4);
+  EXPECT_NE(again.err.find("a.precomputed: exists"), std::string::npos) << again.err;
+  EXPECT_EQ(listing(folder), std::vector<std::string>{"a.precomputed"});
+}
+
+}  // namespace
+}  // namespace isoweave

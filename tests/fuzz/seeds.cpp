@@ -1,0 +1,316 @@
+// Writes small valid files as seeds for the fuzzer: write_seeds FOLDER makes FOLDER/TARGET/*.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "input_files.hpp"
+#include "isoweave/generate.hpp"
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+#include "meshes.hpp"
+#include "pipeline/checkpoint.hpp"
+#include "pvm_helpers.hpp"
+#include "vti_helpers.hpp"
+#ifdef ISOWEAVE_HAS_DICOM
+#include "dicom_helpers.hpp"
+#endif
+#ifdef ISOWEAVE_HAS_PNG
+#include "png_helpers.hpp"
+#endif
+#ifdef ISOWEAVE_HAS_TIFF
+#include "tiff_helpers.hpp"
+#endif
+
+namespace {
+
+using namespace isoweave;
+using namespace isoweave::testing;
+
+const std::string kNext(fuzz::kNextFile);
+
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void put(const std::string& target, const std::string& content) {
+    const std::filesystem::path folder = folder_ / target;
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / std::to_string(count_[target]++), std::ios::binary) << content;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, int> count_;
+};
+
+const std::string kWords = stored(ramp<std::int16_t>(3 * 2 * 5));
+const std::string kHalves = kNext + kWords.substr(0, 30) + kNext + kWords.substr(30);
+
+void put_raw(Seeds& seeds) { seeds.put("raw", kWords); }
+
+void put_nrrd(Seeds& seeds) {
+  const std::string sizes = "NRRD0005\n# text\ntype: short\ndimension: 3\nsizes: 3 2 5\nendian: little\n";
+  seeds.put("nrrd",
+            sizes + "encoding: raw\nspacings: 1 2 3.5\naxis mins: 1 2 3\nunits: \"mm\" \"mm\" \"mm\"\n\n" + kWords);
+  const std::string placed = sizes +
+                             "space: left-posterior-superior\nspace units: \"um\" \"um\" \"um\"\nspace directions: "
+                             "(0,-0.5,0) (2,0,0.25) (0,0,1)\nspace origin: (1,-2,3e1)\nkinds: domain domain domain\n";
+  seeds.put("nrrd", placed + "encoding: gzip\nkey:=value\n\n" + gzipped(kWords));
+  seeds.put("nrrd", placed + "encoding: raw\nbyte skip: -1\ndata file: a1.raw\n" + kNext + "abc" + kWords);
+  seeds.put("nrrd", placed + "encoding: gz\nline skip: 1\nbyte skip: 2\ndatafile: a1.raw\n" + kNext + "x\n" +
+                        gzipped("ab" + kWords));
+  seeds.put("nrrd", sizes + "encoding: raw\ndata file: a%d.raw 1 2 1\n" + kHalves);
+  seeds.put("nrrd", sizes + "encoding: raw\ndata file: LIST\na1.raw\na2.raw\n" + kHalves);
+  seeds.put("nrrd",
+            "NRRD0004\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nendian: big\nencoding: raw\nspace dimension: 3\n"
+            "space directions: none (1,0,0) (0,1,0) (0,0,1)\n\n" +
+                std::string(32, '\x3f'));
+}
+
+void put_metaimage(Seeds& seeds) {
+  const std::string head =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = 3 2 5\n"
+      "ElementType = MET_SHORT\n";
+  const std::string place =
+      "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 1 -2 3.5\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = RAI\n"
+      "ElementSpacing = 0.5 1 2e0\n";
+  seeds.put("metaimage", head + place + "ElementDataFile = LOCAL\n" + kWords);
+  const std::string packed = zlibbed(kWords);
+  seeds.put("metaimage", head + place + "CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) +
+                             "\nElementDataFile = LOCAL\n" + packed);
+  seeds.put("metaimage", head + "HeaderSize = -1\nElementDataFile = a1.raw\n" + kNext + "abc" + kWords);
+  seeds.put("metaimage", head + "HeaderSize = 5\nElementDataFile = a1.raw\n" + kNext + "abcde" + kWords);
+  seeds.put("metaimage", head + "CompressedData = True\nElementDataFile = a1.raw\n" + kNext + zlibbed(kWords));
+  seeds.put("metaimage", head + "ElementDataFile = LIST\na1.raw\na2.raw\n" + kHalves);
+  seeds.put("metaimage", head + "ElementDataFile = a%d.raw 1 2 1\n" + kHalves);
+}
+
+void put_nifti(Seeds& seeds) {
+  for (const int version : {1, 2}) {
+    for (const bool big : {false, true}) {
+      NiftiFields fields;
+      fields.version = version;
+      fields.big = big;
+      fields.slope = 2;
+      fields.sform = big ? 1 : 0;
+      fields.qform = big ? 0 : 1;
+      fields.quaternion = {0.5, 0.5, 0.5, 1, 2, 3};
+      const std::string file = nifti_header(fields) + stored(ramp<std::int16_t>(3 * 2 * 5), big);
+      seeds.put("nifti", file);
+      seeds.put("nifti", gzipped(file));
+      fields.pair = true;
+      seeds.put("nifti_pair", nifti_header(fields) + kNext + kWords);
+    }
+  }
+}
+
+void put_pvm(Seeds& seeds) {
+  const std::string bytes = stored(ramp<std::uint8_t>(4 * 3 * 5));
+  seeds.put("pvm", "PVM\n# text\n4 3 5\n1\n" + bytes);
+  seeds.put("pvm", "PVM2\n4 3 5\n1 2 0.5\n1\n" + bytes);
+  const std::string third = "PVM3\n4 3 5\n1 2 0.5\n2\n" + bytes + bytes + pvm_files::kStrings;
+  seeds.put("pvm", third);
+  seeds.put("pvm", pvm_files::dds_v3d(third, 1, 1));
+  seeds.put("pvm", pvm_files::dds_v3d(third, 2, 5));
+  seeds.put("pvm", "DDS v3e\n" + pvm_files::dds_encoded(third, 2, 5, 1 << 24));
+}
+
+void put_vtk(Seeds& seeds) {
+  for (const std::size_t block : {0U, 50U}) {
+    for (const bool wide : {false, true}) {
+      vti_files::VtiForm form;
+      form.block = block;
+      form.wide = wide;
+      form.big = wide;
+      seeds.put("vti", whole(form));
+      form.lz4 = true;
+      seeds.put("vti", whole(form));
+      form.lz4 = false;
+      form.appended = true;
+      form.base64 = false;
+      form.place = R"(WholeExtent="1 4 0 2 -1 3" Origin="1 2 3" Spacing="1 .5 2" Direction="0 1 0 1 0 0 0 0 -1")";
+      form.extent = "1 4 0 2 -1 3";
+      seeds.put("vti", whole(form));
+    }
+  }
+  seeds.put("vti",
+            "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 1\"><Piece><PointData><DataArray "
+            "type=\"Float32\" format=\"ascii\"> 1 -2e3\n3 4.5 </DataArray></PointData></Piece></ImageData></VTKFile>");
+  const std::string head = "# vtk DataFile Version 3.0\na title\n";
+  const std::string set =
+      "DATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 5\nORIGIN 1 -2 3\nSPACING 0.5 1 2\nPOINT_DATA 30\nSCALARS s short\n"
+      "LOOKUP_TABLE default\n";
+  seeds.put("vtk", head + "BINARY\n" + set + kWords);
+  std::string numbers;
+  for (const std::int16_t sample : ramp<std::int16_t>(30)) numbers += std::to_string(sample) + "\n";
+  seeds.put("vtk", head + "ASCII\n" + set + numbers);
+}
+
+#ifdef ISOWEAVE_HAS_TIFF
+void put_tiff(Seeds& seeds) {
+  const TempFolder folder;
+  const std::string two = stored(ramp<std::uint16_t>(5 * 4 * 2));
+  const auto add = [&](const TiffPage& page, const std::string& samples, const std::string& mode) {
+    seeds.put("tiff", get(write_stack(folder / "a", page, samples, mode)));
+  };
+  for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
+                                COMPRESSION_ZSTD, COMPRESSION_LZMA}) {
+    TiffPage page;
+    page.compression = static_cast<std::uint16_t>(compression);
+    if (TIFFIsCODECConfigured(page.compression) == 0) continue;
+    add(page, two, compression == COMPRESSION_NONE ? "wb" : "w");
+    page.predictor = compression == COMPRESSION_LZW || compression == COMPRESSION_ADOBE_DEFLATE ? 2 : 1;
+    page.tile = 16;
+    add(page, two, "w8");
+  }
+  TiffPage eight;
+  eight.bits = 8;
+  eight.compression = COMPRESSION_JPEG;
+  eight.width = eight.height = eight.rows_per_strip = 16;
+  add(eight, std::string(256, 'x'), "w");
+  TiffPage real;
+  real.bits = 32;
+  real.format = SAMPLEFORMAT_IEEEFP;
+  real.compression = COMPRESSION_ADOBE_DEFLATE;
+  real.predictor = 3;
+  add(real, stored(ramp<float>(20)), "w");
+  TiffPage described;
+  described.description = "ImageJ=1.53\nimages=2\nslices=2\nunit=\\u00B5m\nspacing=2.5\ncf=0\nc0=-32768\nc1=1\n";
+  described.resolution = 4;
+  add(described, two, "wb");
+  described.description =
+      "<?xml version=\"1.0\"?><OME><Image><Pixels DimensionOrder=\"XYCZT\" SizeX=\"5\" SizeY=\"4\" SizeZ=\"1\" "
+      "SizeC=\"2\" "
+      "SizeT=\"1\" PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\" PhysicalSizeXUnit=\"nm\" "
+      "PhysicalSizeYUnit=\"nm\" PhysicalSizeZUnit=\"nm\"/></Image></OME>";
+  add(described, two, "w");
+  HandMade contiguous;
+  contiguous.description = "ImageJ=1.53\nimages=2\nslices=2\n";
+  seeds.put("tiff", hand_made(contiguous, two));
+  const std::string one = get(write_stack(folder / "a", {}, two.substr(0, 40)));
+  seeds.put("tiff_series", one + kNext + one + kNext + one);
+}
+#endif
+
+#ifdef ISOWEAVE_HAS_PNG
+void put_png(Seeds& seeds) {
+  using namespace png_files;
+  const TempFolder folder;
+  const std::string samples = stored(ramp<std::uint16_t>(kWidth * kHeight));
+  for (const int bits : {8, 16}) {
+    for (const int interlace : {PNG_INTERLACE_NONE, PNG_INTERLACE_ADAM7}) {
+      seeds.put("png", get(write_png(folder / "a", {bits, PNG_COLOR_TYPE_GRAY, interlace}, samples)));
+    }
+  }
+  seeds.put("png", get(write_png(folder / "a", {8, PNG_COLOR_TYPE_RGB}, samples)));
+}
+#endif
+
+#ifdef ISOWEAVE_HAS_DICOM
+void put_dicom(Seeds& seeds) {
+  using namespace dicom_files;
+  const TempFolder folder;
+  DicomFields fields;
+  fields.slope = "0.5";
+  fields.intercept = "-1024";
+  fields.thickness = "3";
+  const std::string plain = dicom(fields, slice(0));
+  seeds.put("dicom", plain);
+  std::string series;
+  for (std::size_t n = 0; n < 3; ++n) {
+    fields.position = at(30 + 2.5 * static_cast<double>(n));
+    series += (n == 0 ? "" : kNext) + dicom(fields, slice(n));
+  }
+  seeds.put("dicom_series", series);
+  const std::string frames = enhanced({frame_at(1), frame_at(2)}, slice(0) + slice(1));
+  seeds.put("dicom", frames);
+  seeds.put("dicom", deflated_file(frames));
+  seeds.put("dicom", deflated_file(plain));
+  const std::string lengths = run_lengths(slice(0));
+  const std::string table = item(bytes_of(0U) + bytes_of(static_cast<std::uint32_t>(lengths.size() + 8)));
+  seeds.put("dicom", packed_frames({frame_at(1), frame_at(2)}, table + item(lengths) + item(lengths)));
+  // GDCM cannot write smaller JPEG 2000 images.
+  fields.columns = fields.rows = 32;
+  folder.put("a", dicom(fields, stored(ramp<std::uint16_t>(32 * 32))));
+  for (const auto syntax : {gdcm::TransferSyntax::ImplicitVRLittleEndian, gdcm::TransferSyntax::ExplicitVRBigEndian,
+                            gdcm::TransferSyntax::JPEGLosslessProcess14_1, gdcm::TransferSyntax::JPEGLSLossless,
+                            gdcm::TransferSyntax::JPEG2000Lossless, gdcm::TransferSyntax::RLELossless}) {
+    if (transcode(folder / "a", folder / "b", syntax)) seeds.put("dicom", get(folder / "b"));
+  }
+}
+#endif
+
+void put_meshes(Seeds& seeds) {
+  const TempFolder folder;
+  TriangleMesh mesh = meshes::tetrahedron();
+  mesh.normals.assign(mesh.vertices.size(), {0, 0, 1});
+  for (const std::string name : {"ply", "stl", "obj"}) {
+    const auto sink = open_mesh_file(folder / ("a." + name), {true, {"a comment"}});
+    std::vector<std::array<std::uint64_t, 3>> triangles;
+    for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+    sink->append(mesh.vertices, mesh.normals, triangles);
+    sink->finish();
+    seeds.put(name, get(folder / ("a." + name)));
+  }
+  const std::string header =
+      " 1.0\ncomment c\nobj_info o\nelement vertex 4\nproperty float x\nproperty double y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n";
+  seeds.put("ply", "ply\nformat ascii" + header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 7\n3 0 2 1 9\n");
+  seeds.put("ply", "ply\nformat binary_big_endian" + header + std::string(64, '\0') +
+                       std::string("\3\0\0\0\0\0\0\0\1\0\0\0\2\7\3\0\0\0\0\0\0\0\2\0\0\0\3\7", 28));
+  seeds.put("stl",
+            "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\n"
+            "endfacet\nendsolid s\n");
+  seeds.put("obj",
+            "# c\nmtllib m\no a\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\n"
+            "f 1/1/1 2/1/1 3/1/1\nf -4 -2 -1\nf 1//1 2//1 3//1 4//1\n");
+}
+
+void put_options(Seeds& seeds) {
+  for (const char* text :
+       {"512x512x300:int16:big:skip=1024", "a/foot_256x256x256_uint8.raw", "0.2vox", "30um", "float32"}) {
+    seeds.put("options", text);
+  }
+}
+
+void put_state(Seeds& seeds) {
+  const TempFolder folder;
+  CheckpointFolder states(folder / "");
+  states.begin_state({"", "a note", "a mark", 3, 8}, {"a volume", "options"})->commit();
+  for (const char* name : {"state-0", "state-1"}) {
+    if (!std::filesystem::exists(folder / name)) continue;
+    const std::string state = get(folder / name);
+    seeds.put("state", state.substr(0, state.size() - sizeof(std::uint32_t)));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: write_seeds FOLDER\n", stderr);
+    return 2;
+  }
+  Seeds seeds(argv[1]);
+  put_raw(seeds);
+  put_nrrd(seeds);
+  put_metaimage(seeds);
+  put_nifti(seeds);
+  put_pvm(seeds);
+  put_vtk(seeds);
+#ifdef ISOWEAVE_HAS_TIFF
+  put_tiff(seeds);
+#endif
+#ifdef ISOWEAVE_HAS_PNG
+  put_png(seeds);
+#endif
+#ifdef ISOWEAVE_HAS_DICOM
+  put_dicom(seeds);
+#endif
+  put_meshes(seeds);
+  put_options(seeds);
+  put_state(seeds);
+  return 0;
+}

@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""Writes one mesh in every format and reads it back with other people's readers: VTK, zipfile and an XML parser,
+Draco's decoder, and a few lines of NumPy where a format has no reader on Debian. All must have the same triangles,
+bit for bit where the format is lossless, within the error told where it rounds.
+
+    tests/oracles/meshes.py build/release/isoweave
+
+Exits with 77, which means skipped, where NumPy or VTK for Python is missing.
+"""
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+import zipfile
+
+try:
+    import numpy as np
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkOBJReader, vtkSTLReader
+    from vtkmodules.vtkIOPLY import vtkPLYReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+except ImportError as error:
+    print("skipped:", error)
+    sys.exit(77)
+
+
+def canonical(corners):
+    """Triangles as rows of nine numbers, each begun at its smallest corner, sorted."""
+    t = np.asarray(corners).reshape(-1, 3, 3) + 0.0  # -0 counts as 0
+    best = t
+    for turn in (1, 2):
+        other = np.roll(t, turn, axis=1)
+        a, b = best[:, 0], other[:, 0]
+        less = (b[:, 0] < a[:, 0]) | (
+            (b[:, 0] == a[:, 0]) & ((b[:, 1] < a[:, 1]) | ((b[:, 1] == a[:, 1]) & (b[:, 2] < a[:, 2])))
+        )
+        best = np.where(less[:, None, None], other, best)
+    rows = best.reshape(-1, 9)
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def of_poly_data(data):
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    cells = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
+    assert len(cells) == 3 * data.GetNumberOfPolys(), "not triangles"
+    return points[cells].reshape(-1, 3, 3)
+
+
+def with_vtk(reader, path):
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def read_off(path):
+    lines = [line.split("#")[0].split() for line in open(path)]
+    words = [word for line in lines for word in line]
+    stride = 6 if words[0] == "NOFF" else 3
+    vertices, faces = int(words[1]), int(words[2])
+    numbers = np.array(words[4:], dtype=object)
+    points = numbers[: vertices * stride].reshape(-1, stride)[:, :3].astype(np.float32)
+    cells = numbers[vertices * stride :].reshape(faces, 4).astype(np.int64)
+    assert (cells[:, 0] == 3).all()
+    return points[cells[:, 1:]]
+
+
+def read_3mf(path):
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        relations = xml.etree.ElementTree.fromstring(archive.read("_rels/.rels"))
+        model = xml.etree.ElementTree.fromstring(archive.read(relations[0].get("Target").lstrip("/")))
+    space = {"m": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"}
+    points = [[v.get(axis) for axis in "xyz"] for v in model.iterfind(".//m:vertex", space)]
+    cells = [[t.get(v) for v in ("v1", "v2", "v3")] for t in model.iterfind(".//m:triangle", space)]
+    return np.array(points).astype(np.float32)[np.array(cells).astype(np.int64)], model
+
+
+def read_glb(path):
+    data = open(path, "rb").read()
+    magic, version, length, json_length, _ = struct.unpack_from("<4sIIII", data)
+    assert magic == b"glTF" and version == 2 and length == len(data)
+    scene = json.loads(data[20 : 20 + json_length])
+    begin = 28 + json_length
+
+    def accessor(number, kind):
+        view = scene["bufferViews"][scene["accessors"][number]["bufferView"]]
+        at = begin + view["byteOffset"]
+        return np.frombuffer(data[at : at + view["byteLength"]], kind)
+
+    primitive = scene["meshes"][0]["primitives"][0]
+    points = accessor(primitive["attributes"]["POSITION"], "<f4").reshape(-1, 3)
+    return points[accessor(primitive["indices"], "<u4").reshape(-1, 3)], scene
+
+
+def placed(corners, node):
+    """Corners where the node of a GLB puts them."""
+    x, y, z, w = node["rotation"]
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return (np.asarray(corners, float) * node.get("scale", [1, 1, 1])) @ turn.T
+
+
+def read_legacy_precomputed(folder, segment):
+    assert json.load(open(f"{folder}/info"))["@type"] == "neuroglancer_legacy_mesh"
+    (name,) = json.load(open(f"{folder}/{segment}:0"))["fragments"]
+    data = open(f"{folder}/{name}", "rb").read()
+    (count,) = struct.unpack_from("<I", data)
+    points = np.frombuffer(data, "<f4", 3 * count, 4).reshape(-1, 3)
+    return points[np.frombuffer(data, "<u4", -1, 4 + 12 * count).reshape(-1, 3)]
+
+
+def read_packed_precomputed(folder, segment, scratch):
+    """What Draco's own decoder gives, in steps, and where the manifest places it."""
+    info = json.load(open(f"{folder}/info"))
+    index = open(f"{folder}/{segment}.index", "rb").read()
+    shape, origin = np.frombuffer(index, "<f4", 6).reshape(2, 3).astype(float)
+    assert struct.unpack_from("<I", index, 24) == (1,)
+    assert struct.unpack_from("<I", index, 60) == (os.path.getsize(f"{folder}/{segment}"),)
+    decoded = os.path.join(scratch, "decoded.obj")
+    subprocess.run(["draco_decoder", "-i", f"{folder}/{segment}", "-o", decoded], check=True, stdout=subprocess.DEVNULL)
+    steps, cells = [], []
+    for line in open(decoded):
+        words = line.split()
+        if words and words[0] == "v":
+            steps.append(words[1:4])
+        if words and words[0] == "f":
+            cells.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
+    assert info["vertex_quantization_bits"] == 16
+    return np.array(steps, float)[np.array(cells)], shape, origin, np.array(info["transform"]).reshape(3, 4)
+
+
+class Checks:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
+        header = (
+            "NRRD0005\ntype: uint8\ndimension: 3\nsizes: 40 36 32\nspace: left-posterior-superior\n"
+            "space directions: (0.5,0,0) (0,0.48,0.14) (0,-0.21,0.72)\nspace origin: (-30,12.5,7)\n"
+            'space units: "mm" "mm" "mm"\nencoding: raw\n\n'
+        )
+        k, j, i = np.mgrid[0:32, 0:36, 0:40] * 0.31
+        gyroid = np.sin(i) * np.cos(j) + np.sin(j) * np.cos(k) + np.sin(k) * np.cos(i)
+        with open(self.path("volume.nrrd"), "wb") as out:
+            out.write(header.encode() + np.uint8(127.5 + 60 * gyroid).tobytes())
+        self.reference = None
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, *options):
+        result = subprocess.run(
+            [self.program, "mesh", self.path("volume.nrrd"), "-o", self.path(name), "--iso", "127.5", "--error",
+             "0.1vox", "--normals", "gradient", "--report", self.path("report.json"), *options],
+            check=True, stderr=subprocess.PIPE, text=True,
+        )
+        self.report = json.load(open(self.path("report.json")))
+        return result.stderr
+
+    def same(self, name, corners):
+        rows = canonical(np.asarray(corners, np.float32))
+        if self.reference is None:
+            self.reference = rows
+        assert len(rows) == self.report["triangles"], f"{name}: {len(rows)} triangles"
+        assert (rows.view(np.uint32) == self.reference.view(np.uint32)).all(), f"{name}: other coordinates"
+        print(f"{name:28} {len(rows)} triangles, equal bit for bit")
+
+    def lossless(self):
+        for name, reader in (("a.ply", vtkPLYReader()), ("a.stl", vtkSTLReader()), ("a.obj", vtkOBJReader())):
+            self.write(name)
+            self.same(f"{name} by VTK", of_poly_data(with_vtk(reader, self.path(name))))
+        self.write("a.vtp")
+        data = with_vtk(vtkXMLPolyDataReader(), self.path("a.vtp"))
+        self.same("a.vtp by VTK", of_poly_data(data))
+        fields = data.GetFieldData()
+        assert [fields.GetAbstractArray(n).GetValue(0) for n in ("SPACE", "UNIT")] == ["LPS", "mm"]
+        normals = vtk_to_numpy(data.GetPointData().GetNormals())
+        assert np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5)
+        self.write("a.off")
+        self.same("a.off by NumPy", read_off(self.path("a.off")))
+        self.write("a.3mf")
+        corners, model = read_3mf(self.path("a.3mf"))
+        assert model.get("unit") == "millimeter"
+        self.same("a.3mf by zipfile", corners)
+
+    def glb(self):
+        self.write("a.glb")
+        corners, scene = read_glb(self.path("a.glb"))
+        self.same("a.glb by NumPy", corners)
+        in_place = placed(corners, scene["nodes"][0])
+        reader = vtkGLTFReader()
+        reader.SetApplyDeformationsToGeometry(True)
+        blocks = with_vtk(reader, self.path("a.glb")).NewIterator()
+        found = []
+        while not blocks.IsDoneWithTraversal():
+            leaf = vtkPolyData.SafeDownCast(blocks.GetCurrentDataObject())
+            found.append(of_poly_data(leaf))
+            blocks.GoToNextItem()
+        far = np.abs(np.concatenate(found) - in_place).max()
+        assert far < 1e-7, f"a.glb by VTK: {far} from where the node puts it"
+        print(f"{'a.glb by VTK':28} {len(in_place)} triangles, within {far:.2g} m")
+
+    def precomputed(self):
+        corners = self.reference.reshape(-1, 3, 3).astype(float)
+        self.write("a.precomputed", "--segment", "9")
+        found = read_legacy_precomputed(self.path("a.precomputed"), 9)
+        expected = canonical((corners * 1e6).astype(np.float32))
+        assert (canonical(found) == expected).all(), "a.precomputed: other coordinates"
+        print(f"{'a.precomputed by NumPy':28} {len(found)} triangles, equal in nanometres")
+        if shutil.which("draco_decoder") is None:
+            return print("b.precomputed                skipped: no draco_decoder")
+        said = self.write("b.precomputed", "--segment", "9", "--compress")
+        error = float(re.search(r"by at most (\S+) mm", said).group(1))
+        steps, shape, origin, transform = read_packed_precomputed(self.path("b.precomputed"), 9, self.folder)
+        assert np.allclose(transform, np.eye(3, 4) * 1e6)
+        rounded = np.round((corners - origin) / shape * 65535)
+        far = np.linalg.norm(origin + rounded * shape / 65535 - corners, axis=2).max()
+        assert far <= error * 1.01, f"b.precomputed: {far} mm, {error} were told"
+        # Boxes have 32 bits in the file: a coordinate in the middle between two steps may go either way.
+        missing = set(map(tuple, canonical(rounded))) ^ set(map(tuple, canonical(steps)))
+        assert len(missing) < 0.002 * len(steps) and len(steps) == self.report["triangles"], "b.precomputed: others"
+        print(f"{'b.precomputed by Draco':28} {len(steps)} triangles, within {far:.3g} of {error:.3g} mm")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        checks = Checks(os.path.abspath(sys.argv[1]), folder)
+        checks.lossless()
+        checks.glb()
+        checks.precomputed()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,311 @@
+// HDF5: files written through the library itself.
+#include <hdf5.h>
+
+#include "volume/hdf5_library.hpp"
+#include "volume/lzf.hpp"
+#include "volume_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+using Shape = std::vector<hsize_t>;
+
+// The library under test and its tests are one process: the one that was loaded is the one that is linked.
+class Writer {
+ public:
+  explicit Writer(std::string path, hsize_t user_block = 0) : path_(std::move(path)) {
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(creation, user_block);
+    file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+    H5Pclose(creation);
+  }
+  ~Writer() { H5Fclose(file_); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  hid_t file() const { return file_; }
+
+  // A dataset of 1, 2, 3, ... `set_up` changes its creation properties.
+  template <class Sample>
+  void put(
+      const std::string& name, const Shape& shape, hid_t type, hid_t native,
+      const std::function<void(hid_t)>& set_up = [](hid_t) {}) {
+    std::size_t count = 1;
+    for (const hsize_t size : shape) count *= size;
+    std::vector<Sample> samples(count);
+    for (std::size_t n = 0; n < count; ++n) samples[n] = static_cast<Sample>(n + 1);
+    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    set_up(creation);
+    const hid_t dataset = H5Dcreate2(file_, name.c_str(), type, space, links, creation, H5P_DEFAULT);
+    H5Dwrite(dataset, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, samples.data());
+    H5Dclose(dataset);
+    H5Pclose(links);
+    H5Pclose(creation);
+    H5Sclose(space);
+  }
+
+  void put_int16(
+      const std::string& name, const Shape& shape, const std::function<void(hid_t)>& set_up = [](hid_t) {}) {
+    put<std::int16_t>(name, shape, H5T_STD_I16LE, H5T_NATIVE_INT16, set_up);
+  }
+
+  void put_numbers(const std::string& object, const std::string& name, const std::vector<double>& values) {
+    const hsize_t count = values.size();
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t attribute = H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT,
+                                              H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data());
+    H5Aclose(attribute);
+    H5Sclose(space);
+  }
+
+  void put_text(const std::string& object, const std::string& name, const std::string& text, bool fixed) {
+    const hid_t space = H5Screate(H5S_SCALAR), type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, fixed ? text.size() : H5T_VARIABLE);
+    const hid_t attribute =
+        H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const char* const value = text.c_str();
+    H5Awrite(attribute, type, fixed ? static_cast<const void*>(value) : static_cast<const void*>(&value));
+    H5Aclose(attribute);
+    H5Tclose(type);
+    H5Sclose(space);
+  }
+
+ private:
+  std::string path_;
+  hid_t file_ = -1;
+};
+
+std::function<void(hid_t)> chunks(
+    const Shape& shape, const std::function<void(hid_t)>& filters = [](hid_t) {}) {
+  return [shape, filters](hid_t creation) {
+    H5Pset_chunk(creation, static_cast<int>(shape.size()), shape.data());
+    filters(creation);
+  };
+}
+
+std::vector<std::int16_t> counting(std::size_t count) {
+  std::vector<std::int16_t> samples(count);
+  for (std::size_t n = 0; n < count; ++n) samples[n] = static_cast<std::int16_t>(n + 1);
+  return samples;
+}
+
+TEST(Hdf5, LayoutsAndFilters) {
+  const TempFolder folder;
+  const auto compact = [](hid_t creation) { H5Pset_layout(creation, H5D_COMPACT); };
+  const auto gzip = [](hid_t creation) {
+    H5Pset_shuffle(creation);
+    H5Pset_deflate(creation, 4);
+    H5Pset_fletcher32(creation);
+  };
+  const auto szip = [](hid_t creation) { H5Pset_szip(creation, H5_SZIP_NN_OPTION_MASK, 8); };
+  struct Case {
+    std::string name;
+    std::function<void(hid_t)> set_up;
+  };
+  std::vector<Case> cases{{"contiguous", [](hid_t) {}},      {"compact", compact},
+                          {"chunked", chunks({2, 3, 4})},    {"whole", chunks({5, 7, 9})},
+                          {"gzip", chunks({2, 3, 4}, gzip)}, {"thin", chunks({5, 1, 2}, gzip)}};
+  if (H5Zfilter_avail(H5Z_FILTER_SZIP) > 0) cases.push_back({"szip", chunks({2, 3, 8}, szip)});
+  for (const Case& entry : cases) {
+    const std::string path = folder / (entry.name + ".h5");
+    Writer(path).put_int16("/group/volume", {5, 7, 9}, entry.set_up);
+    for (const std::int64_t at_once : {1, 2, 5}) {
+      EXPECT_EQ(samples_of<std::int16_t>(*open_volume(path), at_once), counting(315)) << entry.name << at_once;
+    }
+    const VolumeInfo info = open_volume(path)->info();
+    EXPECT_EQ(info.dims, (std::array<std::int64_t, 3>{9, 7, 5})) << entry.name;
+    EXPECT_EQ(info.format, "hdf5");
+    EXPECT_EQ(info.part, "dataset /group/volume");
+  }
+}
+
+TEST(Hdf5, TypesAndByteOrders) {
+  const TempFolder folder;
+  const std::string path = folder / "a.h5";
+  {
+    Writer writer(path);
+    writer.put<std::uint32_t>("/u32", {2, 2, 2}, H5T_STD_U32BE, H5T_NATIVE_UINT32);
+    writer.put<double>("/f64", {2, 2, 2}, H5T_IEEE_F64BE, H5T_NATIVE_DOUBLE);
+    writer.put<float>("/f32", {2, 2, 2}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT);
+    writer.put<std::int8_t>("/i8", {2, 2, 2}, H5T_STD_I8LE, H5T_NATIVE_INT8);
+    writer.put<std::int64_t>("/i64", {2, 2, 2}, H5T_STD_I64LE, H5T_NATIVE_INT64);
+    const hid_t truth = H5Tenum_create(H5T_NATIVE_INT8);
+    const std::int8_t no = 0, yes = 1;
+    H5Tenum_insert(truth, "FALSE", &no);
+    H5Tenum_insert(truth, "TRUE", &yes);
+    writer.put<std::int8_t>("/bool", {1, 1, 1}, truth, truth);
+    H5Tclose(truth);
+  }
+  OpenOptions options;
+  const auto open = [&](const std::string& name) {
+    options.dataset = name;
+    return open_volume(path, options);
+  };
+  EXPECT_EQ(samples_of<std::uint32_t>(*open("/u32")).at(7), 8U);
+  EXPECT_EQ(samples_of<double>(*open("f64")).at(7), 8);
+  EXPECT_EQ(samples_of<float>(*open("/f32")).at(7), 8);
+  EXPECT_EQ(samples_of<std::int8_t>(*open("/i8")).at(7), 8);
+  EXPECT_EQ(samples_of<std::int8_t>(*open("/bool")).at(0), 1);
+  EXPECT_THROW(open("/i64"), BadInput);
+  EXPECT_TRUE(contains(refusal(path, options), "in '/i64', found int64"));
+  EXPECT_TRUE(
+      contains(refusal(path), "expected --dataset with one of '/bool' (1 x 1 x 1 int8), '/f32' (2 x 2 x 2 float32)"));
+  options.dataset = "/nothing";
+  EXPECT_TRUE(contains(refusal(path, options), "expected a dataset '/nothing'"));
+  options.dataset = "/";
+  EXPECT_TRUE(contains(refusal(path, options), "expected a dataset '/', found a group"));
+}
+
+TEST(Hdf5, TheMagicMayLieBehindABlockOfTheUser) {
+  const TempFolder folder;
+  Writer(folder / "a.mat", 1024).put_int16("/v", {2, 2, 2});
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a.mat"), counting(8));
+}
+
+TEST(Hdf5, AttributesSayWhereSamplesLie) {
+  const TempFolder folder;
+  {
+    Writer writer(folder / "a.h5");
+    writer.put_int16("/v", {2, 2, 2});
+    writer.put_numbers("/v", "element_size_um", {2, 0.5, 0.25});
+  }
+  const Geometry microns = open_volume(folder / "a.h5")->info().geometry;
+  EXPECT_EQ(microns.spacing, (std::array<double, 3>{0.25, 0.5, 2}));
+  EXPECT_EQ(microns.unit, "um");
+  {
+    Writer writer(folder / "b.h5");
+    writer.put_int16("/v", {2, 2, 2});
+    writer.put_numbers("/v", "resolution", {40, 4, 8});
+    writer.put_numbers("/v", "offset", {400, 0, 80});
+    writer.put_text("/v", "units", "nm", true);
+  }
+  const Geometry nanometres = open_volume(folder / "b.h5")->info().geometry;
+  EXPECT_EQ(nanometres.spacing, (std::array<double, 3>{8, 4, 40}));
+  EXPECT_EQ(nanometres.origin, (std::array<double, 3>{80, 0, 400}));
+  EXPECT_EQ(nanometres.unit, "nm");
+}
+
+TEST(Hdf5, AxesByTheTagsOfIlastik) {
+  const TempFolder folder;
+  for (const bool fixed : {false, true}) {
+    Writer writer(folder / "a.h5");
+    writer.put_int16("/v", {2, 3, 4, 2}, chunks({1, 2, 3, 1}));
+    writer.put_text("/v", "axistags",
+                    R"({"axes": [{"key": "z", "typeFlags": 2}, {"key": "y"}, {"key": "x"}, {"key": "c"}]})", fixed);
+  }
+  OpenOptions options;
+  options.channel = 1;
+  const auto source = open_volume(folder / "a.h5", options);
+  EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  const auto samples = samples_of<std::int16_t>(*source, 1);
+  for (std::size_t n = 0; n < samples.size(); ++n) EXPECT_EQ(samples[n], 2 * static_cast<int>(n) + 2);
+  {
+    Writer writer(folder / "b.h5");
+    writer.put_int16("/v", {4, 3, 2}, chunks({3, 2, 1}));
+    writer.put_text("/v", "axistags", R"({"axes": [{"key":"x"}, {"key":"y"}, {"key":"z"}]})", false);
+  }
+  const auto turned = open_volume(folder / "b.h5");
+  EXPECT_EQ(turned->info().dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  EXPECT_EQ(samples_of<std::int16_t>(*turned, 1),
+            (std::vector<std::int16_t>{1, 7, 13, 19, 3, 9,  15, 21, 5, 11, 17, 23,
+                                       2, 8, 14, 20, 4, 10, 16, 22, 6, 12, 18, 24}));
+}
+
+TEST(Hdf5, SamplesThatWereNeverWrittenAreTheFillValue) {
+  const TempFolder folder;
+  {
+    Writer writer(folder / "a.h5");
+    const Shape shape{2, 2, 2}, chunk{1, 2, 2};
+    const hid_t space = H5Screate_simple(3, shape.data(), nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    const std::int16_t fill = -5;
+    H5Pset_fill_value(creation, H5T_NATIVE_INT16, &fill);
+    H5Pset_chunk(creation, 3, chunk.data());
+    H5Dclose(H5Dcreate2(writer.file(), "/v", H5T_STD_I16LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+  }
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a.h5"), std::vector<std::int16_t>(8, -5));
+}
+
+TEST(Hdf5, ClaimsBeyondWhatIsStoredAreRefused) {
+  const TempFolder folder;
+  const auto put = [&folder](const Shape& shape, const Shape& chunk) {
+    Writer writer(folder / "a.h5");
+    const hid_t space = H5Screate_simple(3, shape.data(), nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 3, chunk.data());
+    H5Dclose(H5Dcreate2(writer.file(), "/v", H5T_STD_I16LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+  };
+  put({2, 1 << 20, 1 << 20}, {1, 64, 64});
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "which cannot hold them"));
+  put({1 << 30, 1 << 30, 1 << 30}, {1, 64, 64});
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "fewer than 2^63 bytes"));
+}
+
+TEST(Hdf5, FiltersThatAreNotThereAreNamed) {
+  const TempFolder folder;
+  Writer(folder / "a.h5").put_int16("/v", {2, 2, 2}, chunks({1, 2, 2}, [](hid_t creation) {
+                                      H5Pset_filter(creation, 32008, H5Z_FLAG_OPTIONAL, 0, nullptr);
+                                    }));
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "found bitshuffle"));
+}
+
+TEST(Hdf5, LinksIntoOtherFilesAreNotFollowed) {
+  const TempFolder folder;
+  Writer(folder / "secret.h5").put_int16("/v", {2, 2, 2});
+  {
+    const Writer writer(folder / "a.h5");
+    H5Lcreate_external((folder / "secret.h5").c_str(), "/v", writer.file(), "outside", H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_hard(writer.file(), "/", writer.file(), "itself", H5P_DEFAULT, H5P_DEFAULT);
+  }
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "expected a dataset of numbers of 2 axes or more, found none"));
+}
+
+TEST(Hdf5, TheCallersPrinterOfErrorsIsLeftAlone) {
+  const TempFolder folder;
+  const auto printer = [](hid_t, void*) -> herr_t { return 0; };
+  H5E_auto2_t before = nullptr, after = nullptr;
+  void* data = nullptr;
+  H5Eget_auto2(H5E_DEFAULT, &before, &data);
+  H5Eset_auto2(H5E_DEFAULT, printer, nullptr);
+  EXPECT_TRUE(
+      contains(refusal(folder.put("a.h5", "\x89HDF\r\n\x1a\n and nothing more")), "expected a readable HDF5 file"));
+  H5Eget_auto2(H5E_DEFAULT, &after, &data);
+  EXPECT_EQ(after, static_cast<H5E_auto2_t>(printer));
+  H5Eset_auto2(H5E_DEFAULT, before, data);
+}
+
+TEST(Hdf5, FilesThatAreCutAreRefused) {
+  const TempFolder folder;
+  Writer(folder / "good.h5").put_int16("/v", {5, 7, 9}, chunks({2, 3, 4}, [](hid_t p) { H5Pset_deflate(p, 4); }));
+  const std::string good = get(folder / "good.h5");
+  for (std::size_t length = 1; length < good.size(); length += 1 + length % 7) {
+    EXPECT_FALSE(reads_or_refuses(folder.put("cut.h5", good.substr(0, length)))) << length;
+  }
+}
+
+std::string lzf(const std::string& stored, std::size_t bytes) {
+  std::string out(bytes, '?');
+  const bool good = decode_lzf(std::as_bytes(std::span(stored)), std::as_writable_bytes(std::span(out)));
+  return good ? out : "(refused)";
+}
+
+TEST(Lzf, RunsAndCopies) {
+  EXPECT_EQ(lzf(std::string("\x02") + "abc", 3), "abc");
+  // A copy of 3 from 3 back, then one of 7 + 2 + 4 from 1 back.
+  EXPECT_EQ(lzf(std::string("\x02") + "abc" + std::string("\x20\x02\xe0\x04\x00", 5), 19),
+            "abcabc" + std::string(13, 'c'));
+  EXPECT_EQ(lzf(std::string("\x02") + "abc", 4), "(refused)");
+  EXPECT_EQ(lzf(std::string("\x02") + "abc", 2), "(refused)");
+  EXPECT_EQ(lzf(std::string("\x03") + "abc", 4), "(refused)");
+  EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\x20\x03", 6), "(refused)");
+  EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\xe0\x04", 16), "(refused)");
+  EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\x20", 6), "(refused)");
+}
+
+}  // namespace
+}  // namespace isoweave::testing

@@ -1,0 +1,115 @@
+// N5: folders written by hand.
+#include "array_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+// Blocks begin with their sizes, in numbers whose most significant byte comes first.
+std::string block(const ChunkOf& array, std::int64_t k, std::int64_t j, std::int64_t i) {
+  std::string text = bytes_of(std::uint16_t{0}, true) + bytes_of(std::uint16_t{3}, true);
+  const std::array<std::int64_t, 3> index{i, j, k};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t left = array.dims.at(a) - index.at(a) * array.chunk.at(a);
+    text += bytes_of(static_cast<std::uint32_t>(std::min(left, array.chunk.at(a))), true);
+  }
+  return text;
+}
+
+void put_n5(
+    const std::string& folder, const std::string& compression, const ArrayJson& attributes = {},
+    const std::function<std::string(const std::string&)>& encode = [](const std::string& data) { return data; }) {
+  ArrayJson metadata = {{"dimensions", {5, 4, 3}},
+                        {"blockSize", {2, 3, 2}},
+                        {"dataType", "int16"},
+                        {"compression", {{"type", compression}}}};
+  if (!attributes.is_null()) metadata.update(attributes);
+  put_json(folder + "/attributes.json", metadata);
+  const ChunkOf chunks{.big = true, .cut = true};
+  for_chunks(chunks, [&](std::int64_t k, std::int64_t j, std::int64_t i) {
+    put_file(folder + "/" + key({i, j, k}, "/"), block(chunks, k, j, i) + encode(chunks.bytes<std::int16_t>(k, j, i)));
+  });
+}
+
+const std::vector<std::int16_t> kExpected = expected_samples<std::int16_t>({5, 4, 3});
+
+TEST(N5, BlocksThatEndWithTheArray) {
+  const TempFolder folder;
+  put_n5(folder / "raw", "raw");
+  EXPECT_EQ(read_file<std::int16_t>(folder / "raw"), kExpected);
+  EXPECT_EQ(open_volume(folder / "raw")->info().format, "n5");
+  put_n5(folder / "gzip", "gzip", {}, gzipped);
+  EXPECT_EQ(read_file<std::int16_t>(folder / "gzip"), kExpected);
+  put_n5(folder / "xz", "xz");
+  EXPECT_TRUE(contains(refusal(folder / "xz"), "expected compression raw, gzip, zstd, blosc or lz4, found 'xz'"));
+  std::filesystem::remove(folder / "raw/0/0/0");
+  EXPECT_EQ(read_file<std::int16_t>(folder / "raw")[0], 0);
+}
+
+#ifdef ISOWEAVE_HAS_LZ4
+// One block kept as it is, one of 20 equal bytes, and the empty one that ends a stream.
+TEST(N5, Lz4Frames) {
+  const TempFolder folder;
+  const auto frame = [](char method, const std::string& stored, std::uint32_t bytes) {
+    return std::string("LZ4Block") + method + bytes_of(static_cast<std::uint32_t>(stored.size())) + bytes_of(bytes) +
+           std::string(4, '\0') + stored;
+  };
+  const std::string same = std::string("\x17") + "a" + std::string("\x01\x00", 2) + "\x80" + "aaaaaaaa";
+  put_n5(folder / "a", "lz4", {{"dataType", "uint8"}, {"dimensions", {20, 2}}, {"blockSize", {20, 2}}});
+  const std::string head = bytes_of(std::uint16_t{0}, true) + bytes_of(std::uint16_t{2}, true) +
+                           bytes_of(std::uint32_t{20}, true) + bytes_of(std::uint32_t{2}, true);
+  const std::string plain = "01234567890123456789";
+  put_file(folder / "b/0/0", head + frame('\x10', plain, 20) + frame('\x25', same, 20) + frame('\x10', "", 0));
+  put_json(folder / "b/attributes.json", get(folder / "a/attributes.json").empty()
+                                             ? ArrayJson()
+                                             : ArrayJson::parse(get(folder / "a/attributes.json")));
+  const auto samples = read_file<std::uint8_t>(folder / "b");
+  EXPECT_EQ(std::string(samples.begin(), samples.end()), plain + std::string(20, 'a'));
+  put_file(folder / "b/0/0", head + frame('\x10', plain, 20) + frame('\x25', same, 4000) + frame('\x10', "", 0));
+  EXPECT_TRUE(contains(refusal(folder / "b"), "expected at most 40 bytes in LZ4"));
+}
+#endif
+
+TEST(N5, DamagedBlocksAreRefused) {
+  const TempFolder folder;
+  put_n5(folder / "a", "raw");
+  const std::string path = folder / "a/0/0/0";
+  const std::string good = get(path);
+  for (std::size_t length = 1; length < good.size(); ++length) {
+    put_file(path, good.substr(0, length));
+    EXPECT_FALSE(reads_or_refuses(folder / "a")) << length;
+  }
+  const auto refused = [&](std::size_t at, char byte) {
+    std::string broken = good;
+    broken[at] = byte;
+    put_file(path, broken);
+    return refusal(folder / "a");
+  };
+  EXPECT_TRUE(contains(refused(1, 1), "0/0/0: expected a block of the default mode, found mode 1"));
+  EXPECT_TRUE(contains(refused(3, 4), "expected a block of the array's axes"));
+  EXPECT_TRUE(contains(refused(7, 9), "expected a block of at most 2 samples along an axis, found 9"));
+  EXPECT_TRUE(contains(refused(7, 1), "expected a chunk of 12 bytes, found 24"));
+}
+
+TEST(N5, LevelsAndTheirPlaces) {
+  const TempFolder folder;
+  put_json(folder / "a/attributes.json", {{"n5", "2.5.0"}});
+  put_json(folder / "a/raw/attributes.json", {{"pixelResolution", {{"dimensions", {4, 4, 40}}, {"unit", "nm"}}}});
+  put_n5(folder / "a/raw/s0", "raw");
+  put_n5(folder / "a/raw/s1", "raw", {{"downsamplingFactors", {2, 2, 1}}});
+  const VolumeInfo full = open_volume(folder / "a")->info();
+  EXPECT_EQ(full.geometry.spacing, (std::array<double, 3>{4, 4, 40}));
+  EXPECT_EQ(full.geometry.unit, "nm");
+  OpenOptions options;
+  options.level = 1;
+  const VolumeInfo half = open_volume(folder / "a", options)->info();
+  EXPECT_EQ(half.geometry.spacing, (std::array<double, 3>{8, 8, 40}));
+  EXPECT_EQ(half.geometry.origin, (std::array<double, 3>{2, 2, 0}));
+  EXPECT_EQ(half.part, "level 1");
+  put_n5(folder / "b", "raw", {{"resolution", {1, 2, 3}}, {"units", {"um", "um", "um"}}, {"offset", {10, 20, 30}}});
+  const Geometry geometry = open_volume(folder / "b")->info().geometry;
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
+}
+
+}  // namespace
+}  // namespace isoweave::testing

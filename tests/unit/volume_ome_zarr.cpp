@@ -1,0 +1,217 @@
+// What a folder of Zarr or N5 holds, which part of it is read, and where its samples lie.
+#include "array_helpers.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+const ArrayJson kAxes = {{{"name", "z"}, {"type", "space"}, {"unit", "micrometer"}},
+                         {{"name", "y"}, {"type", "space"}, {"unit", "micrometer"}},
+                         {{"name", "x"}, {"type", "space"}, {"unit", "micrometer"}}};
+
+// A list of one is not that one.
+ArrayJson list(const std::vector<ArrayJson>& entries) { return entries; }
+
+ArrayJson scale(const std::vector<double>& factors) { return {{"type", "scale"}, {"scale", factors}}; }
+ArrayJson shift(const std::vector<double>& offsets) { return {{"type", "translation"}, {"translation", offsets}}; }
+
+// An array of one chunk whose samples are 1, 2, 3, ...
+void put_array(const std::string& folder, const std::vector<std::int64_t>& shape, const ArrayJson& attributes = {}) {
+  std::int64_t count = 1;
+  for (const std::int64_t size : shape) count *= size;
+  std::string samples;
+  for (std::int64_t n = 1; n <= count; ++n) samples += bytes_of(static_cast<std::int16_t>(n));
+  put_json(folder + "/.zarray", {{"zarr_format", 2},
+                                 {"shape", shape},
+                                 {"chunks", shape},
+                                 {"dtype", "<i2"},
+                                 {"order", "C"},
+                                 {"fill_value", 0},
+                                 {"compressor", nullptr},
+                                 {"filters", nullptr}});
+  put_file(folder + "/" + key(std::vector<std::int64_t>(shape.size(), 0), "."), samples);
+  if (!attributes.is_null()) put_json(folder + "/.zattrs", attributes);
+}
+
+void put_group(const std::string& folder, const ArrayJson& attributes) {
+  put_json(folder + "/.zgroup", {{"zarr_format", 2}});
+  put_json(folder + "/.zattrs", attributes);
+}
+
+ArrayJson image(const ArrayJson& axes, const ArrayJson& datasets, const ArrayJson& whole = nullptr) {
+  ArrayJson multiscale = {{"version", "0.4"}, {"axes", axes}, {"datasets", datasets}};
+  if (!whole.is_null()) multiscale["coordinateTransformations"] = whole;
+  return {{"multiscales", list({multiscale})}};
+}
+
+ArrayJson level(const std::string& path, const ArrayJson& transformations) {
+  return {{"path", path}, {"coordinateTransformations", transformations}};
+}
+
+void expect_places(const Geometry& geometry, const std::array<double, 3>& spacing,
+                   const std::array<double, 3>& origin) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(geometry.spacing.at(axis), spacing.at(axis), 1e-12) << axis;
+    EXPECT_NEAR(geometry.origin.at(axis), origin.at(axis), 1e-12) << axis;
+  }
+}
+
+TEST(OmeZarr, TransformationsOfLevelAndImageAreApplied) {
+  const TempFolder folder;
+  const ArrayJson whole = {scale({10, 10, 10}), shift({100, 200, 300})};
+  put_group(folder / "a", image(kAxes,
+                                {level("0", list({scale({2, 0.5, 0.25})})),
+                                 level("1", {scale({4, 1, 0.5}), shift({1, 0.25, 0.125})})},
+                                whole));
+  put_array(folder / "a/0", {4, 4, 6});
+  put_array(folder / "a/1", {2, 2, 3});
+  const VolumeInfo full = open_volume(folder / "a")->info();
+  expect_places(full.geometry, {2.5, 5, 20}, {300, 200, 100});
+  EXPECT_EQ(full.geometry.unit, "um");
+  EXPECT_EQ(full.part, "level 0");
+  OpenOptions options;
+  options.level = 1;
+  const VolumeInfo small = open_volume(folder / "a", options)->info();
+  expect_places(small.geometry, {5, 10, 40}, {301.25, 202.5, 110});
+  EXPECT_EQ(small.dims, (std::array<std::int64_t, 3>{3, 2, 2}));
+  EXPECT_EQ(small.part, "level 1");
+  EXPECT_EQ(small.header, folder / "a/1/.zarray");
+  options.level = 2;
+  EXPECT_TRUE(contains(refusal(folder / "a", options), "expected --level below 2, found 2"));
+}
+
+TEST(OmeZarr, ChannelAndTimeAreChosen) {
+  const TempFolder folder;
+  ArrayJson axes = {{{"name", "t"}, {"type", "time"}}, {{"name", "c"}, {"type", "channel"}}};
+  axes.insert(axes.end(), kAxes.begin(), kAxes.end());
+  put_group(folder / "a", image(axes, list({level("0", list({scale({1, 1, 1, 1, 1})}))})));
+  put_array(folder / "a/0", {2, 3, 2, 2, 2});
+  const auto first = open_volume(folder / "a");
+  EXPECT_EQ(samples_of<std::int16_t>(*first), (std::vector<std::int16_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(first->info().notes.size(), 2U);
+  OpenOptions options;
+  options.channel = 2;
+  options.time = 1;
+  const auto chosen = open_volume(folder / "a", options);
+  EXPECT_EQ(samples_of<std::int16_t>(*chosen), (std::vector<std::int16_t>{41, 42, 43, 44, 45, 46, 47, 48}));
+  EXPECT_EQ(chosen->info().part, "time 1, channel 2");
+  EXPECT_TRUE(chosen->info().notes.empty());
+  options.channel = 3;
+  EXPECT_TRUE(contains(refusal(folder / "a", options), "expected --channel below 3, found 3"));
+}
+
+TEST(OmeZarr, AxesAreFoundByTheirNames) {
+  const TempFolder folder;
+  put_group(folder / "a",
+            image({{{"name", "x"}}, {{"name", "z"}}, {{"name", "y"}}}, list({level("0", list({scale({1, 3, 2})}))})));
+  put_array(folder / "a/0", {2, 3, 4});
+  const auto source = open_volume(folder / "a");
+  EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{2, 4, 3}));
+  expect_places(source->info().geometry, {1, 2, 3}, {0, 0, 0});
+  // (x, z, y) = (1, 0, 0) is the 13th sample stored, (0, 0, 1) the second.
+  const auto samples = samples_of<std::int16_t>(*source, 1);
+  EXPECT_EQ(samples[1], 13);
+  EXPECT_EQ(samples[2], 2);
+  EXPECT_EQ(samples[8], 5);
+}
+
+TEST(OmeZarr, UnitsThatDifferBecomeThoseOfX) {
+  const TempFolder folder;
+  ArrayJson axes = kAxes;
+  axes[0]["unit"] = "millimeter";
+  put_group(folder / "a", image(axes, list({level("0", list({scale({0.002, 0.5, 0.5})}))})));
+  put_array(folder / "a/0", {2, 2, 2});
+  expect_places(open_volume(folder / "a")->info().geometry, {0.5, 0.5, 2}, {0, 0, 0});
+}
+
+TEST(OmeZarr, VersionFiveIsInZarr3) {
+  const TempFolder folder;
+  ArrayJson attributes = {{"ome", image(kAxes, list({level("0", list({scale({3, 2, 1})}))}))}};
+  put_json(folder / "a/zarr.json", {{"zarr_format", 3}, {"node_type", "group"}, {"attributes", attributes}});
+  put_json(folder / "a/0/zarr.json",
+           {{"zarr_format", 3},
+            {"node_type", "array"},
+            {"shape", {1, 1, 2}},
+            {"data_type", "uint8"},
+            {"chunk_grid", {{"name", "regular"}, {"configuration", {{"chunk_shape", {1, 1, 2}}}}}},
+            {"chunk_key_encoding", {{"name", "v2"}}},
+            {"fill_value", 0},
+            {"codecs", {{{"name", "bytes"}}}}});
+  put_file(folder / "a/0/0.0.0", "\x07\x09");
+  EXPECT_EQ(read_file<std::uint8_t>(folder / "a"), (std::vector<std::uint8_t>{7, 9}));
+  expect_places(open_volume(folder / "a")->info().geometry, {1, 2, 3}, {0, 0, 0});
+}
+
+TEST(OmeZarr, WrongDescriptionsAreRefused) {
+  const TempFolder folder;
+  put_array(folder / "a/0", {2, 2, 2});
+  const auto refused = [&folder](const ArrayJson& attributes) {
+    put_group(folder / "a", attributes);
+    return refusal(folder / "a");
+  };
+  EXPECT_TRUE(
+      contains(refused({{"multiscales", ArrayJson::array()}}), "expected an image in 'multiscales', found none"));
+  EXPECT_TRUE(contains(refused(image(kAxes, ArrayJson::array())), "expected datasets in 'multiscales'"));
+  EXPECT_TRUE(contains(refused(image(kAxes, list({level("7", nullptr)}))), "expected an array or group at '7'"));
+  EXPECT_TRUE(contains(refused(image(kAxes, list({level("../b", nullptr)}))), "expected a path inside the folder"));
+  EXPECT_TRUE(contains(refused(image(kAxes, list({level("/etc", nullptr)}))), "expected a path inside the folder"));
+  EXPECT_TRUE(contains(refused(image(kAxes, list({level("0", list({scale({1, 2})}))}))),
+                       "its transformations, found one of 3"));
+  EXPECT_TRUE(
+      contains(refused(image({"z", "y"}, list({level("0", nullptr)}))), "the 2 axes of its image, found one of 3"));
+  EXPECT_TRUE(
+      contains(refused(image(kAxes, list({level("0", list({scale({1, 0, 2})}))}))), "sample spacing on axis 1"));
+  const ArrayJson turned = {{"type", "affine"}, {"affine", {1}}};
+  EXPECT_TRUE(contains(refused(image(kAxes, list({level("0", list({turned}))}))), "found 'affine'"));
+}
+
+TEST(ZarrFolder, AnArrayIsChosenByItsPath) {
+  const TempFolder folder;
+  put_group(folder / "a", ArrayJson::object());
+  put_array(folder / "a/raw", {2, 2, 2});
+  put_array(folder / "a/table", {7});
+  const VolumeInfo only = open_volume(folder / "a")->info();
+  EXPECT_EQ(only.dims[0], 2);
+  EXPECT_TRUE(contains(only.notes.back(), "'raw' is the only array"));
+  put_array(folder / "a/deep/er", {2, 2, 3});
+  EXPECT_TRUE(contains(refusal(folder / "a"), "expected --dataset with one of 'raw', 'deep/er', found no choice"));
+  OpenOptions options;
+  options.dataset = "deep/er";
+  EXPECT_EQ(open_volume(folder / "a", options)->info().dims[0], 3);
+  EXPECT_EQ(open_volume(folder / "a", options)->info().part, "dataset deep/er");
+  options.dataset = "nothing";
+  EXPECT_TRUE(contains(refusal(folder / "a", options), "expected an array or group at 'nothing'"));
+  EXPECT_TRUE(contains(
+      refusal(folder.put("x.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\n1"), options),
+      "expected HDF5, Zarr or N5 for --dataset"));
+}
+
+TEST(ZarrFolder, AttributesOfPlainArraysSayWhereSamplesLie) {
+  const TempFolder folder;
+  put_array(folder / "a", {2, 2, 2},
+            {{"resolution", {40, 4, 8}}, {"offset", {400, 0, 80}}, {"units", {"nm", "nm", "nm"}}});
+  const Geometry geometry = open_volume(folder / "a")->info().geometry;
+  expect_places(geometry, {8, 4, 40}, {80, 0, 400});
+  EXPECT_EQ(geometry.unit, "nm");
+  put_array(folder / "b", {2, 2, 3, 2}, {{"_ARRAY_DIMENSIONS", {"channel", "z", "y", "x"}}});
+  EXPECT_EQ(open_volume(folder / "b")->info().dims, (std::array<std::int64_t, 3>{2, 3, 2}));
+}
+
+TEST(ZarrFolder, AxesWithoutNames) {
+  const TempFolder folder;
+  put_array(folder / "flat", {3, 4});
+  EXPECT_EQ(open_volume(folder / "flat")->info().dims, (std::array<std::int64_t, 3>{4, 3, 1}));
+  put_array(folder / "ones", {1, 2, 3, 4, 1});
+  EXPECT_EQ(open_volume(folder / "ones")->info().dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  put_array(folder / "four", {2, 2, 3, 4});
+  EXPECT_TRUE(contains(refusal(folder / "four"), "found one of 2 x 2 x 3 x 4"));
+  OpenOptions options;
+  options.channel = 1;
+  EXPECT_EQ(read_file<std::int16_t>(folder / "four", options)[0], 25);
+  put_array(folder / "line", {4});
+  EXPECT_TRUE(contains(refusal(folder / "line"), "expected an array of 2 or 3 axes"));
+  put_array(folder / "named", {2, 2, 2, 2}, {{"_ARRAY_DIMENSIONS", {"angle", "z", "y", "x"}}});
+  EXPECT_TRUE(contains(refusal(folder / "named"), "2 ('angle')"));
+}
+
+}  // namespace
+}  // namespace isoweave::testing

@@ -1,0 +1,236 @@
+// Packed meshes, as their own libraries unpack them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "isoweave/error.hpp"
+#include "meshes.hpp"
+#include "write/mesh_file_sink.hpp"
+
+#ifdef ISOWEAVE_HAS_MESHOPTIMIZER
+#include <meshoptimizer.h>
+#endif
+#ifdef ISOWEAVE_HAS_DRACO
+#include <draco/compression/decode.h>
+#endif
+
+namespace isoweave {
+namespace {
+
+using Json = nlohmann::json;
+
+MeshFileOptions packed_options() {
+  MeshFileOptions options;
+  options.unit = "mm";
+  options.compress = true;
+  return options;
+}
+
+#if defined(ISOWEAVE_HAS_MESHOPTIMIZER) || defined(ISOWEAVE_HAS_DRACO)
+// A bent sheet, away from the origin, with a vertex of no triangle.
+TriangleMesh sheet() {
+  TriangleMesh mesh = meshes::grid(20);
+  for (Point& p : mesh.vertices) p = {p[0] + 100, p[1] * 0.7F - 50, std::sin(p[0] * 0.3F) * 3};
+  mesh.vertices.push_back({120, -36, 0});
+  return mesh;
+}
+
+std::vector<std::string> write(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options) {
+  std::vector<Triangle64> triangles;
+  for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+  const auto sink = open_mesh_file(path, options);
+  sink->append(mesh.vertices, mesh.normals, triangles);
+  sink->finish();
+  return sink->notes();
+}
+
+using Corners = std::array<std::array<double, 3>, 3>;
+
+// Triangles by their centres, to match them whatever their order.
+std::vector<Corners> sorted(std::vector<Corners> triangles) {
+  const auto centre = [](const Corners& t) {
+    std::array<long, 3> c{};
+    for (std::size_t axis = 0; axis < 3; ++axis) c[axis] = std::lround((t[0][axis] + t[1][axis] + t[2][axis]) * 20);
+    return c;
+  };
+  std::sort(triangles.begin(), triangles.end(),
+            [&](const Corners& a, const Corners& b) { return centre(a) < centre(b); });
+  return triangles;
+}
+
+std::vector<Corners> corners_of(const TriangleMesh& mesh) {
+  std::vector<Corners> all;
+  for (const auto& t : mesh.triangles) {
+    Corners corners{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t axis = 0; axis < 3; ++axis) corners[c][axis] = mesh.vertices[t[c]][axis];
+    }
+    all.push_back(corners);
+  }
+  return sorted(all);
+}
+
+// The same triangles, each corner within `error`, wherever a triangle begins.
+void expect_close(const std::vector<Corners>& a, const std::vector<Corners>& b, double error) {
+  ASSERT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    double best = 1e9;
+    for (std::size_t turn = 0; turn < 3; ++turn) {
+      double far = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto& p = a[n][c];
+        const auto& q = b[n][(c + turn) % 3];
+        far = std::max(far, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+      }
+      best = std::min(best, far);
+    }
+    worst = std::max(worst, best);
+  }
+  EXPECT_LE(worst, error);
+}
+#endif
+
+#ifdef ISOWEAVE_HAS_MESHOPTIMIZER
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, sizeof(word));
+  return word;
+}
+
+// The bytes of a view before its packing.
+std::vector<unsigned char> unpack(const std::string& bytes, const Json& scene, std::size_t number) {
+  const Json& view = scene["bufferViews"][number];
+  const Json& packed = view["extensions"]["EXT_meshopt_compression"];
+  const std::size_t at = 20 + word_at(bytes, 12) + 8 + packed["byteOffset"].get<std::size_t>();
+  const auto count = packed["count"].get<std::size_t>();
+  const auto stride = packed["byteStride"].get<std::size_t>();
+  const std::string data = bytes.substr(at, packed["byteLength"].get<std::size_t>());
+  const auto* in = reinterpret_cast<const unsigned char*>(data.data());
+  std::vector<unsigned char> out(count * stride);
+  EXPECT_EQ(out.size(), view["byteLength"].get<std::size_t>());
+  const int result = packed["mode"] == "TRIANGLES"
+                         ? meshopt_decodeIndexBuffer(out.data(), count, stride, in, data.size())
+                         : meshopt_decodeVertexBuffer(out.data(), count, stride, in, data.size());
+  EXPECT_EQ(result, 0);
+  return out;
+}
+
+TEST(WritePackedGlb, UnpacksToTheMeshWithinTheErrorTold) {
+  for (const bool normals : {false, true}) {
+    const files::Folder folder;
+    TriangleMesh mesh = sheet();
+    if (normals) mesh.normals.assign(mesh.vertices.size(), {0, 0.6F, -0.8F});
+    MeshFileOptions options = packed_options();
+    options.normals = normals;
+    const std::vector<std::string> notes = write(folder / "a.glb", mesh, options);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("rounded to 1/65535 of the longest side, by at most 0.00027 mm"), std::string::npos)
+        << notes[0];
+
+    const std::string bytes = files::read_bytes(folder / "a.glb");
+    ASSERT_EQ(word_at(bytes, 8), bytes.size());
+    const Json scene = Json::parse(bytes.substr(20, word_at(bytes, 12)));
+    const Json& primitive = scene["meshes"][0]["primitives"][0];
+    const auto positions = unpack(bytes, scene, 0);
+    const auto indices = unpack(bytes, scene, primitive["indices"].get<std::size_t>());
+    EXPECT_EQ(positions.size(), 21U * 21 * 8) << "the vertex of no triangle is gone";
+    const Json& node = scene["nodes"][1];
+    const auto origin = node["translation"].get<std::vector<double>>();
+    const auto step = node["scale"].get<std::vector<double>>();
+    std::vector<Corners> found(mesh.triangles.size());
+    for (std::size_t n = 0; n < indices.size() / 4; ++n) {
+      std::uint32_t index = 0;
+      std::memcpy(&index, indices.data() + 4 * n, 4);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::uint16_t place = 0;
+        std::memcpy(&place, positions.data() + 8 * index + 2 * axis, 2);
+        found[n / 3][n % 3][axis] = origin[axis] + step[axis] * place;
+      }
+    }
+    expect_close(corners_of(mesh), sorted(found), scene["asset"]["extras"]["rounding_error"].get<double>());
+    if (!normals) continue;
+    const auto packed = unpack(bytes, scene, 1);
+    EXPECT_EQ(static_cast<signed char>(packed[1]), std::lround(0.6 * 127));
+    EXPECT_EQ(static_cast<signed char>(packed[2]), -std::lround(0.8 * 127));
+  }
+}
+
+TEST(WritePackedGlb, AnEmptyMeshIsAnEmptyScene) {
+  const files::Folder folder;
+  write(folder / "a.glb", {}, packed_options());
+  const std::string bytes = files::read_bytes(folder / "a.glb");
+  EXPECT_EQ(bytes.size(), 20U + word_at(bytes, 12));
+}
+#endif
+
+#ifdef ISOWEAVE_HAS_DRACO
+TEST(WritePackedPrecomputed, UnpacksToTheMeshWithinTheErrorTold) {
+  const files::Folder folder;
+  const TriangleMesh mesh = sheet();
+  MeshFileOptions options = packed_options();
+  options.segment = 7;
+  ASSERT_EQ(write(folder / "a.precomputed", mesh, options).size(), 1U);
+  const Json info = Json::parse(files::read_bytes(folder / "a.precomputed/info"));
+  EXPECT_EQ(info["@type"], "neuroglancer_multilod_draco");
+  EXPECT_EQ(info["vertex_quantization_bits"], 16);
+  EXPECT_EQ(info["transform"][0], 1e6) << "millimetres to nanometres";
+
+  const std::string index = files::read_bytes(folder / "a.precomputed/7.index");
+  const std::string fragment = files::read_bytes(folder / "a.precomputed/7");
+  ASSERT_EQ(index.size(), 64U);
+  std::array<float, 6> box{};
+  std::memcpy(box.data(), index.data(), sizeof(box));
+  std::array<std::uint32_t, 10> words{};
+  std::memcpy(words.data(), index.data() + 24, sizeof(words));
+  EXPECT_EQ(words[0], 1U) << "levels";
+  EXPECT_EQ(words[5], 1U) << "fragments";
+  EXPECT_EQ(words[9], fragment.size());
+
+  draco::DecoderBuffer buffer;
+  buffer.Init(fragment.data(), fragment.size());
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  ASSERT_TRUE(decoded.ok());
+  const draco::Mesh& found = *decoded.value();
+  const draco::PointAttribute& positions = *found.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  EXPECT_EQ(positions.data_type(), draco::DT_UINT32);
+  std::vector<Corners> corners(found.num_faces());
+  for (std::uint32_t f = 0; f < found.num_faces(); ++f) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::array<std::uint32_t, 3> place{};
+      positions.GetMappedValue(found.face(draco::FaceIndex(f))[c], place.data());
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        corners[f][c][axis] = double{box[3 + axis]} + double{box[axis]} * place[axis] / 65535;
+      }
+    }
+  }
+  expect_close(corners_of(mesh), sorted(corners), 0.000265);
+}
+
+TEST(WritePackedPrecomputed, AnEmptyMeshHasNoFragment) {
+  const files::Folder folder;
+  write(folder / "a.precomputed", {}, packed_options());
+  EXPECT_EQ(files::read_bytes(folder / "a.precomputed/1.index").size(), 48U);
+  EXPECT_EQ(files::read_bytes(folder / "a.precomputed/1"), "");
+}
+#endif
+
+TEST(WritePacked, ABuildWithoutTheLibrarySaysSo) {
+  const files::Folder folder;
+#ifndef ISOWEAVE_HAS_MESHOPTIMIZER
+  EXPECT_THROW(open_mesh_file(folder / "a.glb", packed_options()), CannotWrite);
+#endif
+#ifndef ISOWEAVE_HAS_DRACO
+  EXPECT_THROW(open_mesh_file(folder / "a.precomputed", packed_options()), CannotWrite);
+#endif
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+}  // namespace
+}  // namespace isoweave
