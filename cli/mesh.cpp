@@ -15,11 +15,14 @@
 #include "output.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "stop.hpp"
 #include "verbs.hpp"
 #include "volume/histogram.hpp"
 
 namespace isoweave::cli {
 namespace {
+
+constexpr const char* kUsualError = "0.2vox";
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -28,8 +31,10 @@ Examples:
   isoweave mesh scan.raw --raw 512x512x300:int16:big --spacing 0.7,0.7,1.5 -o scan.obj --iso 226 --error 0.1mm
   isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
   isoweave mesh --resume gyroid.run
+  isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
 
-The result does not depend on --threads, --schedule and --slab.)";
+Without --error, --triangles and --ratio the error is 0.2vox. The result does not depend on --threads, --schedule and
+--slab.)";
 
 std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
@@ -37,7 +42,8 @@ struct MeshArguments {
   InputOptions input;
   RunOptions run;
   OutputOptions output;
-  std::string iso, error = "0.2vox", quality = "normal", slab, inside = "above", normals = "none";
+  StopOptions stop;
+  std::string iso, quality = "normal", slab, inside = "above", normals = "none";
   std::string space, memory, checkpoint, every, resume;
   bool open = false, closed = false, dry_run = false;
 };
@@ -58,7 +64,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"segment", arguments.output.segment},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
           {"iso", fmt::format("{}", options.iso)},
-          {"error", arguments.error},
+          {"error", arguments.stop.error},
+          {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
           {"quality", arguments.quality},
           {"slab", arguments.slab},
           {"inside", arguments.inside},
@@ -76,7 +83,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");
-  arguments.error = task.at("error");
+  arguments.stop = {task.at("error"), task.at("triangles"), ""};
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
@@ -170,8 +177,9 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
 
 std::vector<std::string> comments(const MeshArguments& arguments, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
-          fmt::format("iso {} inside {} {} error {} quality {}", options.iso, arguments.inside,
-                      options.closed ? "closed" : "open", arguments.error, arguments.quality)};
+          fmt::format("iso {} inside {} {} {} quality {}", options.iso, arguments.inside,
+                      options.closed ? "closed" : "open", stop_text(arguments.stop, kUsualError, options.triangles),
+                      arguments.quality)};
 }
 
 // How the mesh is to be written.
@@ -224,6 +232,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
   json["closed"] = options.closed;
+  if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["output"] = arguments.output.name();
   return json;
@@ -239,7 +248,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
 
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
-  options.error = parse_error_length("--error", arguments.error, info.geometry.unit);
+  options.error = stop_error(arguments.stop, kUsualError, info.geometry.unit);
   options.slab = parse_slab(arguments.slab, info.dims[2]);
 
   if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
@@ -253,6 +262,8 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
   }
+  options.triangles =
+      stop_triangles(arguments.stop, [&] { return count_triangles(*open_input(arguments.input), options, control); });
   MeshFileOptions file = file_options(arguments, options, info.geometry);
   std::optional<Forecast> forecast;
   if (resume == nullptr) forecast = checked_forecast(arguments, options, file, control);
@@ -289,6 +300,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);
+  if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g} {}", report.error, info.geometry.unit));
   const auto slices = static_cast<double>(info.dims[2]);
   print_summary(report, arguments.output.name(), static_cast<double>(info.slice_samples()) * slices,
                 forecast ? &*forecast : nullptr);
@@ -327,9 +339,7 @@ void add_mesh_verb(CLI::App& app) {
   add_input_options(*verb, arguments->input);
   add_output_options(*verb, arguments->output);
   verb->add_option("--iso", arguments->iso, "Value of the surface, or auto (Otsu's threshold)");
-  verb->add_option("--error", arguments->error,
-                   "Simplification error: a length in vox, mm, um, nm or the volume's unit; 0: none")
-      ->capture_default_str();
+  add_stop_options(*verb, arguments->stop);
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   verb->add_option("--slab", arguments->slab, "Layers per slab: a number, auto or whole; never changes the result")
       ->default_str("auto");

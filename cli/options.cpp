@@ -254,7 +254,7 @@ void refuse_unavailable(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--triangles", "--ratio", "--max-distance", "--lods", "--html"}) {
+    for (const std::string_view option : {"--max-distance", "--lods", "--html"}) {
       if (name == option) not_available(option);
     }
   }

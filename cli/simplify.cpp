@@ -8,6 +8,7 @@
 #include "output.hpp"
 #include "report.hpp"
 #include "signals.hpp"
+#include "stop.hpp"
 #include "verbs.hpp"
 
 namespace isoweave::cli {
@@ -20,7 +21,8 @@ Examples:
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
-  std::string input, error, quality = "normal";
+  std::string input, quality = "normal";
+  StopOptions stop;
   OutputOptions output;
   RunOptions run;
 };
@@ -42,17 +44,20 @@ void run_simplify(const SimplifyArguments& arguments) {
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
-  const SimplifyOptions options{parse_error_length("--error", arguments.error, ""), parse_quality(arguments.quality)};
+  if (arguments.stop.error.empty() && !arguments.stop.has_number()) throw CLI::RequiredError("--error");
+  SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
   check_different({arguments.input, arguments.output.path, run.report});
 
   exit_on_signal();
   const TriangleMesh mesh = read_mesh(arguments.input);
+  options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   std::optional<AtomicFile> report_file;
   if (!run.report.empty()) report_file.emplace(run.report);
   MeshFileOptions file;
-  file.comments = {"isoweave " ISOWEAVE_VERSION,
-                   fmt::format("simplified, error {} quality {}", arguments.error, arguments.quality)};
+  file.comments = {
+      "isoweave " ISOWEAVE_VERSION,
+      fmt::format("simplified, {} quality {}", stop_text(arguments.stop, "", options.triangles), arguments.quality)};
   const std::unique_ptr<MeshSink> sink = open_output(arguments.output, mesh_file_options(arguments.output, file));
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
@@ -66,6 +71,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);
+  if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g}", report.error));
   print_summary(report, arguments.output.name(), 0);
 }
 
@@ -76,8 +82,7 @@ void add_simplify_verb(CLI::App& app) {
   const auto arguments = std::make_shared<SimplifyArguments>();
   verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
   add_output_options(*verb, arguments->output);
-  verb->add_option("--error", arguments->error, "Simplification error: a length in the mesh's unit, or vox; 0: none")
-      ->required();
+  add_stop_options(*verb, arguments->stop);
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   add_run_options(*verb, arguments->run);
   verb->footer(kExamples);

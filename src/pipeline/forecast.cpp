@@ -354,7 +354,7 @@ class Forecaster {
   RunControl control_;
   const std::uint64_t resident_ = resident_process_bytes();
   double error_ = 0;             // length
-  double tile_error_ = 0;    // of tiles
+  double tile_error_ = 0;        // of tiles
   std::int64_t slices_ = 0;      // that are looked at
   std::int64_t thick_ = 0;       // slices of a thick block
   TriangleMap map_{info_.dims};  // of the last thin block

@@ -225,7 +225,7 @@ class VolumeSweep {
 
   void finish_report() {
     report_simplifier(simplifier_, report_);
-    if (target_ && report_.triangles <= options_.triangles) report_.error = voxel_ * cost_root(target_->reached());
+    if (target_) report_target(*target_, options_.triangles, voxel_, report_);
     const double low = volume_.slope * range_.min + volume_.intercept;
     const double high = volume_.slope * range_.max + volume_.intercept;
     report_.min = volume_.slope > 0 || range_.empty() ? low : high;

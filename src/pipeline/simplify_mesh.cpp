@@ -97,9 +97,8 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   output.take(simplifier);
   output.wait();
   report_simplifier(simplifier, report);
-  if (target && simplifier.triangles() <= options.triangles)
-    report.error = std::sqrt(a0) * cost_root(target->reached());
   output.report(report);
+  if (target) report_target(*target, options.triangles, std::sqrt(a0), report);
   if (report.locked_vertices > 0) report_check(check_mesh(recorder.mesh()), report);
   sink.finish();
   clock.lap(report.seconds_write);

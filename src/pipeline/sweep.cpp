@@ -51,8 +51,6 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
   return rule;
 }
 
-double cost_root(CostBits cost) { return std::sqrt(static_cast<double>(cost_value(cost))); }
-
 CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   if (std::isinf(error) && error > 0 && triangles > 0) return kRetiredCost - 1;
   if (!(error >= 0) || std::isinf(error)) {
@@ -60,6 +58,15 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   }
   // Edges whose keys are not known yet have cost 0 and must stay live, also when nothing is simplified.
   return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
+}
+
+void report_target(const CountTarget& target, std::uint64_t asked, double unit, MeshReport& report) {
+  const bool met = report.triangles <= asked;
+  if (!met && std::isfinite(report.error)) return;
+  report.error = unit * std::sqrt(static_cast<double>(cost_value(target.reached())));
+  if (met) return;
+  report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " + std::to_string(asked) +
+                            " were asked for: no other collapse keeps the topology and the sides of faces");
 }
 
 void check_stop(const RunControl& control) {

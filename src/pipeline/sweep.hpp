@@ -6,6 +6,7 @@
 
 #include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
+#include "simplify/count_target.hpp"
 #include "simplify/simplifier.hpp"
 
 namespace isoweave {
@@ -43,10 +44,10 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 // and for an infinite one where no number of triangles stops the run.
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 
-// The error of a cost, in units of the root of a0.
-double cost_root(CostBits cost);
-
 void check_stop(const RunControl& control);
+
+// The error at which a run to `asked` triangles stopped, and a warning if there are more. `unit` is the root of a0.
+void report_target(const CountTarget& target, std::uint64_t asked, double unit, MeshReport& report);
 
 // Copies the simplifier's counters.
 void report_simplifier(const Simplifier& simplifier, MeshReport& report);

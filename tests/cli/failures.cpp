@@ -98,12 +98,20 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
 
 TEST(CliUsage, WhatIsPromisedForLaterIsRefusedNotIgnored) {
   const files::Folder folder;
-  for (const std::string option : {"--triangles", "--ratio", "--max-distance", "--lods", "--html"}) {
+  for (const std::string option : {"--max-distance", "--lods", "--html"}) {
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, "isoweave: " + option + " is not available in version 0.");
     expect_failure(folder, mesh(kSmall, {option + "=1"}), 2, option + " is not available");
   }
   expect_failure(folder, {"view", "a.ply"}, 2, "view is not available");
   expect_failure(folder, mesh(kSmall, {"--normals", "quadric"}), 2, "--normals quadric is not available");
+}
+
+TEST(CliUsage, NumbersOfTrianglesAreChecked) {
+  const files::Folder folder;
+  expect_failure(folder, mesh(kSmall, {"--triangles", "0"}), 2, "--triangles");
+  expect_failure(folder, mesh(kSmall, {"--ratio", "1.5"}), 2, "--ratio");
+  expect_failure(folder, mesh(kSmall, {"--ratio", "0"}), 2, "--ratio");
+  expect_failure(folder, mesh(kSmall, {"--ratio", "0.5", "--triangles", "100"}), 2, "excludes");
 }
 
 TEST(CliUsage, InputsAreNeverWrittenOver) {

@@ -3,7 +3,9 @@
 
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -286,6 +288,46 @@ TEST(CliSimplify, MakesAMeshSmallerWithinTheDistanceAsked) {
       true);
   EXPECT_NE(succeed(folder, {"compare", "full.ply", "small.obj", "--samples", "500"}).out.find("RMS"),
             std::string::npos);
+}
+
+TEST(CliMesh, StopsAtANumberOfTriangles) {
+  const files::Folder folder;
+  const std::vector<std::string> mesh{
+      "mesh", "generate:noise:24x24x40:uint8", "--iso", "127.5", "-o", "out.ply", "--report", "out.json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), mesh.begin(), mesh.end());
+    succeed(folder, more);
+    return json_file(folder / "out.json");
+  };
+  const Json full = with({"--error", "0"});
+  const Json number = with({"--triangles", "5001", "--slab", "3"});
+  EXPECT_TRUE(number.at("triangles") == 5001 || number.at("triangles") == 5000);
+  EXPECT_GT(number.at("error").get<double>(), 0);
+  EXPECT_EQ(number.at("target").at("triangles"), 5001);
+  const double ratio = 5001.2 / full.at("triangles").get<double>();
+  EXPECT_EQ(with({"--ratio", std::to_string(ratio)}).at("digest"), number.at("digest"));
+  // Whichever stops first.
+  EXPECT_EQ(with({"--triangles", "5001", "--error", "50vox"}).at("digest"), number.at("digest"));
+  EXPECT_EQ(with({"--triangles", "5", "--error", "0.05vox"}).at("digest"), with({"--error", "0.05vox"}).at("digest"));
+  const Result least = succeed(folder, {"simplify", "out.ply", "-o", "least.ply", "--triangles", "1"});
+  EXPECT_NE(least.err.find("no other collapse keeps the topology"), std::string::npos) << least.err;
+}
+
+TEST(CliMesh, ARunToANumberOfTrianglesCanBeResumed) {
+  const files::Folder folder;
+  const std::vector<std::string> mesh{
+      "mesh",    "generate:noise:24x24x60:uint8", "--iso", "127.5", "-o", "out.ply", "--triangles", "3000", "--report",
+      "out.json"};
+  succeed(folder, mesh);
+  const Json expected = json_file(folder / "out.json");
+  std::vector<std::string> cut = mesh;
+  cut.insert(cut.end(), {"--checkpoint", "run", "--every", "2layers", "--slab", "2"});
+  program::Setup setup;
+  setup.signal = SIGINT;
+  setup.ready = [&](pid_t) { return std::filesystem::exists(folder / "run/state-1"); };
+  const Result result = run(folder.path(), cut, std::move(setup));
+  if (result.code == 130) succeed(folder, {"mesh", "--resume", "run", "--report", "out.json"});
+  EXPECT_EQ(json_file(folder / "out.json").at("digest"), expected.at("digest"));
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#include "stop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "options.hpp"
+
+namespace isoweave::cli {
+
+void add_stop_options(CLI::App& verb, StopOptions& stop) {
+  verb.add_option("--error", stop.error,
+                  "Simplification error: a length in vox, mm, um, nm or the input's unit; 0: none");
+  CLI::Option* const triangles =
+      verb.add_option("--triangles", stop.triangles, "Stop at this number of triangles, if the error does not before");
+  verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
+      ->excludes(triangles);
+}
+
+Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
+  if (stop.error.empty() && stop.has_number()) return {std::numeric_limits<double>::infinity(), false};
+  return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
+}
+
+std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
+  if (!stop.triangles.empty()) return static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
+  if (stop.ratio.empty()) return 0;
+  const double ratio = parse_number("--ratio", stop.ratio);
+  if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
+  return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
+}
+
+std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {
+  if (!stop.has_number()) return "error " + (stop.error.empty() ? usual : stop.error);
+  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles);
+}
+
+}  // namespace isoweave::cli
