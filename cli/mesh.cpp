@@ -300,7 +300,9 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);
-  if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g} {}", report.error, info.geometry.unit));
+  if (options.triangles > 0)
+    print_note(fmt::format("error reached: {:.4g}{}{}", report.error, info.geometry.unit.empty() ? "" : " ",
+                           info.geometry.unit));
   const auto slices = static_cast<double>(info.dims[2]);
   print_summary(report, arguments.output.name(), static_cast<double>(info.slice_samples()) * slices,
                 forecast ? &*forecast : nullptr);
