@@ -122,8 +122,9 @@ struct MeshReport {
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
 // and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, Interrupted, and
-// std::invalid_argument for options out of range (a NaN iso, a negative error). Memory: slab plus undecided zone. With
-// a checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in
+// std::invalid_argument for options out of range (a NaN iso, a negative error); BadInput also when the volume's file
+// has another size or time of change in the end than in the beginning. Memory: slab plus undecided zone. With a
+// checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in
 // the middle. Resuming gives the same mesh, for any threads, schedule and slab; throws BadInput when the state was
 // saved by another version, for another volume or with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});

@@ -60,6 +60,7 @@ class VolumeSweep {
       if (state_is_due()) save_state();
     }
     finish_report();
+    check_unchanged();
     Stopwatch finishing;
     wait_for_sink();
     sink_.finish();
@@ -245,6 +246,12 @@ class VolumeSweep {
   void wait_for_sink() {
     output_.wait();
     full_output_.wait();
+  }
+
+  // What was read of a file that somebody wrote meanwhile may be of two volumes.
+  void check_unchanged() const {
+    if (identity_of(volume_, options_).volume == identity_.volume) return;
+    throw BadInput(volume_.path + ": expected a file that stays as it is while it is read, found it changed");
   }
 
   bool saves() const { return !control_.checkpoint.folder.empty(); }

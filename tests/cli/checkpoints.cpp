@@ -65,7 +65,7 @@ TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
   int kills = 0;
   for (int trial = 0; trial < 5; ++trial) {
     const files::Folder folder;
-    std::vector<std::string> arguments = mesh({"--checkpoint", "run", "--every", "4layers", "--slab", "4"});
+    std::vector<std::string> arguments = mesh({"--checkpoint", "run", "--every", "10layers", "--slab", "5"});
     for (int part = 0; part < 100; ++part) {
       const std::chrono::milliseconds patience(10 * part);  // a busy machine must come to an end, too
       const Result result = run(folder.path(), arguments, after(folder, SIGKILL, random_delay(random) + patience));

@@ -1,6 +1,8 @@
 // A run that is cut off and resumed makes the mesh of a run that is not.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "files.hpp"
 #include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
@@ -330,6 +332,29 @@ TEST(Checkpoints, ASinkInMemoryCannotBeContinued) {
   control.checkpoint.folder = folder.path();
   testing::MemorySink sink;
   EXPECT_THROW(mesh_volume(*generate_volume(surface.volume), sink, mesh_options(surface), control), std::logic_error);
+}
+
+TEST(Sweep, AFileThatIsWrittenWhileItIsReadIsAnError) {
+  const files::Folder folder;
+  const std::string path = folder / "cube_8x8x16_uint8.raw";
+  files::write_bytes(path, std::string(8 * 8 * 16, '\x01'));
+  for (const bool disturbed : {false, true}) {
+    MeshOptions options;
+    options.iso = 0.5;
+    options.slab = 2;
+    RunControl control;
+    control.progress = [&](const Progress& progress) {
+      if (disturbed && progress.layer == 2) std::ofstream(path, std::ios::app | std::ios::binary) << 'x';
+    };
+    testing::MemorySink sink;
+    const auto volume = open_volume(path);
+    if (disturbed) {
+      EXPECT_THROW(mesh_volume(*volume, sink, options, control), BadInput);
+    } else {
+      mesh_volume(*volume, sink, options, control);
+    }
+    EXPECT_NE(sink.finished, disturbed);
+  }
 }
 
 }  // namespace
