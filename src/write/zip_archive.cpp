@@ -133,7 +133,7 @@ std::vector<std::byte> deflate_block(std::string_view text, bool last) {
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());  // NOLINT: zlib's bytes
   stream.avail_out = static_cast<uInt>(packed.size());
   ::deflate(&stream, last ? Z_FINISH : Z_FULL_FLUSH);
-  packed.resize(packed.size() - stream.avail_out);
+  packed.erase(packed.begin() + static_cast<std::ptrdiff_t>(stream.total_out), packed.end());
   ::deflateEnd(&stream);
   return packed;
 }
