@@ -37,11 +37,7 @@ void expect_failure(const files::Folder& folder, const std::vector<std::string>&
   SCOPED_TRACE(joined(arguments));
   const std::vector<std::string> before = listing(folder);
   const Result result = run(folder.path(), arguments, setup);
-  EXPECT_EQ(result.code, code) << result.err;
-  EXPECT_EQ(result.signal, 0);
-  EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
-  EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
-  EXPECT_EQ(result.out, "");
+  program::expect_failed(result, code, says);
   EXPECT_EQ(listing(folder), before);
 }
 

@@ -28,11 +28,7 @@ std::vector<std::string> mesh(const std::vector<std::string>& more) {
 void expect_failure(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
                     const std::string& says, const program::Setup& setup = {}) {
   const Result result = run(folder.path(), arguments, setup);
-  EXPECT_EQ(result.code, code) << result.err;
-  EXPECT_EQ(result.signal, 0);
-  EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
-  EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
-  EXPECT_EQ(result.out, "");
+  program::expect_failed(result, code, says);
   EXPECT_EQ(listing(folder), std::vector<std::string>{});
 }
 

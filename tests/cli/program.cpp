@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -91,6 +92,14 @@ bool is_one_line(const std::string& text) {
 }
 
 std::vector<std::string> listing(const files::Folder& folder) { return listing(folder.path()); }
+
+void expect_failed(const Result& result, int code, const std::string& says) {
+  EXPECT_EQ(result.code, code) << result.err;
+  EXPECT_EQ(result.signal, 0);
+  EXPECT_TRUE(is_one_line(result.err)) << result.err;
+  EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+  EXPECT_EQ(result.out, "");
+}
 
 std::vector<std::string> listing(const std::string& folder) {
   std::vector<std::string> names;

@@ -36,6 +36,9 @@ Result run(const std::string& folder, const std::vector<std::string>& arguments,
 // Exactly one line, from the program.
 bool is_one_line(const std::string& text);
 
+// It ended with this exit code and one line that says so.
+void expect_failed(const Result& result, int code, const std::string& says);
+
 // Names of all entries, hidden ones too, sorted.
 std::vector<std::string> listing(const std::string& folder);
 std::vector<std::string> listing(const files::Folder& folder);
