@@ -20,7 +20,7 @@ inline Index standing_half_edge(const Zone& zone, Index h) {
 // complete surfaces.
 inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t most_removed = ~std::uint64_t{0}) {
   using Entry = std::tuple<CostBits, std::uint64_t, Index>;
-  const CostBits retire = zone.options().retire;
+  const CostBits retire = zone.options.retire;
   std::set<Entry> live;
   std::vector<Entry> entry(4 * std::size_t{zone.triangle_count()});
   const auto offer = [&](Index h) {
@@ -57,7 +57,7 @@ using Key = std::pair<CostBits, std::uint64_t>;
 // least m1 over its closed ring, and an edge is safe when its key is m2 at both ends.
 inline std::vector<Index> safe_edges(const Zone& zone) {
   constexpr Key kNothing{0xffffffffu, ~std::uint64_t{0}};
-  const CostBits retire = zone.options().retire;
+  const CostBits retire = zone.options.retire;
   std::vector<Key> m1(zone.vertices.size(), kNothing);
   for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
     if ((h & 3) == 3) continue;

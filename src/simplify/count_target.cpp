@@ -73,7 +73,7 @@ CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, std::
 void CountTarget::thin_out() {
   for (std::uint64_t held = simplifier_.triangles(); held > most_held_;) {
     const CostBits limit = limit_that_leaves(target_);
-    if (limit <= simplifier_.zone().limit()) return;
+    if (limit <= simplifier_.zone().limit) return;
     raise_limit(limit);
     const std::uint64_t before = held;
     held = simplifier_.triangles();
@@ -84,10 +84,10 @@ void CountTarget::thin_out() {
 void CountTarget::finish() {
   while (simplifier_.triangles() > target_ + kInOrder) {
     const CostBits limit = limit_within((simplifier_.triangles() - target_) / 2);
-    if (limit <= simplifier_.zone().limit()) break;
+    if (limit <= simplifier_.zone().limit) break;
     raise_limit(limit);
   }
-  simplifier_.zone().raise_limit(simplifier_.zone().options().retire);
+  simplifier_.zone().raise_limit(simplifier_.zone().options.retire);
   reached_ = std::max(reached_, simplifier_.decide_in_order(target_));
   simplifier_.zone().retire_all();
 }
@@ -96,7 +96,7 @@ void CountTarget::finish() {
 CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
   const Zone& zone = simplifier_.zone();
   const std::uint64_t gone = simplifier_.triangles() - simplifier_.live_triangles();
-  if (triangles <= gone) return zone.options().retire;
+  if (triangles <= gone) return zone.options.retire;
   const CostHistogram histogram = histogram_of(zone, executor_, [&](Index t, CostHistogram& own) {
     CostBits least = kRetiredCost;
     for (const HalfEdge& side : zone.triangles[t].sides) {
@@ -104,7 +104,7 @@ CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
     }
     own.add(least);
   });
-  return std::min(histogram.highest_with_beyond(triangles - gone), zone.options().retire);
+  return std::min(histogram.highest_with_beyond(triangles - gone), zone.options.retire);
 }
 
 // The highest limit within which so many edges lie.
@@ -115,7 +115,7 @@ CostBits CountTarget::limit_within(std::uint64_t edges) const {
       if (zone.represents_edge(h)) own.add(std::min(zone.cost(h), kRetiredCost));
     }
   });
-  return std::min(histogram.highest_with_below(edges), zone.options().retire);
+  return std::min(histogram.highest_with_below(edges), zone.options.retire);
 }
 
 void CountTarget::raise_limit(CostBits limit) {

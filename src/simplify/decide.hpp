@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <utility>
 
 #include "isoweave/simplify_options.hpp"
+#include "parallel/atomics.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/star.hpp"
 
@@ -17,7 +17,7 @@ struct DecisionCounts {
   std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
   std::uint64_t removed = 0;    // triangles
 
-  void operator+=(const DecisionCounts& other) {
+  ISOWEAVE_HD void operator+=(const DecisionCounts& other) {
     collapses += other.collapses;
     postponed += other.postponed;
     rekeyed += other.rekeyed;
@@ -26,15 +26,17 @@ struct DecisionCounts {
 };
 
 // Decides edges of a zone, one after the other. Reads and writes the two stars of an edge only: deciders in different
-// threads may work on the same zone as long as the stars of their edges share no triangle.
-class Decider {
+// threads may work on the same zone as long as the stars of their edges share no triangle. Arithmetic is how several
+// faces or edges are computed at once: every kind gives the same bits.
+template <class Arithmetic>
+class BasicDecider {
  public:
-  Decider(Zone& zone, Quality quality) : zone_(zone), quality_(quality) {}
+  ISOWEAVE_HD BasicDecider(const ZoneView& zone, Quality quality) : zone_(zone), quality_(quality) {}
 
   // Gathers the stars of the edge's ends, one after the other, and shows them to see(star) until that answers false.
   // Tells whether it never did; then the stars stay for decide().
   template <class See>
-  bool look_at(Index half_edge, const See& see) {
+  ISOWEAVE_HD bool look_at(Index half_edge, const See& see) {
     edge_ = half_edge;
     Index to_v = half_edge;
     Index to_u = zone_.twin(half_edge);
@@ -42,8 +44,8 @@ class Decider {
     Index v = zone_.destination(half_edge);
     if (!exists(to_u)) to_u = zone_.vertices[v].half_edge;
     if (zone_.vertices[v].id < zone_.vertices[u].id) {
-      std::swap(u, v);
-      std::swap(to_u, to_v);
+      swap_indices(u, v);
+      swap_indices(to_u, to_v);
     }
     u_.gather(zone_, u, to_v);
     if (!see(u_)) return false;
@@ -51,41 +53,65 @@ class Decider {
     return see(v_);
   }
 
-  void look_at(Index half_edge) {
+  ISOWEAVE_HD void look_at(Index half_edge) {
     look_at(half_edge, [](const Star&) { return true; });
   }
 
-  const Star& first() const { return u_; }
-  const Star& second() const { return v_; }
+  ISOWEAVE_HD const Star& first() const { return u_; }
+  ISOWEAVE_HD const Star& second() const { return v_; }
 
   // Decides the edge looked at, whose key must be the smallest of all live edges that conflict with it. Afterwards
   // changed() lists the edges whose keys changed.
-  void decide();
+  ISOWEAVE_HD void decide();
 
-  const std::array<Index, Star::kRoom>& changed() const { return changed_; }
-  int changed_count() const { return changed_count_; }
+  ISOWEAVE_HD const std::array<Index, Star::kRoom>& changed() const { return changed_; }
+  ISOWEAVE_HD int changed_count() const { return changed_count_; }
 
   // After a collapse: the key that the n-th of them had, the smaller one where two edges have become one.
-  Key key_before(std::size_t n) const { return before_[n]; }
+  ISOWEAVE_HD Key key_before(std::size_t n) const { return before_[n]; }
 
-  bool collapsed() const { return collapsed_; }  // second()'s vertex is gone then, and first()'s has the merged star
-  const Star& merged() const { return merged_; }
-  const DecisionCounts& counts() const { return counts_; }
+  ISOWEAVE_HD bool collapsed() const {
+    return collapsed_;
+  }  // second()'s vertex is gone then, and first()'s has the merged star
+  ISOWEAVE_HD const Star& merged() const { return merged_; }
+  ISOWEAVE_HD const DecisionCounts& counts() const { return counts_; }
 
  private:
-  bool topology_allows();
-  bool keeps_sides(Vec3 x) const;
-  Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
-  bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
-  void raise_key(CostBits cost);
-  void collapse(Vec3 x);
-  void join_rings();
-  void merge_sides(Index h);
-  void update_keys(CostBits collapse_cost);
+  using Fan = typename Arithmetic::Fan;
 
-  Zone& zone_;
+  static constexpr CostBits kTried = 0xffffffffu;  // above every limit
+
+  // An edge goes back when its full cost exceeds its key by this factor.
+  ISOWEAVE_HD static constexpr float refinement_limit(Quality quality) {
+    return quality == Quality::kFine ? 1.0F : 4.0F;
+  }
+
+  ISOWEAVE_HD static void swap_indices(Index& a, Index& b) {
+    const Index before = a;
+    a = b;
+    b = before;
+  }
+
+  // Faces that hold both ends of the edge: they go when it collapses.
+  ISOWEAVE_HD static void drop_shared_faces(const Star& star, Index other, Fan& fan) {
+    const std::size_t place = star.place_of(other);
+    fan.drop(place);
+    fan.drop(place > 0 ? place - 1 : star.count() - 1);
+  }
+
+  ISOWEAVE_HD bool topology_allows();
+  ISOWEAVE_HD bool keeps_sides(Vec3 x) const;
+  ISOWEAVE_HD Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
+  ISOWEAVE_HD bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  ISOWEAVE_HD void raise_key(CostBits cost);
+  ISOWEAVE_HD void collapse(Vec3 x);
+  ISOWEAVE_HD void join_rings();
+  ISOWEAVE_HD void merge_sides(Index h);
+  ISOWEAVE_HD void update_keys(CostBits collapse_cost);
+
+  const ZoneView& zone_;
   Quality quality_;
-  const Kernels& kernels_ = kernels();
+  [[no_unique_address]] Arithmetic arithmetic_;
   Index edge_ = kNone;
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
   Star merged_;
@@ -97,5 +123,213 @@ class Decider {
   bool collapsed_ = false;
   DecisionCounts counts_;
 };
+
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
+  changed_count_ = 0;
+  collapsed_ = false;
+  const CostBits key = zone_.cost(edge_);
+  if (u_.overflow || v_.overflow || !topology_allows()) {
+    ++counts_.postponed;
+    raise_key(postponed_cost(key));
+    return;
+  }
+  const Vertex& u = zone_.vertices[u_.vertex];
+  const Vertex& v = zone_.vertices[v_.vertex];
+  edge_vector_ = v.position - u.position;
+  arithmetic_.measure(zone_, u_, u_fan_);
+  arithmetic_.measure(zone_, v_, v_fan_);
+  drop_shared_faces(v_, u_.vertex, v_fan_);
+  Quadric full;
+  Vec3 best;
+  CostBits limit = key;
+  if (quality_ == Quality::kFast) {
+    full = u.quadric + moved(v.quadric, -edge_vector_);
+    best = minimiser(full, factorise(full), 0.5 * edge_vector_);
+  } else {
+    const double a0 = zone_.options.a0;
+    const double weight = 1 / (2 * a0 * a0);
+    const FaceSums u_sums = arithmetic_.sum_faces(u_fan_, u_.count(), weight);
+    const FaceSums v_sums = arithmetic_.sum_faces(v_fan_, v_.count(), weight);
+    full = u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_);
+    best = best_place(full, u_sums.normal + v_sums.normal, dot(v_sums.normal, edge_vector_));
+    limit = cost_bits(refinement_limit(quality_) * cost_value(key));
+    const CostBits cost = to_cost(evaluate(full, best));
+    if (cost > limit) {
+      ++counts_.rekeyed;
+      raise_key(cost);
+      return;
+    }
+  }
+  drop_shared_faces(u_, v_.vertex, u_fan_);
+  Vec3 x;
+  if (!place(full, best, limit, x)) {
+    ++counts_.postponed;
+    raise_key(postponed_cost(key));
+    return;
+  }
+  ++counts_.collapses;
+  collapsed_ = true;
+  collapse(x);
+  update_keys(key);
+}
+
+// Link condition (Dey, Edelsbrunner, Guha and Nekhayev, 1999), border and valence rules.
+template <class Arithmetic>
+ISOWEAVE_HD bool BasicDecider<Arithmetic>::topology_allows() {
+  const bool border_edge = !exists(zone_.twin(edge_));
+  if (u_.border && v_.border && !border_edge) return false;
+  const int opposite = border_edge ? 1 : 2;
+  if (u_.neighbours + v_.neighbours - 2 - opposite > kMaxValence) return false;
+  if (arithmetic_.count_common(u_, v_) != opposite) return false;
+  // What is left to exclude: both ends only see each other and the opposite vertices. Then the surface is a tetrahedron
+  // (both stars hold the face over the opposite vertices), or, on a border, a single triangle.
+  return !(u_.neighbours == opposite + 1 && v_.neighbours == opposite + 1 && u_.border == v_.border);
+}
+
+// Of the faces that are left.
+template <class Arithmetic>
+ISOWEAVE_HD bool BasicDecider<Arithmetic>::keeps_sides(Vec3 x) const {
+  return arithmetic_.keeps_sides(u_fan_, u_.count(), x) &&
+         arithmetic_.keeps_sides(v_fan_, v_.count(), x - edge_vector_);
+}
+
+// Where the full cost is least among the points x (gradient . x = offset) that keep the enclosed volume when the edge
+// shrinks to x (Lindstrom and Turk, 1998).
+template <class Arithmetic>
+ISOWEAVE_HD Vec3 BasicDecider<Arithmetic>::best_place(const Quadric& full, Vec3 gradient, double offset) const {
+  const Factors<double> factors = factorise(full);
+  const Vec3 best = minimiser(full, factors, 0.5 * edge_vector_);
+  const Vec3 response = solve(factors, gradient);
+  const double strength = dot(gradient, response);
+  return strength > 0 ? best + ((offset - dot(gradient, best)) / strength) * response : best;
+}
+
+// The first position that keeps every face on its side: the best one, then the two ends and the midpoint, cheapest
+// first, as long as they cost no more than the limit.
+template <class Arithmetic>
+ISOWEAVE_HD bool BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
+  x = best;
+  if (keeps_sides(x)) return true;
+  const Vec3 places[3] = {Vec3{}, edge_vector_, 0.5 * edge_vector_};
+  CostBits costs[3];
+  for (int n = 0; n < 3; ++n) costs[n] = to_cost(evaluate(q, places[n]));
+  for (int tried = 0; tried < 3; ++tried) {
+    int cheapest = 0;
+    for (int n = 1; n < 3; ++n) cheapest = costs[n] < costs[cheapest] ? n : cheapest;
+    if (costs[cheapest] > limit) return false;
+    x = places[cheapest];
+    if (keeps_sides(x)) return true;
+    costs[cheapest] = kTried;
+  }
+  return false;
+}
+
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::raise_key(CostBits cost) {
+  zone_.set_cost(edge_, cost);
+  changed_[static_cast<std::size_t>(changed_count_++)] = edge_;
+}
+
+// Takes out the triangle of half-edge h, one of the two at the edge: its two other edges become one, which keeps
+// the identity of the one with the smaller key.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_sides(Index h) {
+  const Index a = next(h);
+  const Index b = previous(h);
+  const Index outer_a = zone_.twin(a);
+  const Index outer_b = zone_.twin(b);
+  const Index least = zone_.comes_before(a, b) ? a : b;
+  const Key key = zone_.key(least);
+  const std::uint32_t tie_low = zone_.tie_low(least);
+  const Index outer[2] = {outer_a, outer_b};
+  for (int n = 0; n < 2; ++n) {
+    if (!exists(outer[n])) continue;
+    zone_.half(outer[n]).twin = outer[1 - n];
+    zone_.half(outer[n]).key = key;
+    zone_.triangles[outer[n] >> 2].tie_low[outer[n] & 3] = tie_low;
+  }
+  // The opposite vertex may have started its walks here. Another collapse may look at the same vertex from its side.
+  Index& start = zone_.vertices[zone_.origin(b)].half_edge;
+  if (load_relaxed(start) == b) store_relaxed(start, outer_a);
+  zone_.remove_triangle(h >> 2);
+  ++counts_.removed;
+}
+
+// Merges the two ends into the vertex of u_, x away from where that was.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::collapse(Vec3 x) {
+  const Index back = zone_.twin(edge_);
+  for (int n = 0; n < v_.faces; ++n) {
+    zone_.half(v_.out[static_cast<std::size_t>(n)]).vertex = u_.vertex;
+  }
+  merge_sides(edge_);
+  if (exists(back)) merge_sides(back);
+
+  Vertex& merged = zone_.vertices[u_.vertex];
+  Vertex& gone = zone_.vertices[v_.vertex];
+  merged.quadric = moved(merged.quadric, x) + moved(gone.quadric, x - edge_vector_);
+  merged.position = merged.position + x;
+  gone.half_edge = kNone;
+  if (!zone_.normals.empty()) {
+    Point& normal = zone_.normals[u_.vertex];
+    for (std::size_t c = 0; c < 3; ++c) normal[c] += zone_.normals[v_.vertex][c];
+  }
+  join_rings();
+}
+
+// The star of the merged vertex: around u_ from the first opposite vertex to the second, and around v_ back to the
+// first.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::join_rings() {
+  Index& start = zone_.vertices[u_.vertex].half_edge;
+  if (u_.border || v_.border) {
+    start = kNone;
+    const Star* const stars[2] = {&u_, &v_};
+    for (const Star* star : stars) {
+      for (int n = 0; n < star->faces; ++n) {
+        const Index h = star->out[static_cast<std::size_t>(n)];
+        if (!zone_.alive(h)) continue;
+        if (start == kNone || !exists(zone_.twin(h))) start = h;
+      }
+    }
+    merged_.gather(zone_, u_.vertex);
+    return;
+  }
+  merged_.join(u_, v_);
+  start = merged_.out[0];
+}
+
+// Keys of the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key it
+// replaces, and lies behind the collapse that made it.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
+  const Star& star = merged_;
+  const Vertex& merged = zone_.vertices[star.vertex];
+  EdgeEnds ends[Star::kRoom];
+  CostBits costs[Star::kRoom];
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < star.count(); ++n) {
+    const Index h = n == static_cast<std::size_t>(star.faces) ? previous(star.out[n - 1]) : star.out[n];
+    const Key before = zone_.key(h);
+    const Vertex* const both[2] = {&merged, &zone_.vertices[star.neighbour[n]]};
+    const std::size_t first = both[1]->id < merged.id;
+    changed_[count] = h;
+    before_[count] = before;
+    ends[count] = {both[first], both[1 - first]};
+    count += cost_of(before) <= zone_.options.retire;
+  }
+  changed_count_ = static_cast<int>(count);
+  arithmetic_.edge_costs({ends, count}, costs);
+  for (std::size_t n = 0; n < count; ++n) {
+    CostBits cost = cost_of(before_[n]);
+    if (cost < collapse_cost + 1) cost = collapse_cost + 1;
+    if (cost < costs[n]) cost = costs[n];
+    zone_.set_cost(changed_[n], cost);
+  }
+}
+
+using Decider = BasicDecider<VectorArithmetic>;
+extern template class BasicDecider<VectorArithmetic>;
 
 }  // namespace isoweave

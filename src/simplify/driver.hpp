@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "parallel/parallel.hpp"
 #include "simplify/decide.hpp"
+#include "simplify/zone.hpp"
 
 namespace isoweave {
 
@@ -24,5 +26,11 @@ class Driver {
   // Passes over lists of vertices or edges so far.
   virtual std::uint64_t rounds() const = 0;
 };
+
+// Turns of all vertices.
+void give_all_turns(const Zone& zone);
+
+// Turns of the vertices whose edges got keys with the last append.
+void give_turns(const Zone& zone, const Executor& executor);
 
 }  // namespace isoweave

@@ -8,12 +8,6 @@ const Kernels& portable_kernels();
 const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();
 
-void measure(const Zone& zone, Star& star, Fan& fan) {
-  star.pad(star.neighbour[star.border ? star.count() - 1 : 0]);
-  kernels().measure(zone.vertices.data(), zone.vertices[star.vertex].position, star.neighbour.data(), star.count(),
-                    fan);
-}
-
 std::span<const Kernels* const> all_kernels() {
   static const std::vector<const Kernels*> kAll = [] {
     std::vector<const Kernels*> list{&portable_kernels()};

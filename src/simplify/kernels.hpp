@@ -6,7 +6,6 @@
 #include <span>
 
 #include "simplify/star.hpp"
-#include "simplify/zone.hpp"
 
 namespace isoweave {
 
@@ -53,13 +52,42 @@ struct Kernels {
   int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
 };
 
-// Fills the fan of a star that is not too large.
-void measure(const Zone& zone, Star& star, Fan& fan);
-
 // The best for this processor.
 const Kernels& kernels();
 
 // All that this processor can run, the best last.
 std::span<const Kernels* const> all_kernels();
+
+// The kernels applied to stars.
+class VectorArithmetic {
+ public:
+  using Fan = isoweave::Fan;
+
+  // Fills the fan of a star that is not too large.
+  void measure(const ZoneView& zone, Star& star, Fan& fan) const {
+    star.pad(star.neighbour[star.border ? star.count() - 1 : 0]);
+    kernels_.measure(zone.vertices.data(), zone.vertices[star.vertex].position, star.neighbour.data(), star.count(),
+                     fan);
+  }
+
+  FaceSums sum_faces(const Fan& fan, std::size_t slots, double weight) const {
+    return kernels_.sum_faces(fan, slots, weight);
+  }
+
+  bool keeps_sides(const Fan& fan, std::size_t slots, Vec3 move) const {
+    return kernels_.keeps_sides(fan, slots, move);
+  }
+
+  // Neighbours that two stars have in common.
+  int count_common(const Star& a, Star& b) const {
+    b.pad(kNone);
+    return kernels_.count_common({a.neighbour.data(), a.count()}, b.neighbour.data(), b.count());
+  }
+
+  void edge_costs(std::span<const EdgeEnds> edges, CostBits* costs) const { kernels_.edge_costs(edges, costs); }
+
+ private:
+  const Kernels& kernels_ = kernels();
+};
 
 }  // namespace isoweave

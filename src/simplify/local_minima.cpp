@@ -262,7 +262,7 @@ bool LocalMinima::stands_for_pair(Index v) const {
 void LocalMinima::group_by_place() {
   constexpr std::uint32_t kColumns = 32;
   static_assert(kColumns * kColumns == kPlaces);
-  const double side = kPlaceSide * std::sqrt(zone_.options().a0);
+  const double side = kPlaceSide * std::sqrt(zone_.options.a0);
   const auto column = [&](double p) {
     const double number = std::clamp(std::floor(p / side), -1e15, 1e15);  // a mesh file may be anywhere
     return static_cast<std::uint32_t>(static_cast<std::int64_t>(number)) % kColumns;

@@ -21,7 +21,7 @@ void Queue::offer_live_edges() {
   flags_.assign(zone_.vertices.size(), 0);
   for (Index t = 0; t < zone_.triangle_count(); ++t) {
     for (Index h = half_edge(t, 0); h <= half_edge(t, 2); ++h) {
-      if (!zone_.alive(h) || zone_.cost(h) > zone_.limit()) continue;
+      if (!zone_.alive(h) || zone_.cost(h) > zone_.limit) continue;
       if (zone_.cost(h) == kUnknownCost) {
         flags_[zone_.origin(h)] = 1;
         flags_[zone_.destination(h)] = 1;
@@ -51,7 +51,7 @@ void Queue::decide_group() {
     if (removed() >= most_removed_) return;
     for (int n = 0; n < decider_.changed_count(); ++n) {
       const Index changed = decider_.changed()[static_cast<std::size_t>(n)];
-      if (zone_.cost(changed) > zone_.limit()) continue;
+      if (zone_.cost(changed) > zone_.limit) continue;
       const Index other = zone_.twin(changed);
       heap_.push(zone_.cost(changed), exists(other) ? std::min(changed, other) : changed);
     }

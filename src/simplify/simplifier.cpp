@@ -81,7 +81,7 @@ std::vector<Index> Simplifier::name_final_vertices() {
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
           VertexState& state = zone_.states[v];
-          undecided_[v] = state == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= zone_.options().retire;
+          undecided_[v] = state == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= zone_.options.retire;
           if (undecided_[v] || state == VertexState::kFinal) continue;
           if (zone_.walkable(v)) list.push_back(v);
           state = VertexState::kFinal;

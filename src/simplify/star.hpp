@@ -1,10 +1,10 @@
 // The faces around a vertex.
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <cstring>
 
-#include "simplify/zone.hpp"
+#include "simplify/zone_view.hpp"
 
 namespace isoweave {
 
@@ -25,46 +25,47 @@ struct Star {
   std::array<Index, kRoom> neighbour;
 
   // A closed star starts with half-edge `start`, an open one at its border.
-  void gather(const Zone& zone, Index v, Index start) {
+  ISOWEAVE_HD void gather(const ZoneView& zone, Index v, Index start) {
     vertex = v;
     walk(zone, start);
     if (border && start != zone.vertices[v].half_edge) walk(zone, zone.vertices[v].half_edge);
   }
 
-  void gather(const Zone& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }
+  ISOWEAVE_HD void gather(const ZoneView& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }
 
   // The star that is left of two closed ones that start at the edge between them, when that edge collapses into the
   // vertex of a: from the first opposite vertex around a to the second, and around b back to the first. Copies of fixed
   // size: how many there are cannot be predicted.
-  void join(const Star& a, const Star& b) {
+  ISOWEAVE_HD void join(const Star& a, const Star& b) {
     vertex = a.vertex;
-    const int from_a = a.faces - 2;
-    faces = neighbours = from_a + b.faces - 2;
+    const auto from_a = static_cast<std::size_t>(a.faces - 2);
+    faces = neighbours = a.faces + b.faces - 4;
     border = overflow = false;
-    std::copy_n(a.out.begin() + 1, kCapacity, out.begin());
-    std::copy_n(a.neighbour.begin() + 1, kCapacity, neighbour.begin());
-    std::copy_n(b.out.begin() + 1, kCapacity, out.begin() + from_a);
-    std::copy_n(b.neighbour.begin() + 1, kCapacity, neighbour.begin() + from_a);
+    constexpr std::size_t kBytes = kCapacity * sizeof(Index);
+    memcpy(&out[0], &a.out[1], kBytes);
+    memcpy(&neighbour[0], &a.neighbour[1], kBytes);
+    memcpy(&out[from_a], &b.out[1], kBytes);
+    memcpy(&neighbour[from_a], &b.neighbour[1], kBytes);
   }
 
   // The neighbour's place in the list.
-  std::size_t place_of(Index w) const {
+  ISOWEAVE_HD std::size_t place_of(Index w) const {
     std::size_t n = 0;
     while (neighbour[n] != w) ++n;
     return n;
   }
 
   // What lies past the last neighbour, so that loops can take whole vectors.
-  void pad(Index with) {
+  ISOWEAVE_HD void pad(Index with) {
     for (std::size_t n = 0; n < kPadding; ++n) neighbour[count() + n] = with;
   }
 
-  std::size_t count() const { return static_cast<std::size_t>(neighbours); }
+  ISOWEAVE_HD std::size_t count() const { return static_cast<std::size_t>(neighbours); }
 
   // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
   // never did.
   template <class Visit>
-  bool each_neighbour(const Zone& zone, const Visit& visit) const {
+  ISOWEAVE_HD bool each_neighbour(const ZoneView& zone, const Visit& visit) const {
     for (int n = 0; n < neighbours; ++n) {
       if (!visit(neighbour[static_cast<std::size_t>(n)])) return false;
     }
@@ -79,7 +80,7 @@ struct Star {
   }
 
  private:
-  void walk(const Zone& zone, Index start) {
+  ISOWEAVE_HD void walk(const ZoneView& zone, Index start) {
     const HalfEdge* const halves = &zone.half(0);
     Index h = start;
     std::size_t n = 0;

@@ -60,16 +60,28 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   settle_edges(first_triangle, executor);
 }
 
+// To be called when an array has changed its size.
+void Zone::show_arrays() {
+  const auto show = [](auto& view, auto& array) { view = {array.data(), array.size()}; };
+  show(vertices, vertex_array_);
+  show(states, state_array_);
+  show(normals, normal_array_);
+  show(turn_keys, turn_key_array_);
+  show(turns, turn_array_);
+  show(triangles, triangle_array_);
+}
+
 void Zone::forget_turns() {
-  turn_keys.resize(vertices.size());
-  turns.resize(vertices.size());
+  turn_key_array_.resize(vertex_array_.size());
+  turn_array_.resize(vertex_array_.size());
+  show_arrays();
   std::fill(turn_keys.begin(), turn_keys.end(), make_key(kRetiredCost, 0));
   std::fill(turns.begin(), turns.end(), Turn());
   turns_forgotten_ = true;
 }
 
-void Zone::raise_limit(CostBits limit) {
-  limit_ = limit;
+void Zone::raise_limit(CostBits new_limit) {
+  limit = new_limit;
   forget_turns();
   turns_forgotten_ = false;
   settled.clear();
@@ -101,11 +113,12 @@ void Zone::list_settled(Index end) {
 void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   const std::size_t first = vertices.size();
   const std::size_t end = first + piece.positions.size();
-  vertices.resize(end);
-  states.resize(end);
-  turn_keys.resize(end);
-  turns.resize(end);
-  normals.insert(normals.end(), piece.normals.begin(), piece.normals.end());
+  vertex_array_.resize(end);
+  state_array_.resize(end);
+  turn_key_array_.resize(end);
+  turn_array_.resize(end);
+  normal_array_.insert(normal_array_.end(), piece.normals.begin(), piece.normals.end());
+  show_arrays();
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     const auto from = static_cast<std::size_t>(n);
     Vertex& vertex = vertices[first + from];
@@ -120,7 +133,8 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
 
 void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
   const Index first = triangle_count();
-  triangles.resize(first + piece.triangles.size());
+  triangle_array_.resize(first + piece.triangles.size());
+  show_arrays();
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
@@ -291,9 +305,10 @@ void Zone::start_at_border(Index v) {
 }
 
 Quadric Zone::face_planes(Star& star) const {
+  const VectorArithmetic arithmetic;
   Fan fan;
-  measure(*this, star, fan);
-  return kernels().sum_faces(fan, star.count(), initial_weight()).planes;
+  arithmetic.measure(*this, star, fan);
+  return arithmetic.sum_faces(fan, star.count(), initial_weight()).planes;
 }
 
 Quadric Zone::face_planes_one_by_one(Index v) const {
@@ -319,7 +334,7 @@ Quadric Zone::border_plane(Index v, Index other, Index face) const {
   const Vec3 side = vertices[other].position - vertices[v].position;
   const Vec3 across = cross(side, face_normal(face));
   const double size = dot(across, across);
-  return size > 0 ? plane_quadric(across, dot(side, side) / (options_.a0 * options_.a0 * size)) : Quadric();
+  return size > 0 ? plane_quadric(across, dot(side, side) / (options.a0 * options.a0 * size)) : Quadric();
 }
 
 // Edges that get their keys together.
@@ -362,7 +377,7 @@ bool Zone::settle_edge(Index h, EdgeBatch& batch) {
   const bool a_first = vertices[a].id < vertices[b].id;
   const Vertex* const u = &vertices[a_first ? a : b];
   const Vertex* const v = &vertices[a_first ? b : a];
-  const std::uint64_t tie = mix_bits(options_.numbering.edge_id(u->id, v->id));
+  const std::uint64_t tie = mix_bits(options.numbering.edge_id(u->id, v->id));
   for (const Index side : {h, twin(h)}) {
     if (exists(side)) triangles[side >> 2].tie_low[side & 3] = static_cast<std::uint32_t>(tie);
   }
@@ -384,10 +399,6 @@ void Zone::give_keys(EdgeBatch& batch) {
   batch.count = 0;
 }
 
-void Zone::remove_triangle(Index t) {
-  for (HalfEdge& side : triangles[t].sides) side.vertex = kNone;
-}
-
 void Zone::compact(const Executor& executor) {
   // A vertex is held as long as a triangle uses it, or will.
   std::vector<std::uint8_t> used(vertices.size(), 0);
@@ -407,29 +418,30 @@ void Zone::compact(const Executor& executor) {
   const auto move_vertex = [&](Index& v) {
     if (v != kNone) v = new_vertex[v];
   };
-  new_triangle.apply(triangles, [&](Triangle& triangle) {
+  new_triangle.apply(triangle_array_, [&](Triangle& triangle) {
     for (HalfEdge& side : triangle.sides) {
       move_vertex(side.vertex);
       move_half_edge(side.twin);
     }
   });
-  new_vertex.apply(vertices, [&](Vertex& vertex) { move_half_edge(vertex.half_edge); });
-  new_vertex.apply(turn_keys);
-  new_vertex.apply(turns, [&](Turn& turn) {
+  new_vertex.apply(vertex_array_, [&](Vertex& vertex) { move_half_edge(vertex.half_edge); });
+  new_vertex.apply(turn_key_array_);
+  new_vertex.apply(turn_array_, [&](Turn& turn) {
     move_half_edge(turn.edge);
     for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) move_vertex(*v);
   });
-  new_vertex.apply(states);
-  if (!normals.empty()) new_vertex.apply(normals);
+  new_vertex.apply(state_array_);
+  if (!normal_array_.empty()) new_vertex.apply(normal_array_);
+  show_arrays();
   for (Index& v : front_) move_vertex(v);
   for (Index& h : unkeyed_edges_) move_half_edge(h);
   settled.clear();
 }
 
 std::uint64_t Zone::bytes() const {
-  return vertices.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
-         turns.capacity() * (sizeof(Turn) + sizeof(Key)) + normals.capacity() * sizeof(Point) +
-         triangles.capacity() * sizeof(Triangle) +
+  return vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
+         turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
+         triangle_array_.capacity() * sizeof(Triangle) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }
 

@@ -1,0 +1,106 @@
+// Bulk rounds, pass by pass: what a device does with one thread for every item of a list, and the schedule `rounds` on
+// processors. Docs/determinism.md has the argument.
+//
+// A round: list the vertices near which something has changed; of their least edges pick those that are local minima;
+// decide all of these, as their stars share no triangle; renew the turns of the vertices touched, which are the list of
+// changes for the next round. The order of a list means nothing.
+#pragma once
+
+#include "simplify/decide.hpp"
+#include "simplify/turns.hpp"
+
+namespace isoweave {
+
+// Filled by many threads at once, read in the next pass.
+struct IndexList {
+  Index* items = nullptr;  // room for as many as can be pushed
+  std::uint32_t* size = nullptr;
+
+  ISOWEAVE_HD void push(Index item) const { items[fetch_add(*size, 1)] = item; }
+  ISOWEAVE_HD Index operator[](std::int64_t n) const { return items[n]; }
+};
+
+template <class Arithmetic>
+struct RoundPasses {
+  static constexpr std::uint32_t kCandidate = 1;
+  static constexpr std::uint32_t kChanged = 2;
+
+  ZoneView zone;
+  Quality quality = Quality::kNormal;
+  std::uint32_t* marks = nullptr;  // per vertex: the lists that hold it
+  IndexList changed;               // vertices whose turn is new
+  IndexList candidates;            // vertices whose least edge may have become a local minimum
+  IndexList minima;                // edges
+
+  // 1: candidates, from the n-th vertex changed: it and its neighbours.
+  ISOWEAVE_HD void list_candidates(std::int64_t n) const {
+    const Index v = changed[n];
+    list(v, kCandidate, candidates);
+    if (is_unknown(zone.turn_keys[v]) || !zone.walkable(v)) return;
+    Star star;
+    star.gather(zone, v);
+    star.each_neighbour(zone, [&](Index w) {
+      list(w, kCandidate, candidates);
+      return true;
+    });
+  }
+
+  // 2: the least edge of the n-th candidate, if it is a local minimum. An edge with two candidates for ends is looked
+  // at from the smaller one.
+  ISOWEAVE_HD void pick_minimum(std::int64_t n) const {
+    const Index v = candidates[n];
+    const Index edge = zone.turns[v].edge;
+    const Index other = other_end(zone, edge, v);
+    if (!same_turn(zone, v, other)) return;
+    if (other < v && (load_relaxed(marks[other]) & kCandidate) != 0) return;
+    if (comes_first(v, v) && comes_first(v, other)) minima.push(edge);
+  }
+
+  // 3: decides the n-th minimum, and lists the vertices at whose edges something has changed.
+  ISOWEAVE_HD void decide(std::int64_t n, DecisionCounts& counts) const {
+    BasicDecider<Arithmetic> decider(zone, quality);
+    decider.look_at(minima[n]);
+    decider.decide();
+    mark(decider.first().vertex, kChanged, changed);
+    mark(decider.second().vertex, kChanged, changed);
+    if (decider.collapsed()) {
+      decider.merged().each_neighbour(zone, [&](Index w) {
+        list(w, kChanged, changed);
+        return true;
+      });
+    }
+    counts += decider.counts();
+  }
+
+  // 4: the turn of the n-th vertex changed.
+  ISOWEAVE_HD void renew(std::int64_t n) const {
+    const Index v = changed[n];
+    store_relaxed(marks[v], 0);
+    if (!exists(zone.vertices[v].half_edge)) {
+      zone.turn_keys[v] = kNoTurn;
+    } else if (has_turn(zone, v)) {
+      renew_turn(zone, v);
+    }
+  }
+
+  // 4, too: candidates of the next round are listed anew.
+  ISOWEAVE_HD void forget_candidate(std::int64_t n) const { store_relaxed(marks[candidates[n]], 0); }
+
+ private:
+  ISOWEAVE_HD void mark(Index v, std::uint32_t as, const IndexList& in) const {
+    if ((fetch_or(marks[v], as) & as) == 0) in.push(v);
+  }
+
+  ISOWEAVE_HD void list(Index v, std::uint32_t as, const IndexList& in) const {
+    if (has_turn(zone, v)) mark(v, as, in);
+  }
+
+  // No neighbour of `end` has a turn that comes before v's.
+  ISOWEAVE_HD bool comes_first(Index v, Index end) const {
+    Star star;
+    star.gather(zone, end);
+    return star.each_neighbour(zone, [&](Index w) { return !earlier(zone, w, v); });
+  }
+};
+
+}  // namespace isoweave

@@ -1,0 +1,142 @@
+// The undecided zone as everyone who decides edges sees it, on the host and on a device: half-edge arrays that somebody
+// else owns.
+//
+// Half-edge h = 4 * triangle + corner runs from its vertex to the vertex of next(h); twin(h) runs back. A collapse
+// writes the triangles and vertices of the two stars only, so collapses whose stars share no triangle can run at the
+// same time. Nothing is freed between compactions: indices stay valid while edges are decided.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "isoweave/mesh.hpp"
+#include "parallel/host_device.hpp"
+#include "simplify/quadric.hpp"
+#include "simplify/rules.hpp"
+
+namespace isoweave {
+
+using Index = std::uint32_t;  // of a vertex, triangle or half-edge in the zone; a zone holds fewer than 2^30 triangles
+
+inline constexpr Index kNone = 0xffffffffu;     // no half-edge: a border
+inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and gone
+
+ISOWEAVE_HD inline Index half_edge(Index triangle, Index corner) { return 4 * triangle + corner; }
+
+// Without branches: the corner that a walk comes by cannot be predicted.
+ISOWEAVE_HD inline Index next(Index h) { return h + 1 - 3 * (h >> 1 & 1); }
+ISOWEAVE_HD inline Index previous(Index h) { return h - 1 + 3 * (~(h | h >> 1) & 1); }
+
+ISOWEAVE_HD inline bool exists(Index h) { return h < kWritten; }
+
+enum class VertexState : std::uint8_t {
+  kIncomplete,  // later pieces give it more triangles: no quadric yet, blocks everything near
+  kComplete,
+  kFinal,   // all its edges are retired
+  kLocked,  // stays where it is; all its edges are retired from the start
+};
+
+inline constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
+
+struct alignas(64) Vertex {
+  Vec3 position;
+  std::uint64_t id = 0;
+  Quadric quadric;                     // relative to position
+  std::uint64_t output = kNotWritten;  // number in the output
+  Index half_edge = kNone;  // one that starts here; on a border the one without a twin; kNone: the vertex is gone
+  Index component = 0;      // of the written surface, once written
+};
+
+static_assert(sizeof(Vertex) == 128, "two cache lines");
+
+// The key is what the safe rule compares: the bits of the cost above the upper half of the tie. It is equal on both
+// half-edges of an edge.
+using Key = std::uint64_t;
+
+ISOWEAVE_HD inline Key make_key(CostBits cost, std::uint64_t tie) { return Key{cost} << 32 | tie >> 32; }
+ISOWEAVE_HD inline CostBits cost_of(Key key) { return static_cast<CostBits>(key >> 32); }
+
+struct HalfEdge {
+  Index vertex = kNone;  // where it starts
+  Index twin = kNone;
+  Key key = 0;
+};
+
+// One cache line holds what a walk around a vertex reads. Half-edge h is the h-th sixteen bytes.
+struct alignas(64) Triangle {
+  std::array<HalfEdge, 3> sides;
+  std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
+};
+
+static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);
+
+// Whose turn it is at a vertex, and who waits for that to change. The key of its least edge is kept apart: it is what
+// neighbours look at.
+struct Turn {
+  Index edge = kNone;  // half-edge of the least edge; kNone: unknown, or none
+  Index first_waiter = kNone;
+  Index next_waiter = kNone;  // in the list of the vertex waited for
+  Index waits_for = kNone;
+};
+
+struct ZoneOptions {
+  EdgeNumbering numbering;
+  double a0 = 1;        // mean voxel face, length squared
+  CostBits retire = 0;  // edges with a higher cost are retired
+};
+
+struct ZoneView {
+  std::span<Vertex> vertices;
+  std::span<VertexState> states;  // parallel to vertices
+  std::span<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
+  std::span<Key> turn_keys;       // parallel to vertices: least key of the edges; kept by the schedule
+  std::span<Turn> turns;          // parallel to vertices; kept by the schedules that use them
+  std::span<Triangle> triangles;
+  ZoneOptions options;
+  CostBits limit = 0;  // edges with a higher cost wait until it is raised; at most options.retire
+
+  ISOWEAVE_HD Index triangle_count() const { return static_cast<Index>(triangles.size()); }
+
+  ISOWEAVE_HD HalfEdge& half(Index h) const { return reinterpret_cast<HalfEdge*>(triangles.data())[h]; }
+  ISOWEAVE_HD Index origin(Index h) const { return half(h).vertex; }
+  ISOWEAVE_HD Index destination(Index h) const { return origin(next(h)); }
+  ISOWEAVE_HD Index twin(Index h) const { return half(h).twin; }
+  ISOWEAVE_HD Key key(Index h) const { return half(h).key; }
+  ISOWEAVE_HD CostBits cost(Index h) const { return cost_of(key(h)); }
+  ISOWEAVE_HD std::uint32_t tie_low(Index h) const { return triangles[h >> 2].tie_low[h & 3]; }
+  ISOWEAVE_HD std::uint64_t tie(Index h) const { return key(h) << 32 | tie_low(h); }
+  ISOWEAVE_HD bool alive(Index h) const { return origin(h) != kNone; }  // the triangle of h is there
+
+  // The order in which edges are decided.
+  ISOWEAVE_HD bool comes_before(Index a, Index b) const {
+    return key(a) != key(b) ? key(a) < key(b) : tie_low(a) < tie_low(b);
+  }
+
+  // The star of v is one fan that can be walked around.
+  ISOWEAVE_HD bool walkable(Index v) const {
+    return (states[v] == VertexState::kComplete || states[v] == VertexState::kFinal) && exists(vertices[v].half_edge);
+  }
+
+  // The half-edge that stands for its edge.
+  ISOWEAVE_HD bool represents_edge(Index h) const { return h < twin(h) || !exists(twin(h)); }
+
+  // The next half-edge around the origin of h, counter-clockwise; kNone past a border.
+  ISOWEAVE_HD Index rotate(Index h) const { return twin(previous(h)); }
+
+  ISOWEAVE_HD void set_twin(Index h, Index other) const { half(h).twin = other; }
+  ISOWEAVE_HD void set_key(Index h, Key key) const {
+    half(h).key = key;
+    if (exists(twin(h))) half(twin(h)).key = key;
+  }
+  ISOWEAVE_HD void set_cost(Index h, CostBits cost) const {
+    set_key(h, Key{cost} << 32 | static_cast<std::uint32_t>(key(h)));
+  }
+
+  // Marks a triangle as gone.
+  ISOWEAVE_HD void remove_triangle(Index t) const {
+    for (HalfEdge& side : triangles[t].sides) side.vertex = kNone;
+  }
+};
+
+}  // namespace isoweave
