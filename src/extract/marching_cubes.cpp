@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "extract/classify.hpp"
-#include "extract/gradient.hpp"
 #include "extract/tables.hpp"
 #include "isoweave/error.hpp"
 #include "volume/samples.hpp"
@@ -282,25 +281,10 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
     *position++ = {x * spacing_[0], (Axis == 1 ? j + t : j) * spacing_[1], (Axis == 2 ? k + t : k) * spacing_[2]};
     *id++ = first_id + 3 * static_cast<std::uint64_t>(bit);
     if (options_.normals) {
-      piece.normals[number++ - front_size_] = normal_at(samples, {i, edges.j, edges.k}, Axis, t, f0, f1, low_inside);
+      const Crossing crossing{{i, edges.j, edges.k}, Axis, f0, f1, t, low_inside};
+      piece.normals[number++ - front_size_] = normal_at(samples, crossing, spacing_, options_.rule.above);
     }
   });
-}
-
-// The normal of a crossing, outwards.
-template <class T>
-Point MarchingCubes::normal_at(const SampleView<T>& samples, const std::array<std::int64_t, 3>& low, std::size_t axis,
-                               double t, double f0, double f1, bool low_inside) const {
-  if ((f0 == f0) != (f1 == f1)) {  // a cap on the border: the surface faces along the edge
-    Point cap{0, 0, 0};
-    cap[axis] = low_inside ? 1.0F : -1.0F;
-    return cap;
-  }
-  std::array<std::int64_t, 3> high = low;
-  ++high[axis];
-  const Vec3 g0 = samples.gradient(low, spacing_);
-  const Vec3 g = g0 + t * (samples.gradient(high, spacing_) - g0);
-  return unit_point(options_.rule.above ? -g : g);
 }
 
 bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {

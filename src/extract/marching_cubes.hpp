@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "extract/gradient.hpp"
 #include "extract/rules.hpp"
+#include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
 #include "parallel/parallel.hpp"
 #include "slab/lattice.hpp"
@@ -96,9 +96,6 @@ class MarchingCubes {
   template <class T, int Axis>
   void emit_word(const SampleView<T>& samples, const EdgeRow<T, Axis>& edges, std::size_t w, std::uint64_t crossings,
                  std::uint64_t inside, std::uint32_t number, SurfacePiece& piece) const;
-  template <class T>
-  Point normal_at(const SampleView<T>& samples, const std::array<std::int64_t, 3>& low, std::size_t axis, double t,
-                  double f0, double f1, bool low_inside) const;
   void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
   void list_front(SurfacePiece& piece);
   bool has_cells(std::int64_t k, std::size_t row) const;

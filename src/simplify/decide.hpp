@@ -7,23 +7,10 @@
 #include "isoweave/simplify_options.hpp"
 #include "parallel/atomics.hpp"
 #include "simplify/kernels.hpp"
+#include "simplify/simplify_totals.hpp"
 #include "simplify/star.hpp"
 
 namespace isoweave {
-
-struct DecisionCounts {
-  std::uint64_t collapses = 0;
-  std::uint64_t postponed = 0;  // decided, and illegal at the time
-  std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
-  std::uint64_t removed = 0;    // triangles
-
-  ISOWEAVE_HD void operator+=(const DecisionCounts& other) {
-    collapses += other.collapses;
-    postponed += other.postponed;
-    rekeyed += other.rekeyed;
-    removed += other.removed;
-  }
-};
 
 // Decides edges of a zone, one after the other. Reads and writes the two stars of an edge only: deciders in different
 // threads may work on the same zone as long as the stars of their edges share no triangle. Arithmetic is how several

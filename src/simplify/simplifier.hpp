@@ -19,12 +19,6 @@ struct SimplifierOptions {
   Schedule schedule = Schedule::kAutomatic;
 };
 
-// What final vertices are seen to be when their stars are whole for the last time.
-struct SurfaceDefects {
-  std::uint64_t nonmanifold_edges = 0;
-  std::uint64_t nonmanifold_vertices = 0;
-};
-
 class Simplifier {
  public:
   Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop);

@@ -10,12 +10,12 @@
 #include "parallel/compact.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/star.hpp"
+#include "simplify/zone_rules.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 2048;
-constexpr Index kBackwards = Index{1} << 31;  // in EdgeSide::other: runs from the larger to the smaller number
 
 // By insertion where there are few, in a fan's hub by std::sort.
 template <class T, class Less>
@@ -39,7 +39,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
                      " triangles, expected fewer than 2^30: choose thinner slabs or a smaller error");
   }
   const std::uint64_t vertex_total = vertices.size() + piece.inherited + piece.positions.size();
-  if (vertex_total >= kBackwards) {
+  if (vertex_total >= EdgeSide::kBackwards) {
     throw OverMemory("the undecided zone would hold " + std::to_string(vertex_total) +
                      " vertices, expected fewer than 2^31: choose thinner slabs or a smaller error");
   }
@@ -142,17 +142,9 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
       const Index corner = piece.triangles[static_cast<std::size_t>(n)][c];
       const Index v = corner < piece.inherited ? front_[corner] : settled.first_new + (corner - piece.inherited);
       triangles[t].sides[c].vertex = v;
-      start_at(v, half_edge(t, c));
+      make_least(vertices[v].half_edge, half_edge(t, c));
     }
   });
-}
-
-// Walks around v may start at h: keeps the smallest that is offered.
-void Zone::start_at(Index v, Index h) {
-  const std::atomic_ref<Index> start(vertices[v].half_edge);
-  Index found = start.load(std::memory_order_relaxed);
-  while (h < found && !start.compare_exchange_weak(found, h, std::memory_order_relaxed)) {
-  }
 }
 
 // Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides of each
@@ -188,7 +180,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   executor.for_each(count, kBlock, [&](std::int64_t n) {
     each_side(n, [&](Index a, Index b, Index h) {
       const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
-      sides[place] = {std::max(a, b) | (a > b ? kBackwards : 0), h};
+      sides[place] = EdgeSide(a, b, h);
     });
   });
   executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
@@ -197,25 +189,11 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
 }
 
-// An edge has one side, or two that run in opposite directions. Others stay unlinked, and their ends where they are.
+// The sides of all edges at one end.
 void Zone::pair_sides(std::span<EdgeSide> sides) {
-  const auto other_end = [](const EdgeSide& side) { return side.other & ~kBackwards; };
-  sort_few(sides, [&](const EdgeSide& a, const EdgeSide& b) { return other_end(a) < other_end(b); });
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && other_end(sides[end]) == other_end(sides[begin])) ++end;
-    if (end - begin == 1) continue;
-    const Index h = sides[begin].half_edge;
-    if (end - begin == 2 && sides[begin].other != sides[begin + 1].other) {
-      set_twin(h, sides[begin + 1].half_edge);
-      set_twin(sides[begin + 1].half_edge, h);
-    } else {
-      lock(origin(h));
-      lock(destination(h));
-    }
-  }
+  sort_few(sides, [&](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
+  link_sorted(*this, sides);
 }
-
-void Zone::lock(Index v) { std::atomic_ref(states[v]).store(VertexState::kLocked, std::memory_order_relaxed); }
 
 // Vertices whose faces form more than one fan.
 void Zone::lock_split_vertices(const Executor& executor) {
@@ -227,7 +205,7 @@ void Zone::lock_split_vertices(const Executor& executor) {
   });
   executor.for_each(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t n) {
     const auto v = static_cast<Index>(n);
-    if (exists(vertices[v].half_edge) && count_fan(v) != corners[v]) lock(v);
+    if (exists(vertices[v].half_edge) && count_fan(v) != corners[v]) states[v] = VertexState::kLocked;
   });
 }
 
@@ -273,68 +251,18 @@ void Zone::settle_vertices(const Executor& executor) {
   });
 }
 
-// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
-// border, planes through the two border edges perpendicular to their faces, weighted by squared length.
+// The quadric of a vertex that has all its faces.
 void Zone::initial_quadric(Index v) {
   Star star;
   star.gather(*this, v);
-  if (!star.border && !star.overflow) {
-    vertices[v].quadric = face_planes(star);
+  if (star.border || star.overflow) {
+    give_initial_quadric(*this, v);
     return;
   }
-  start_at_border(v);
-  star.gather(*this, v);
-  Quadric q = star.overflow ? face_planes_one_by_one(v) : face_planes(star);
-  const Index first = vertices[v].half_edge;
-  if (twin(first) == kNone) {
-    Index last = first;
-    while (exists(rotate(last))) last = rotate(last);
-    q = q + border_plane(v, destination(first), first) + border_plane(v, origin(previous(last)), last);
-  }
-  vertices[v].quadric = q;
-}
-
-// Turns v's start back to the half-edge without a twin, if v lies on a border.
-void Zone::start_at_border(Index v) {
-  const Index first = vertices[v].half_edge;
-  for (Index h = first; exists(twin(h));) {
-    h = next(twin(h));
-    vertices[v].half_edge = h;
-    if (h == first) return;
-  }
-}
-
-Quadric Zone::face_planes(Star& star) const {
   const VectorArithmetic arithmetic;
   Fan fan;
   arithmetic.measure(*this, star, fan);
-  return arithmetic.sum_faces(fan, star.count(), initial_weight()).planes;
-}
-
-Quadric Zone::face_planes_one_by_one(Index v) const {
-  const Index first = vertices[v].half_edge;
-  Quadric sum;
-  Index h = first;
-  do {
-    const Vec3 normal = face_normal(h);
-    const double size = std::sqrt(dot(normal, normal));  // twice the area
-    if (size > 0) sum = sum + plane_quadric(normal, initial_weight() / size);
-    h = rotate(h);
-  } while (h != first && exists(h));
-  return sum;
-}
-
-// Of the face of h, twice as long as its area, as seen from the origin of h.
-Vec3 Zone::face_normal(Index h) const {
-  const Vec3 from = vertices[origin(h)].position;
-  return cross(vertices[destination(h)].position - from, vertices[origin(previous(h))].position - from);
-}
-
-Quadric Zone::border_plane(Index v, Index other, Index face) const {
-  const Vec3 side = vertices[other].position - vertices[v].position;
-  const Vec3 across = cross(side, face_normal(face));
-  const double size = dot(across, across);
-  return size > 0 ? plane_quadric(across, dot(side, side) / (options.a0 * options.a0 * size)) : Quadric();
+  vertices[v].quadric = arithmetic.sum_faces(fan, star.count(), initial_weight(options)).planes;
 }
 
 // Edges that get their keys together.
@@ -374,13 +302,8 @@ bool Zone::settle_edge(Index h, EdgeBatch& batch) {
   const Index a = origin(h);
   const Index b = destination(h);
   if (states[a] == VertexState::kIncomplete || states[b] == VertexState::kIncomplete) return false;
-  const bool a_first = vertices[a].id < vertices[b].id;
-  const Vertex* const u = &vertices[a_first ? a : b];
-  const Vertex* const v = &vertices[a_first ? b : a];
-  const std::uint64_t tie = mix_bits(options.numbering.edge_id(u->id, v->id));
-  for (const Index side : {h, twin(h)}) {
-    if (exists(side)) triangles[side >> 2].tie_low[side & 3] = static_cast<std::uint32_t>(tie);
-  }
+  const EdgeEnds ends = ends_in_order(*this, a, b);
+  const std::uint64_t tie = give_tie(*this, h, ends);
   if (states[a] == VertexState::kLocked || states[b] == VertexState::kLocked) {
     set_key(h, make_key(kRetiredCost, tie));
     return true;
@@ -388,7 +311,7 @@ bool Zone::settle_edge(Index h, EdgeBatch& batch) {
   if (batch.count == EdgeBatch::kCapacity) give_keys(batch);
   batch.half_edges[batch.count] = h;
   batch.ties[batch.count] = tie;
-  batch.ends[batch.count++] = {u, v};
+  batch.ends[batch.count++] = ends;
   return true;
 }
 

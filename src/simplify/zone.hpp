@@ -29,7 +29,7 @@ struct SettledVertices {
   }
 };
 
-struct Star;
+struct EdgeSide;
 
 // Owns what its view shows.
 class Zone : public ZoneView {
@@ -76,32 +76,18 @@ class Zone : public ZoneView {
  private:
   struct EdgeBatch;
 
-  // One side of an edge, in the list of the end with the smaller number.
-  struct EdgeSide {
-    Index other;  // number of the other end, and the direction
-    Index half_edge;
-  };
-
   void show_arrays();
   void forget_turns();
   void list_settled(Index end);
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
-  void start_at(Index v, Index h);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void pair_sides(std::span<EdgeSide> sides);
-  void lock(Index v);
   void lock_split_vertices(const Executor& executor);
   std::uint32_t count_fan(Index v) const;
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(const Executor& executor);
-  void start_at_border(Index v);
   void initial_quadric(Index v);
-  Quadric face_planes(Star& star) const;
-  Quadric face_planes_one_by_one(Index v) const;
-  double initial_weight() const { return 1 / (6 * options.a0 * options.a0); }  // per twice the area of a face
-  Vec3 face_normal(Index h) const;
-  Quadric border_plane(Index v, Index other, Index face) const;
   void settle_edges(Index first_triangle, const Executor& executor);
   bool settle_edge(Index h, EdgeBatch& batch);
   void give_keys(EdgeBatch& batch);

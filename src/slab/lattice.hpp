@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "parallel/host_device.hpp"
+
 namespace isoweave {
 
 // Ids of lattice edges, which are the ids of surface vertices: 3 * linear(point) + axis. Sample indices run from
@@ -11,10 +13,10 @@ namespace isoweave {
 struct Lattice {
   std::array<std::int64_t, 3> dims{0, 0, 0};
 
-  std::uint64_t row() const { return static_cast<std::uint64_t>(dims[0]) + 2; }
-  std::uint64_t plane() const { return row() * (static_cast<std::uint64_t>(dims[1]) + 2); }
+  ISOWEAVE_HD std::uint64_t row() const { return static_cast<std::uint64_t>(dims[0]) + 2; }
+  ISOWEAVE_HD std::uint64_t plane() const { return row() * (static_cast<std::uint64_t>(dims[1]) + 2); }
 
-  std::uint64_t edge_id(std::int64_t i, std::int64_t j, std::int64_t k, int axis) const {
+  ISOWEAVE_HD std::uint64_t edge_id(std::int64_t i, std::int64_t j, std::int64_t k, int axis) const {
     const std::uint64_t point = static_cast<std::uint64_t>(k + 1) * plane() +
                                 static_cast<std::uint64_t>(j + 1) * row() + static_cast<std::uint64_t>(i + 1);
     return 3 * point + static_cast<std::uint64_t>(axis);

@@ -1,0 +1,482 @@
+// A slab's way through a device: samples go in, final triangles come out, and what is undecided stays there.
+//
+// The passes are those of the headers beside this one; a Device (host_device.hpp says what that is) runs them. Surface,
+// decisions and order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "device/append_passes.hpp"
+#include "device/compact_passes.hpp"
+#include "device/extract_passes.hpp"
+#include "device/final_passes.hpp"
+#include "extract/marching_cubes.hpp"
+#include "isoweave/error.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+
+struct BulkOptions {
+  VolumeInfo volume;
+  IsoRule rule;
+  bool normals = false;
+  ZoneOptions zone;
+  Quality quality = Quality::kNormal;
+};
+
+// What a slab has brought.
+struct SlabCounts {
+  std::int64_t layers = 0;
+  std::uint64_t cells_crossed = 0, triangles = 0, vertices = 0;
+};
+
+// Triangles that have become final, on the host. Vertices written for the first time come first.
+struct FinalPiece {
+  std::vector<FinalVertex> vertices;
+  std::vector<Point> normals;  // of the new ones; or none
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::size_t new_vertices = 0;
+};
+
+template <class Device>
+class BulkEngine {
+ public:
+  BulkEngine(Device device, const BulkOptions& options) : device_(std::move(device)), options_(options) {
+    const std::array<std::int64_t, 3>& dims = options.volume.dims;
+    bits_.lattice = {dims};
+    bits_.closed = options.rule.closed;
+    bits_.rows = dims[1] + 2;
+    bits_.words = (dims[0] + 2 + 63) / 64;
+    end_layer_ = options.rule.closed ? dims[2] : dims[2] - 1;
+    cases_.resize(kCaseTable.size());
+    device_.write(kCaseTable.data(), kCaseTable.size(), cases_.data());
+    inside_.resize(plane_words());
+    front_base_.resize(plane_words() + 1);
+    device_.clear(inside_);
+    device_.clear(front_base_);
+    list_sizes_.resize(kLists);
+    device_.clear(list_sizes_);
+  }
+
+  std::int64_t layers_left() const { return end_layer_ - bits_.first_layer; }
+
+  // Slices [first, end) that the next `layers` layers read, unclipped.
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const {
+    const std::int64_t margin = options_.normals ? 1 : 0;
+    return {bits_.first_layer - margin, bits_.first_layer + layers + 1 + margin};
+  }
+
+  // The most layers of a slab: whatever its samples are, its vertices and triangles can be counted in 32 bits.
+  std::int64_t most_layers() const {
+    constexpr std::int64_t kMostSamples = std::int64_t{1} << 29;
+    const std::int64_t samples = (options_.volume.dims[0] + 2) * (options_.volume.dims[1] + 2);
+    if (samples > kMostSamples) {
+      throw OverMemory(options_.volume.path + ": a slice has " + std::to_string(samples) +
+                       " samples, expected at most 2^29 on a device: use the processor");
+    }
+    return std::max<std::int64_t>(kMostSamples / samples, 1);
+  }
+
+  // Extracts the next `layers` layers, or fewer, though at least one, where they would make more than `most_vertices`,
+  // and adds them to the zone. The window holds what slices_for() names, as far as the volume goes.
+  SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices) {
+    upload(window, layers);
+    prepare_words(layers);
+    ExtractPasses passes = extract_passes();
+    const std::int64_t items = layers * plane();
+    visit_ring([&]<class T>(const SliceRing<T>& ring) {
+      device_.template for_each<&ExtractPasses::classify<T>>(items, passes, ring);
+    });
+    device_.template for_each<&ExtractPasses::count>(items, passes);
+    device_.scan(vertex_base_, static_cast<std::size_t>(items));
+    device_.scan(triangle_base_, static_cast<std::size_t>(items));
+    SlabCounts counts = choose_layers(layers, most_vertices);
+    make_room(counts);
+    emit(counts);
+    return counts_ = counts;
+  }
+
+  // Links the slab to what was there, and gives quadrics and keys to what is complete now.
+  void append() {
+    const auto first_vertex = static_cast<Index>(zone_.vertices.size() - counts_.vertices);
+    const auto first_triangle = static_cast<Index>(zone_.triangles.size() - counts_.triangles);
+    marks_.resize(zone_.vertices.size());
+    device_.clear(marks_);
+    AppendPasses passes = append_passes(first_vertex, first_triangle);
+    link(passes);
+    list_settled(passes);
+    list_front();
+    passes.front = front_.data();
+    device_.template for_each<&AppendPasses::mark_front>(front_count(), passes);
+    const std::uint32_t settled = list_size(kChanged);
+    device_.template for_each<&AppendPasses::settle_vertex>(settled, passes);
+    unkeyed_next_.resize(unkeyed_count_ + 3 * counts_.triangles);
+    passes.still_unkeyed = list(kUnkeyed, unkeyed_next_);
+    device_.template for_each<&AppendPasses::settle_edge>(side_count(), passes, unkeyed_count_);
+    device_.template for_each<&AppendPasses::settle_turn>(settled, passes);
+    std::swap(unkeyed_, unkeyed_next_);
+    unkeyed_count_ = list_size(kUnkeyed);
+    bits_.first_layer += counts_.layers;
+    appended_ += counts_.triangles;
+  }
+
+  // Decides every edge that can be decided with what has been appended.
+  void decide() {
+    candidates_.resize(zone_.vertices.size());
+    minima_.resize(zone_.vertices.size());
+    marks_.resize(zone_.vertices.size());
+    device_.clear(marks_);
+    rounds_ += device_.run_rounds({zone_, options_.quality, marks_.data(), list(kChanged, changed_),
+                                   list(kCandidates, candidates_), list(kMinima, minima_)},
+                                  decisions_);
+  }
+
+  // Finds what has become final. count_new() of its vertices will be written for the first time.
+  void name_final() {
+    const std::size_t vertices = zone_.vertices.size();
+    const std::size_t triangles = zone_.triangles.size();
+    status_.resize(vertices);
+    corners_.resize(vertices);
+    new_place_.resize(vertices + 1);
+    old_place_.resize(vertices + 1);
+    triangle_place_.resize(triangles + 1);
+    final_ = FinalPasses();
+    final_.zone = zone_;
+    final_.status = status_.data();
+    final_.corners = corners_.data();
+    final_.triangle_place = triangle_place_.data();
+    final_.new_place = new_place_.data();
+    final_.old_place = old_place_.data();
+    device_.template for_each<&FinalPasses::name_vertex>(signed_count(vertices), final_);
+    device_.template for_each<&FinalPasses::name_triangle>(signed_count(triangles), final_);
+    totals_ += device_.template sum<&FinalPasses::inspect, FinalTotals>(signed_count(vertices), final_);
+    device_.scan(triangle_place_, triangles);
+    device_.scan(new_place_, vertices);
+    device_.scan(old_place_, vertices);
+    final_triangle_count_ = read_one(triangle_place_.data() + triangles);
+    final_.new_vertices = read_one(new_place_.data() + vertices);
+    old_vertex_count_ = read_one(old_place_.data() + vertices);
+  }
+
+  std::size_t count_new() const { return final_.new_vertices; }
+
+  // Takes out what name_final() has found, and gives the new vertices consecutive numbers and labels.
+  void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) {
+    const std::size_t vertices = final_.new_vertices + old_vertex_count_;
+    final_triangles_.resize(final_triangle_count_);
+    final_vertices_.resize(vertices);
+    out_vertices_.resize(vertices);
+    out_triangles_.resize(final_triangle_count_);
+    out_normals_.resize(options_.normals ? final_.new_vertices : 0);
+    final_.first_output = first_output;
+    final_.first_component = first_component;
+    final_.final_triangles = final_triangles_.data();
+    final_.final_vertices = final_vertices_.data();
+    final_.out_vertices = out_vertices_.data();
+    final_.out_triangles = out_triangles_.data();
+    final_.out_normals = options_.normals ? out_normals_.data() : nullptr;
+    device_.template for_each<&FinalPasses::list_triangle>(signed_count(zone_.triangles.size()), final_);
+    device_.template for_each<&FinalPasses::list_vertex>(signed_count(zone_.vertices.size()), final_);
+    device_.template for_each<&FinalPasses::write_triangle>(final_triangle_count_, final_);
+    device_.template for_each<&FinalPasses::write_vertex>(signed_count(vertices), final_);
+    totals_ += device_.template sum<&FinalPasses::close_sides, FinalTotals>(final_triangle_count_, final_);
+    device_.template for_each<&FinalPasses::drop>(final_triangle_count_, final_);
+    read_all(out_vertices_, piece.vertices);
+    read_all(out_normals_, piece.normals);
+    read_all(out_triangles_, piece.triangles);
+    piece.new_vertices = final_.new_vertices;
+    dropped_ += final_triangle_count_;
+    const std::uint64_t gone = zone_.triangles.size() - live_triangles();
+    if (8 * gone >= zone_.triangles.size()) compact();
+  }
+
+  // Labels of the vertices that have been written and are still held, to be replaced by change(labels).
+  template <class Change>
+  void change_components(const Change& change) {
+    std::vector<Vertex> held(zone_.vertices.size());
+    device_.read(zone_.vertices.data(), held.size(), held.data());
+    std::vector<std::uint32_t*> labels;
+    for (Vertex& vertex : held) {
+      if (vertex.output != kNotWritten) labels.push_back(&vertex.component);
+    }
+    change(labels);
+    device_.write(held.data(), held.size(), zone_.vertices.data());
+  }
+
+  // Of the surface so far: those that are held and have not been collapsed.
+  std::uint64_t live_triangles() const { return appended_ - decisions_.removed - dropped_; }
+  std::size_t held_vertices() const { return zone_.vertices.size(); }
+  std::uint64_t rounds() const { return rounds_; }
+  const DecisionCounts& decisions() const { return decisions_; }
+  const SurfaceDefects& defects() const { return totals_.defects; }
+  std::uint64_t open_edges() const { return totals_.open_edges; }
+  Device& device() { return device_; }
+
+ private:
+  template <class T>
+  using Buffer = typename Device::template Buffer<T>;
+
+  enum List : std::size_t { kChanged, kCandidates, kMinima, kUnkeyed, kLists };
+
+  // The arrays of the zone. There are two of each: compaction moves from one to the other.
+  struct ZoneArrays {
+    Buffer<Vertex> vertices;
+    Buffer<VertexState> states;
+    Buffer<Point> normals;
+    Buffer<Key> turn_keys;
+    Buffer<Turn> turns;
+    Buffer<Triangle> triangles;
+
+    void resize(std::size_t vertex_count, std::size_t triangle_count, bool has_normals) {
+      vertices.resize(vertex_count);
+      states.resize(vertex_count);
+      normals.resize(has_normals ? vertex_count : 0);
+      turn_keys.resize(vertex_count);
+      turns.resize(vertex_count);
+      triangles.resize(triangle_count);
+    }
+
+    ZoneView view(const ZoneOptions& options) {
+      const auto show = [](auto& array) { return std::span(array.data(), array.size()); };
+      return {show(vertices), show(states),    show(normals), show(turn_keys),
+              show(turns),    show(triangles), options,       options.retire};
+    }
+  };
+
+  static std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(count); }
+
+  std::size_t plane_words() const { return static_cast<std::size_t>(bits_.plane()); }
+  std::int64_t plane() const { return bits_.plane(); }
+  std::int64_t front_count() const { return signed_count(front_.size()); }
+  std::int64_t side_count() const { return unkeyed_count_ + 3 * signed_count(counts_.triangles); }
+
+  std::uint32_t read_one(const std::uint32_t* from) {
+    std::uint32_t value = 0;
+    device_.read(from, 1, &value);
+    return value;
+  }
+
+  template <class T>
+  void read_all(const Buffer<T>& from, std::vector<T>& to) {
+    to.resize(from.size());
+    device_.read(from.data(), from.size(), to.data());
+  }
+
+  // A list that is empty, or goes on.
+  IndexList list(List which, Buffer<Index>& items) { return {items.data(), list_sizes_.data() + which}; }
+  std::uint32_t list_size(List which) { return read_one(list_sizes_.data() + which); }
+  void set_list_size(List which, std::uint32_t size) { device_.write(&size, 1, list_sizes_.data() + which); }
+
+  // Slices of the slab that are not on the device yet.
+  void upload(const SliceWindow& window, std::int64_t layers) {
+    auto [first, end] = slices_for(layers);
+    first = std::max<std::int64_t>(first, 0);
+    end = std::min(end, options_.volume.dims[2]);
+    const std::size_t bytes = options_.volume.slice_bytes();
+    if (end - first > room_) {  // the ring begins anew
+      room_ = end - first;
+      ring_.resize(static_cast<std::size_t>(room_) * bytes);
+      uploaded_ = first;
+    }
+    for (std::int64_t k = std::max(first, uploaded_); k < end; ++k) {
+      device_.write(window.slice(k), bytes, ring_.data() + static_cast<std::size_t>(k % room_) * bytes);
+    }
+    uploaded_ = std::max(uploaded_, end);
+  }
+
+  template <class Visit>
+  void visit_ring(const Visit& visit) {
+    visit_sample_type(options_.volume.type, [&]<class T>() {
+      visit(SliceRing<T>{reinterpret_cast<const T*>(ring_.data()), options_.volume.dims,
+                         std::max<std::int64_t>(room_, 1)});
+    });
+  }
+
+  void prepare_words(std::int64_t layers) {
+    const auto count = static_cast<std::size_t>(layers);
+    inside_.resize((count + 1) * plane_words());
+    vertex_base_.resize(count * plane_words() + 1);
+    triangle_base_.resize(count * plane_words() + 1);
+  }
+
+  ExtractPasses extract_passes() {
+    bits_.inside = inside_.data();
+    ExtractPasses passes;
+    passes.bits = bits_;
+    passes.rule = options_.rule;
+    passes.spacing = options_.volume.geometry.spacing;
+    passes.cases = cases_.data();
+    passes.vertex_base = vertex_base_.data();
+    passes.triangle_base = triangle_base_.data();
+    passes.front_base = front_base_.data();
+    passes.front = front_.data();
+    passes.inherited = static_cast<std::uint32_t>(front_.size());
+    passes.first_vertex = static_cast<Index>(zone_.vertices.size());
+    passes.first_triangle = static_cast<Index>(zone_.triangles.size());
+    return passes;
+  }
+
+  // As many layers as hold no more than so many vertices, one at least.
+  SlabCounts choose_layers(std::int64_t layers, std::uint64_t most_vertices) {
+    SlabCounts counts;
+    do {
+      const std::size_t end = static_cast<std::size_t>(counts.layers + 1) * plane_words();
+      const std::uint32_t vertices = read_one(vertex_base_.data() + end);
+      if (counts.layers > 0 && vertices > most_vertices) break;
+      counts.vertices = vertices;
+      counts.triangles = read_one(triangle_base_.data() + end);
+      ++counts.layers;
+    } while (counts.layers < layers);
+    return counts;
+  }
+
+  void make_room(const SlabCounts& counts) {
+    const std::uint64_t triangles = zone_.triangles.size() + counts.triangles;
+    const std::uint64_t vertices = zone_.vertices.size() + counts.vertices;
+    if (triangles >= kWritten / 4 || vertices >= EdgeSide::kBackwards) {
+      throw OverMemory("the undecided zone would hold " + std::to_string(triangles) +
+                       " triangles, expected fewer than 2^30: choose thinner slabs or a smaller error");
+    }
+    arrays_.resize(vertices, triangles, options_.normals);
+  }
+
+  void emit(SlabCounts& counts) {
+    ExtractPasses passes = extract_passes();
+    zone_ = arrays_.view(options_.zone);
+    passes.zone = zone_;
+    const std::int64_t items = counts.layers * plane();
+    SlabTotals totals;
+    visit_ring([&]<class T>(const SliceRing<T>& ring) {
+      device_.template for_each<&ExtractPasses::emit_vertices<T>>(items, passes, ring);
+    });
+    totals += device_.template sum<&ExtractPasses::emit_triangles, SlabTotals>(items, passes);
+    counts.cells_crossed = totals.cells;
+  }
+
+  AppendPasses append_passes(Index first_vertex, Index first_triangle) {
+    changed_.resize(zone_.vertices.size());
+    set_list_size(kChanged, 0);
+    set_list_size(kUnkeyed, 0);
+    AppendPasses passes;
+    passes.zone = zone_;
+    passes.first_vertex = first_vertex;
+    passes.first_triangle = first_triangle;
+    passes.marks = marks_.data();
+    passes.unkeyed = {unkeyed_.data(), nullptr};
+    passes.settled = list(kChanged, changed_);
+    return passes;
+  }
+
+  void link(AppendPasses& passes) {
+    const std::size_t vertices = zone_.vertices.size();
+    side_base_.resize(vertices + 1);
+    side_fill_.resize(vertices + 1);
+    sides_.resize(static_cast<std::size_t>(side_count()));
+    device_.clear(side_base_);
+    passes.side_base = side_base_.data();
+    passes.side_fill = side_fill_.data();
+    passes.sides = sides_.data();
+    device_.template for_each<&AppendPasses::count_side>(side_count(), passes, unkeyed_count_);
+    device_.scan(side_base_, vertices);
+    device_.copy(side_base_.data(), vertices, side_fill_.data());
+    device_.template for_each<&AppendPasses::fill_side>(side_count(), passes, unkeyed_count_);
+    device_.template for_each<&AppendPasses::pair_sides>(signed_count(vertices), passes);
+  }
+
+  void list_settled(const AppendPasses& passes) {
+    device_.template for_each<&AppendPasses::settle_front>(front_count(), passes,
+                                                           static_cast<const Index*>(front_.data()));
+    device_.template for_each<&AppendPasses::settle_ends>(unkeyed_count_, passes);
+    device_.template for_each<&AppendPasses::settle_new>(signed_count(counts_.vertices), passes);
+  }
+
+  // The crossings of the slab's last slice become the front, and its bits those of the next slab's first slice.
+  void list_front() {
+    front_next_base_.resize(plane_words() + 1);
+    ExtractPasses passes = extract_passes();
+    passes.first_vertex = static_cast<Index>(zone_.vertices.size() - counts_.vertices);
+    device_.template for_each<&ExtractPasses::count_front>(plane(), passes, counts_.layers, front_next_base_.data());
+    device_.scan(front_next_base_, plane_words());
+    const bool last = layers_left() == counts_.layers;
+    front_next_.resize(last ? 0 : read_one(front_next_base_.data() + plane_words()));
+    if (!last) {
+      device_.template for_each<&ExtractPasses::list_front>(plane(), passes, counts_.layers,
+                                                            static_cast<const std::uint32_t*>(front_next_base_.data()),
+                                                            front_next_.data());
+    }
+    std::swap(front_, front_next_);
+    std::swap(front_base_, front_next_base_);
+    device_.copy(inside_.data() + static_cast<std::size_t>(counts_.layers) * plane_words(), plane_words(),
+                 inside_.data());
+  }
+
+  void compact() {
+    const std::size_t vertices = zone_.vertices.size();
+    const std::size_t triangles = zone_.triangles.size();
+    new_place_.resize(vertices + 1);
+    triangle_place_.resize(triangles + 1);
+    device_.clear(new_place_);
+    CompactPasses passes;
+    passes.from = zone_;
+    passes.triangle_place = triangle_place_.data();
+    passes.vertex_place = new_place_.data();
+    passes.front = front_.data();
+    passes.unkeyed = unkeyed_.data();
+    device_.template for_each<&CompactPasses::keep_front>(front_count(), passes);
+    device_.template for_each<&CompactPasses::keep_triangle>(signed_count(triangles), passes);
+    device_.scan(triangle_place_, triangles);
+    device_.scan(new_place_, vertices);
+    spare_.resize(read_one(new_place_.data() + vertices), read_one(triangle_place_.data() + triangles),
+                  options_.normals);
+    passes.to = spare_.view(options_.zone);
+    device_.template for_each<&CompactPasses::move_triangle>(signed_count(triangles), passes);
+    device_.template for_each<&CompactPasses::move_vertex>(signed_count(vertices), passes);
+    device_.template for_each<&CompactPasses::move_front>(front_count(), passes);
+    device_.template for_each<&CompactPasses::move_unkeyed>(unkeyed_count_, passes);
+    std::swap(arrays_, spare_);
+    zone_ = passes.to;
+  }
+
+  Device device_;
+  BulkOptions options_;
+  SlabBits bits_;
+  std::int64_t end_layer_ = 0;
+
+  // Samples and bits of the slab.
+  Buffer<std::byte> ring_;
+  std::int64_t room_ = 0;      // slices
+  std::int64_t uploaded_ = 0;  // slices below are, or were, on the device
+  Buffer<CellCase> cases_;
+  Buffer<std::uint64_t> inside_;
+  Buffer<std::uint32_t> vertex_base_, triangle_base_, front_base_, front_next_base_;
+  SlabCounts counts_;
+
+  // The zone.
+  ZoneArrays arrays_, spare_;
+  ZoneView zone_;
+  Buffer<Index> front_, front_next_;
+  Buffer<Index> unkeyed_, unkeyed_next_;
+  std::uint32_t unkeyed_count_ = 0;
+  Buffer<std::uint32_t> marks_, side_base_, side_fill_;
+  Buffer<EdgeSide> sides_;
+  Buffer<Index> changed_, candidates_, minima_;
+  Buffer<std::uint32_t> list_sizes_;
+
+  // What is final.
+  FinalPasses final_;
+  Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, old_place_;
+  Buffer<Index> final_triangles_, final_vertices_;
+  Buffer<FinalVertex> out_vertices_;
+  Buffer<Point> out_normals_;
+  Buffer<std::array<std::uint32_t, 3>> out_triangles_;
+  std::uint32_t final_triangle_count_ = 0, old_vertex_count_ = 0;
+
+  std::uint64_t appended_ = 0, dropped_ = 0, rounds_ = 0;
+  DecisionCounts decisions_;
+  FinalTotals totals_;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,141 @@
+// What is final leaves the zone, pass by pass: what Simplifier and FinalOutput do, with one thread for every item.
+#pragma once
+
+#include "parallel/atomics.hpp"
+#include "simplify/simplify_totals.hpp"
+#include "simplify/turns.hpp"
+
+namespace isoweave {
+
+// A vertex of the output, as the host gets it.
+struct FinalVertex {
+  Vec3 position;
+  std::uint64_t output;  // its number; kNotWritten: it has none yet
+  Index component;
+};
+
+struct FinalTotals {
+  SurfaceDefects defects;
+  std::uint64_t open_edges = 0;
+
+  ISOWEAVE_HD void operator+=(const FinalTotals& other) {
+    defects.nonmanifold_edges += other.defects.nonmanifold_edges;
+    defects.nonmanifold_vertices += other.defects.nonmanifold_vertices;
+    open_edges += other.open_edges;
+  }
+};
+
+struct FinalPasses {
+  static constexpr std::uint32_t kUndecided = 1;
+  static constexpr std::uint32_t kNewlyFinal = 2;
+
+  ZoneView zone;
+  std::uint32_t* status = nullptr;          // per vertex
+  std::uint32_t* corners = nullptr;         // per vertex: of the triangles that are there
+  std::uint32_t* triangle_place = nullptr;  // per triangle: 1 if it is final, then its place among those
+  std::uint32_t* new_place = nullptr;       // per vertex: 1 if it is written now, then its place among those
+  std::uint32_t* old_place = nullptr;       // per vertex: 1 if it was written before and is named now, then its place
+  Index* final_triangles = nullptr;
+  Index* final_vertices = nullptr;  // those written now, then those written before
+  FinalVertex* out_vertices = nullptr;
+  Point* out_normals = nullptr;  // of those written now; or none
+  std::array<std::uint32_t, 3>* out_triangles = nullptr;
+  std::uint32_t new_vertices = 0;
+  std::uint64_t first_output = 0;
+  Index first_component = 0;
+
+  // Vertices all of whose edges are retired are final.
+  ISOWEAVE_HD void name_vertex(std::int64_t n) const {
+    const auto v = static_cast<Index>(n);
+    VertexState& state = zone.states[v];
+    const bool undecided = state == VertexState::kIncomplete || cost_of(zone.turn_keys[v]) <= zone.options.retire;
+    const bool newly = !undecided && state != VertexState::kFinal;
+    status[v] = (undecided ? kUndecided : 0) | (newly && zone.walkable(v) ? kNewlyFinal : 0);
+    if (newly) state = VertexState::kFinal;
+    corners[v] = new_place[v] = old_place[v] = 0;
+  }
+
+  // A triangle is final when its vertices are.
+  ISOWEAVE_HD void name_triangle(std::int64_t t) const {
+    const Triangle& triangle = zone.triangles[static_cast<std::size_t>(t)];
+    triangle_place[t] = 0;
+    if (triangle.sides[0].vertex == kNone) return;
+    bool undecided = false;
+    for (const HalfEdge& side : triangle.sides) {
+      const bool waits = (status[side.vertex] & kUndecided) != 0;
+      undecided = undecided || waits;
+      if (!waits) fetch_add(corners[side.vertex], 1);
+    }
+    if (undecided) return;
+    triangle_place[t] = 1;
+    for (const HalfEdge& side : triangle.sides) {
+      const bool is_new = zone.vertices[side.vertex].output == kNotWritten;
+      store_relaxed((is_new ? new_place : old_place)[side.vertex], 1);
+    }
+  }
+
+  // The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must
+  // differ.
+  ISOWEAVE_HD void inspect(std::int64_t n, FinalTotals& totals) const {
+    const auto v = static_cast<Index>(n);
+    if ((status[v] & kNewlyFinal) == 0) return;
+    std::uint32_t faces = 0;
+    const Index first = zone.vertices[v].half_edge;
+    for (Index h = first; exists(h) && faces <= corners[v];) {
+      ++faces;
+      h = zone.rotate(h);
+      if (h == first) break;
+    }
+    if (faces != corners[v]) ++totals.defects.nonmanifold_vertices;
+    turn_rules::walk_edges(zone, v, [&](Index h) {
+      const Index w = other_end(zone, h, v);
+      bool before = true;  // edges met before h
+      turn_rules::walk_edges(zone, v, [&](Index other) {
+        before = before && other != h;
+        if (before && other_end(zone, other, v) == w && v < w) ++totals.defects.nonmanifold_edges;
+      });
+    });
+  }
+
+  // Places come from scans: what is listed is where they grow.
+  ISOWEAVE_HD void list_triangle(std::int64_t t) const {
+    if (triangle_place[t + 1] != triangle_place[t]) final_triangles[triangle_place[t]] = static_cast<Index>(t);
+  }
+  ISOWEAVE_HD void list_vertex(std::int64_t v) const {
+    if (new_place[v + 1] != new_place[v]) final_vertices[new_place[v]] = static_cast<Index>(v);
+    if (old_place[v + 1] != old_place[v]) final_vertices[new_vertices + old_place[v]] = static_cast<Index>(v);
+  }
+
+  // What the host writes. Vertices that are new get their numbers.
+  ISOWEAVE_HD void write_vertex(std::int64_t n) const {
+    const Index v = final_vertices[n];
+    Vertex& vertex = zone.vertices[v];
+    out_vertices[n] = {vertex.position, vertex.output, vertex.component};
+    if (n >= new_vertices) return;
+    if (out_normals != nullptr) out_normals[n] = zone.normals[v];
+    vertex.output = first_output + static_cast<std::uint64_t>(n);
+    vertex.component = first_component + static_cast<Index>(n);
+  }
+
+  // To be called before vertices get their numbers.
+  ISOWEAVE_HD void write_triangle(std::int64_t n) const {
+    const Triangle& triangle = zone.triangles[final_triangles[n]];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index v = triangle.sides[c].vertex;
+      out_triangles[n][c] = zone.vertices[v].output == kNotWritten ? new_place[v] : new_vertices + old_place[v];
+    }
+  }
+
+  // Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
+  ISOWEAVE_HD void close_sides(std::int64_t n, FinalTotals& totals) const {
+    for (HalfEdge& side : zone.triangles[final_triangles[n]].sides) {
+      const Index twin = load_relaxed(side.twin);
+      if (twin == kNone) ++totals.open_edges;
+      if (exists(twin)) store_relaxed(zone.half(twin).twin, kWritten);
+    }
+  }
+
+  ISOWEAVE_HD void drop(std::int64_t n) const { zone.remove_triangle(final_triangles[n]); }
+};
+
+}  // namespace isoweave

@@ -1,0 +1,96 @@
+// A device that is the host: what a BulkEngine needs of any device, on processors. The tests run its passes on it, so
+// that all but launches and copies is checked where there is no GPU.
+#pragma once
+
+#include <cstring>
+#include <mutex>
+
+#include "parallel/array.hpp"
+#include "parallel/parallel.hpp"
+#include "simplify/round_passes.hpp"
+#include "simplify/scalar_arithmetic.hpp"
+
+namespace isoweave {
+
+class HostDevice {
+ public:
+  explicit HostDevice(const Executor& executor) : executor_(executor) {}
+
+  // An array in the memory of the device. resize() keeps what was there, and leaves new elements as they are.
+  template <class T>
+  using Buffer = Array<T>;
+
+  // Runs Pass for the numbers from 0 to `count`, all at the same time. Passes run one after the other.
+  template <auto Pass, class Passes, class... Arguments>
+  void for_each(std::int64_t count, const Passes& passes, Arguments... arguments) {
+    executor_.for_each(count, kBlock, [&](std::int64_t n) { (passes.*Pass)(n, arguments...); });
+  }
+
+  // The same for a pass that adds to totals.
+  template <auto Pass, class Totals, class Passes>
+  Totals sum(std::int64_t count, const Passes& passes) {
+    Totals sum;
+    std::mutex summing;
+    executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+      Totals own;
+      for (std::int64_t n = begin; n < end; ++n) (passes.*Pass)(n, own);
+      const std::lock_guard guard(summing);
+      sum += own;
+    });
+    return sum;
+  }
+
+  // Replaces the first `count` values by the sums of those before them; the sum of all comes behind them.
+  void scan(Buffer<std::uint32_t>& values, std::size_t count) {
+    std::uint32_t total = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::uint32_t own = values[n];
+      values[n] = total;
+      total += own;
+    }
+    values[count] = total;
+  }
+
+  template <class T>
+  void clear(Buffer<T>& values) {
+    std::memset(static_cast<void*>(values.data()), 0, values.size() * sizeof(T));
+  }
+
+  // To and from the memory of the host, and within the device. What is read is there afterwards; what is written may be
+  // changed.
+  template <class T>
+  void read(const T* from, std::size_t count, T* to) {
+    copy(from, count, to);
+  }
+  template <class T>
+  void write(const T* from, std::size_t count, T* to) {
+    copy(from, count, to);
+  }
+  template <class T>
+  void copy(const T* from, std::size_t count, T* to) {
+    if (count > 0) std::memcpy(static_cast<void*>(to), from, count * sizeof(T));
+  }
+
+  // Runs rounds until nothing changes any more. Returns how many.
+  std::uint64_t run_rounds(const RoundPasses<ScalarArithmetic>& passes, DecisionCounts& counts) {
+    std::uint64_t rounds = 0;
+    for (; *passes.changed.size > 0; ++rounds) {
+      using Passes = RoundPasses<ScalarArithmetic>;
+      *passes.candidates.size = *passes.minima.size = 0;
+      for_each<&Passes::list_candidates>(*passes.changed.size, passes);
+      for_each<&Passes::pick_minimum>(*passes.candidates.size, passes);
+      *passes.changed.size = 0;
+      counts += sum<&Passes::decide, DecisionCounts>(*passes.minima.size, passes);
+      for_each<&Passes::renew>(*passes.changed.size, passes);
+      for_each<&Passes::forget_candidate>(*passes.candidates.size, passes);
+    }
+    return rounds;
+  }
+
+ private:
+  static constexpr std::int64_t kBlock = 1024;
+
+  const Executor& executor_;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,30 @@
+// What simplification counts.
+#pragma once
+
+#include <cstdint>
+
+#include "parallel/host_device.hpp"
+
+namespace isoweave {
+
+struct DecisionCounts {
+  std::uint64_t collapses = 0;
+  std::uint64_t postponed = 0;  // decided, and illegal at the time
+  std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
+  std::uint64_t removed = 0;    // triangles
+
+  ISOWEAVE_HD void operator+=(const DecisionCounts& other) {
+    collapses += other.collapses;
+    postponed += other.postponed;
+    rekeyed += other.rekeyed;
+    removed += other.removed;
+  }
+};
+
+// What final vertices are seen to be when their stars are whole for the last time.
+struct SurfaceDefects {
+  std::uint64_t nonmanifold_edges = 0;
+  std::uint64_t nonmanifold_vertices = 0;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,116 @@
+// How triangles become a part of the zone, element by element: twins, first quadrics, first keys. Shared by host and
+// device.
+#pragma once
+
+#include <cmath>
+
+#include "parallel/atomics.hpp"
+#include "simplify/kernels.hpp"
+
+namespace isoweave {
+
+// One side of an edge, in the list of the end with the smaller number.
+struct EdgeSide {
+  static constexpr Index kBackwards = Index{1} << 31;  // runs from the larger to the smaller number
+
+  Index other = 0;
+  Index half_edge = kNone;
+
+  EdgeSide() = default;
+  ISOWEAVE_HD EdgeSide(Index a, Index b, Index h) : other(a > b ? a | kBackwards : b), half_edge(h) {}
+
+  ISOWEAVE_HD Index other_end() const { return other & ~kBackwards; }
+};
+
+ISOWEAVE_HD inline void lock(const ZoneView& zone, Index v) {
+#ifdef __CUDA_ARCH__
+  zone.states[v] = VertexState::kLocked;  // whoever writes writes the same
+#else
+  std::atomic_ref(zone.states[v]).store(VertexState::kLocked, std::memory_order_relaxed);
+#endif
+}
+
+// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions.
+// Others stay unlinked, and their ends where they are.
+ISOWEAVE_HD inline void link_sorted(const ZoneView& zone, std::span<const EdgeSide> sides) {
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].other_end() == sides[begin].other_end()) ++end;
+    if (end - begin == 1) continue;
+    const Index h = sides[begin].half_edge;
+    if (end - begin == 2 && sides[begin].other != sides[begin + 1].other) {
+      zone.set_twin(h, sides[begin + 1].half_edge);
+      zone.set_twin(sides[begin + 1].half_edge, h);
+    } else {
+      lock(zone, zone.origin(h));
+      lock(zone, zone.destination(h));
+    }
+  }
+}
+
+// Of a face, per twice its area.
+ISOWEAVE_HD inline double initial_weight(const ZoneOptions& options) { return 1 / (6 * options.a0 * options.a0); }
+
+// Of the face of h, twice as long as its area, as seen from the origin of h.
+ISOWEAVE_HD inline Vec3 face_normal(const ZoneView& zone, Index h) {
+  const Vec3 from = zone.vertices[zone.origin(h)].position;
+  return cross(zone.vertices[zone.destination(h)].position - from,
+               zone.vertices[zone.origin(previous(h))].position - from);
+}
+
+// Through the border edge from v to another vertex, perpendicular to its face, weighted by squared length.
+ISOWEAVE_HD inline Quadric border_plane(const ZoneView& zone, Index v, Index other, Index face) {
+  const Vec3 side = zone.vertices[other].position - zone.vertices[v].position;
+  const Vec3 across = cross(side, face_normal(zone, face));
+  const double size = dot(across, across);
+  const double a0 = zone.options.a0;
+  return size > 0 ? plane_quadric(across, dot(side, side) / (a0 * a0 * size)) : Quadric();
+}
+
+// Turns v's start back to the half-edge without a twin, if v lies on a border.
+ISOWEAVE_HD inline void start_at_border(const ZoneView& zone, Index v) {
+  const Index first = zone.vertices[v].half_edge;
+  for (Index h = first; exists(zone.twin(h));) {
+    h = next(zone.twin(h));
+    zone.vertices[v].half_edge = h;
+    if (h == first) return;
+  }
+}
+
+// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
+// border, planes through the two border edges perpendicular to their faces.
+ISOWEAVE_HD inline void give_initial_quadric(const ZoneView& zone, Index v) {
+  start_at_border(zone, v);
+  const Index first = zone.vertices[v].half_edge;
+  Quadric sum;
+  Index h = first;
+  Index last = h;
+  do {
+    const Vec3 normal = face_normal(zone, h);
+    const double size = sqrt(dot(normal, normal));  // twice the area
+    if (size > 0) sum = sum + plane_quadric(normal, initial_weight(zone.options) / size);
+    last = h;
+    h = zone.rotate(h);
+  } while (h != first && exists(h));
+  if (zone.twin(first) == kNone) {
+    sum = sum + border_plane(zone, v, zone.destination(first), first) +
+          border_plane(zone, v, zone.origin(previous(last)), last);
+  }
+  zone.vertices[v].quadric = sum;
+}
+
+// The ends of an edge, the one with the smaller id first.
+ISOWEAVE_HD inline EdgeEnds ends_in_order(const ZoneView& zone, Index a, Index b) {
+  const bool a_first = zone.vertices[a].id < zone.vertices[b].id;
+  return {&zone.vertices[a_first ? a : b], &zone.vertices[a_first ? b : a]};
+}
+
+// Gives an edge its tie, and returns it.
+ISOWEAVE_HD inline std::uint64_t give_tie(const ZoneView& zone, Index h, const EdgeEnds& ends) {
+  const std::uint64_t tie = mix_bits(zone.options.numbering.edge_id(ends.first->id, ends.second->id));
+  const Index twin = zone.twin(h);
+  zone.triangles[h >> 2].tie_low[h & 3] = static_cast<std::uint32_t>(tie);
+  if (exists(twin)) zone.triangles[twin >> 2].tie_low[twin & 3] = static_cast<std::uint32_t>(tie);
+  return tie;
+}
+
+}  // namespace isoweave
