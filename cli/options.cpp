@@ -221,9 +221,8 @@ RunControl run_control(const RunOptions& run) {
                                              {"queue", Schedule::kQueue},
                                              {"local", Schedule::kLocal},
                                              {"rounds", Schedule::kRounds}});
-  if (parse_choice<bool>("--device", run.device, {{"auto", false}, {"cpu", false}, {"cuda", true}})) {
-    throw DeviceError("--device cuda: this build has no CUDA back end");
-  }
+  control.device = parse_choice<Device>("--device", run.device,
+                                        {{"auto", Device::kAutomatic}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}});
   return control;
 }
 

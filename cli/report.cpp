@@ -51,7 +51,7 @@ void add_range(Json& input, double min, double max, std::uint64_t nan) {
 
 Json run_json(const MeshReport& report, Json input) {
   return {{"version", ISOWEAVE_VERSION},
-          {"backend", "cpu"},
+          {"backend", report.device == Device::kCuda ? "cuda" : "cpu"},
           {"threads", report.threads},
           {"slab", report.slab},
           {"schedule", schedule_name(report.schedule)},

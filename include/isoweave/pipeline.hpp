@@ -32,6 +32,12 @@ Length parse_length(std::string_view text, std::string_view unit);
 // index * spacing without origin and direction.
 enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
 
+// Where a run extracts and simplifies. It never changes the result.
+//   automatic  processors, until a device has been measured to be worth its start
+//   cuda       a CUDA device; slabs and the undecided zone live in its memory. mesh_volume only, without a number of
+//              triangles and without checkpoints
+enum class Device : std::uint8_t { kAutomatic, kCpu, kCuda };
+
 // What a run can tell while it goes on.
 struct Progress {
   std::int64_t layer = 0;    // done
@@ -64,6 +70,7 @@ Checkpoint read_checkpoint(const std::string& folder);
 struct RunControl {
   int threads = 0;  // 0: one per processor
   Schedule schedule = Schedule::kAutomatic;
+  Device device = Device::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
   // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it,
@@ -101,6 +108,7 @@ struct MeshReport {
   int threads = 0;
   std::int64_t slab = 0;
   Schedule schedule = Schedule::kQueue;
+  Device device = Device::kCpu;
   double min = 0, max = 0;  // values read; min > max when all were NaN
   std::uint64_t nan = 0;    // samples
   double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
@@ -121,7 +129,7 @@ struct MeshReport {
 };
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
-// and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, Interrupted, and
+// and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, DeviceError, Interrupted, and
 // std::invalid_argument for options out of range (a NaN iso, a negative error); BadInput also when the volume's file
 // has another size or time of change in the end than in the beginning. Memory: slab plus undecided zone. With a
 // checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in

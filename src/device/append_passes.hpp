@@ -36,20 +36,20 @@ struct AppendPasses {
   }
 
   // Counts a side at the end with the smaller number. A new triangle is offered to its vertices to start walks at.
-  ISOWEAVE_HD void count_side(std::int64_t n, std::uint32_t old) const {
+  ISOWEAVE_HD void count_side(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (n >= old) make_least(zone.vertices[zone.origin(h)].half_edge, h);
     if (is_open(n, old, h)) fetch_add(side_base[smaller_end(h)], 1);
   }
 
-  ISOWEAVE_HD void fill_side(std::int64_t n, std::uint32_t old) const {
+  ISOWEAVE_HD void fill_side(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (!is_open(n, old, h)) return;
     sides[fetch_add(side_fill[smaller_end(h)], 1)] = EdgeSide(zone.origin(h), zone.destination(h), h);
   }
 
   // The sides listed at the n-th vertex.
-  ISOWEAVE_HD void pair_sides(std::int64_t n_vertex) const {
+  ISOWEAVE_HD void pair_sides(std::int64_t n_vertex) {
     const std::uint32_t begin = side_base[n_vertex];
     const std::uint32_t end = side_base[n_vertex + 1];
     for (std::uint32_t n = begin + 1; n < end; ++n) {
@@ -62,17 +62,17 @@ struct AppendPasses {
   }
 
   // The vertices that were incomplete, and those beside them.
-  ISOWEAVE_HD void settle_front(std::int64_t n, const Index* old_front) const { settle_old(old_front[n]); }
-  ISOWEAVE_HD void settle_ends(std::int64_t n) const {
+  ISOWEAVE_HD void settle_front(std::int64_t n, const Index* old_front) { settle_old(old_front[n]); }
+  ISOWEAVE_HD void settle_ends(std::int64_t n) {
     settle_old(zone.origin(unkeyed[n]));
     settle_old(zone.destination(unkeyed[n]));
   }
-  ISOWEAVE_HD void settle_new(std::int64_t n) const { settled.push(first_vertex + static_cast<Index>(n)); }
+  ISOWEAVE_HD void settle_new(std::int64_t n) { settled.push(first_vertex + static_cast<Index>(n)); }
 
-  ISOWEAVE_HD void mark_front(std::int64_t n) const { fetch_or(marks[front[n]], kFront); }
+  ISOWEAVE_HD void mark_front(std::int64_t n) { fetch_or(marks[front[n]], kFront); }
 
   // A vertex that later slabs do not add to is complete, and gets its quadric.
-  ISOWEAVE_HD void settle_vertex(std::int64_t n) const {
+  ISOWEAVE_HD void settle_vertex(std::int64_t n) {
     const Index v = settled[n];
     if (!is_incomplete(v) || (marks[v] & kFront) != 0) return;
     zone.states[v] = VertexState::kComplete;
@@ -80,7 +80,7 @@ struct AppendPasses {
   }
 
   // An edge whose ends are complete gets its key; the others wait.
-  ISOWEAVE_HD void settle_edge(std::int64_t n, std::uint32_t old) const {
+  ISOWEAVE_HD void settle_edge(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (n >= old && !zone.represents_edge(h)) return;
     const Index a = zone.origin(h);
@@ -95,7 +95,7 @@ struct AppendPasses {
   }
 
   // After everything else; the rounds begin without marks.
-  ISOWEAVE_HD void settle_turn(std::int64_t n) const {
+  ISOWEAVE_HD void settle_turn(std::int64_t n) {
     const Index v = settled[n];
     give_turn(zone, v);
     marks[v] = 0;

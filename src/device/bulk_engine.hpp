@@ -1,4 +1,4 @@
-// A slab's way through a device: samples go in, final triangles come out, and what is undecided stays there.
+// The engine of any device.
 //
 // The passes are those of the headers beside this one; a Device (host_device.hpp says what that is) runs them. Surface,
 // decisions and order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
@@ -6,43 +6,22 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "device/append_passes.hpp"
 #include "device/compact_passes.hpp"
+#include "device/device_engine.hpp"
 #include "device/extract_passes.hpp"
 #include "device/final_passes.hpp"
-#include "extract/marching_cubes.hpp"
 #include "isoweave/error.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
 
-struct BulkOptions {
-  VolumeInfo volume;
-  IsoRule rule;
-  bool normals = false;
-  ZoneOptions zone;
-  Quality quality = Quality::kNormal;
-};
-
-// What a slab has brought.
-struct SlabCounts {
-  std::int64_t layers = 0;
-  std::uint64_t cells_crossed = 0, triangles = 0, vertices = 0;
-};
-
-// Triangles that have become final, on the host. Vertices written for the first time come first.
-struct FinalPiece {
-  std::vector<FinalVertex> vertices;
-  std::vector<Point> normals;  // of the new ones; or none
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::size_t new_vertices = 0;
-};
-
 template <class Device>
-class BulkEngine {
+class BulkEngine final : public DeviceEngine {
  public:
   BulkEngine(Device device, const BulkOptions& options) : device_(std::move(device)), options_(options) {
     const std::array<std::int64_t, 3>& dims = options.volume.dims;
@@ -61,16 +40,14 @@ class BulkEngine {
     device_.clear(list_sizes_);
   }
 
-  std::int64_t layers_left() const { return end_layer_ - bits_.first_layer; }
+  std::int64_t layers_left() const override { return end_layer_ - next_layer_; }
 
-  // Slices [first, end) that the next `layers` layers read, unclipped.
-  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const {
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {
     const std::int64_t margin = options_.normals ? 1 : 0;
-    return {bits_.first_layer - margin, bits_.first_layer + layers + 1 + margin};
+    return {next_layer_ - margin, next_layer_ + layers + 1 + margin};
   }
 
-  // The most layers of a slab: whatever its samples are, its vertices and triangles can be counted in 32 bits.
-  std::int64_t most_layers() const {
+  std::int64_t most_layers() const override {
     constexpr std::int64_t kMostSamples = std::int64_t{1} << 29;
     const std::int64_t samples = (options_.volume.dims[0] + 2) * (options_.volume.dims[1] + 2);
     if (samples > kMostSamples) {
@@ -80,15 +57,32 @@ class BulkEngine {
     return std::max<std::int64_t>(kMostSamples / samples, 1);
   }
 
-  // Extracts the next `layers` layers, or fewer, though at least one, where they would make more than `most_vertices`,
-  // and adds them to the zone. The window holds what slices_for() names, as far as the volume goes.
-  SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices) {
-    upload(window, layers);
+  void upload(const SliceWindow& window, std::int64_t layers) override {
+    auto [first, end] = slices_for(layers);
+    first = std::max<std::int64_t>(first, 0);
+    end = std::min(end, options_.volume.dims[2]);
+    const std::size_t bytes = options_.volume.slice_bytes();
+    if (end - first > room_) {
+      room_ = end - first;
+      ring_.resize(static_cast<std::size_t>(room_) * bytes);
+      uploaded_ = first;
+      device_.order_uploads();
+    }
+    for (std::int64_t k = std::max(first, uploaded_); k < end; ++k) {
+      device_.upload(window.slice(k), bytes, ring_.data() + static_cast<std::size_t>(k % room_) * bytes);
+    }
+    uploaded_ = std::max(uploaded_, end);
+  }
+
+  SlabCounts extract(std::int64_t layers, std::uint64_t most_vertices) override {
+    device_.await_uploads();
     prepare_words(layers);
-    ExtractPasses passes = extract_passes();
+    bits_.first_layer = next_layer_;
+    const ExtractPasses passes = extract_passes();
     const std::int64_t items = layers * plane();
+    auto* const inside = reinterpret_cast<std::uint32_t*>(inside_.data() + plane_words());
     visit_ring([&]<class T>(const SliceRing<T>& ring) {
-      device_.template for_each<&ExtractPasses::classify<T>>(items, passes, ring);
+      device_.template fill_bits<&ExtractPasses::is_inside<T>>(2 * items, passes, inside, ring);
     });
     device_.template for_each<&ExtractPasses::count>(items, passes);
     device_.scan(vertex_base_, static_cast<std::size_t>(items));
@@ -96,11 +90,11 @@ class BulkEngine {
     SlabCounts counts = choose_layers(layers, most_vertices);
     make_room(counts);
     emit(counts);
+    next_layer_ += counts.layers;
     return counts_ = counts;
   }
 
-  // Links the slab to what was there, and gives quadrics and keys to what is complete now.
-  void append() {
+  void append() override {
     const auto first_vertex = static_cast<Index>(zone_.vertices.size() - counts_.vertices);
     const auto first_triangle = static_cast<Index>(zone_.triangles.size() - counts_.triangles);
     marks_.resize(zone_.vertices.size());
@@ -119,12 +113,10 @@ class BulkEngine {
     device_.template for_each<&AppendPasses::settle_turn>(settled, passes);
     std::swap(unkeyed_, unkeyed_next_);
     unkeyed_count_ = list_size(kUnkeyed);
-    bits_.first_layer += counts_.layers;
     appended_ += counts_.triangles;
   }
 
-  // Decides every edge that can be decided with what has been appended.
-  void decide() {
+  void decide() override {
     candidates_.resize(zone_.vertices.size());
     minima_.resize(zone_.vertices.size());
     marks_.resize(zone_.vertices.size());
@@ -134,8 +126,7 @@ class BulkEngine {
                                   decisions_);
   }
 
-  // Finds what has become final. count_new() of its vertices will be written for the first time.
-  void name_final() {
+  std::size_t name_final() override {
     const std::size_t vertices = zone_.vertices.size();
     const std::size_t triangles = zone_.triangles.size();
     status_.resize(vertices);
@@ -159,12 +150,10 @@ class BulkEngine {
     final_triangle_count_ = read_one(triangle_place_.data() + triangles);
     final_.new_vertices = read_one(new_place_.data() + vertices);
     old_vertex_count_ = read_one(old_place_.data() + vertices);
+    return final_.new_vertices;
   }
 
-  std::size_t count_new() const { return final_.new_vertices; }
-
-  // Takes out what name_final() has found, and gives the new vertices consecutive numbers and labels.
-  void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) {
+  void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) override {
     const std::size_t vertices = final_.new_vertices + old_vertex_count_;
     final_triangles_.resize(final_triangle_count_);
     final_vertices_.resize(vertices);
@@ -193,9 +182,7 @@ class BulkEngine {
     if (8 * gone >= zone_.triangles.size()) compact();
   }
 
-  // Labels of the vertices that have been written and are still held, to be replaced by change(labels).
-  template <class Change>
-  void change_components(const Change& change) {
+  void change_components(const std::function<void(std::span<std::uint32_t*>)>& change) override {
     std::vector<Vertex> held(zone_.vertices.size());
     device_.read(zone_.vertices.data(), held.size(), held.data());
     std::vector<std::uint32_t*> labels;
@@ -206,18 +193,28 @@ class BulkEngine {
     device_.write(held.data(), held.size(), zone_.vertices.data());
   }
 
-  // Of the surface so far: those that are held and have not been collapsed.
-  std::uint64_t live_triangles() const { return appended_ - decisions_.removed - dropped_; }
-  std::size_t held_vertices() const { return zone_.vertices.size(); }
-  std::uint64_t rounds() const { return rounds_; }
-  const DecisionCounts& decisions() const { return decisions_; }
-  const SurfaceDefects& defects() const { return totals_.defects; }
-  std::uint64_t open_edges() const { return totals_.open_edges; }
-  Device& device() { return device_; }
+  std::uint64_t live_triangles() const override { return appended_ - decisions_.removed - dropped_; }
+  std::size_t held_vertices() const override { return zone_.vertices.size(); }
+  std::uint64_t bytes() const override {
+    return arrays_.bytes() + spare_.bytes() +
+           sum_bytes(ring_, inside_, vertex_base_, triangle_base_, front_base_, front_next_base_, front_, front_next_,
+                     unkeyed_, unkeyed_next_, marks_, side_base_, side_fill_, sides_, changed_, candidates_, minima_,
+                     status_, corners_, triangle_place_, new_place_, old_place_, final_triangles_, final_vertices_,
+                     out_vertices_, out_normals_, out_triangles_);
+  }
+  std::uint64_t rounds() const override { return rounds_; }
+  const DecisionCounts& decisions() const override { return decisions_; }
+  const SurfaceDefects& defects() const override { return totals_.defects; }
+  std::uint64_t open_edges() const override { return totals_.open_edges; }
 
  private:
   template <class T>
   using Buffer = typename Device::template Buffer<T>;
+
+  template <class... Buffers>
+  static std::uint64_t sum_bytes(const Buffers&... buffers) {
+    return (... + (buffers.capacity() * sizeof(*buffers.data())));
+  }
 
   enum List : std::size_t { kChanged, kCandidates, kMinima, kUnkeyed, kLists };
 
@@ -238,6 +235,8 @@ class BulkEngine {
       turns.resize(vertex_count);
       triangles.resize(triangle_count);
     }
+
+    std::uint64_t bytes() const { return sum_bytes(vertices, states, normals, turn_keys, turns, triangles); }
 
     ZoneView view(const ZoneOptions& options) {
       const auto show = [](auto& array) { return std::span(array.data(), array.size()); };
@@ -269,23 +268,6 @@ class BulkEngine {
   IndexList list(List which, Buffer<Index>& items) { return {items.data(), list_sizes_.data() + which}; }
   std::uint32_t list_size(List which) { return read_one(list_sizes_.data() + which); }
   void set_list_size(List which, std::uint32_t size) { device_.write(&size, 1, list_sizes_.data() + which); }
-
-  // Slices of the slab that are not on the device yet.
-  void upload(const SliceWindow& window, std::int64_t layers) {
-    auto [first, end] = slices_for(layers);
-    first = std::max<std::int64_t>(first, 0);
-    end = std::min(end, options_.volume.dims[2]);
-    const std::size_t bytes = options_.volume.slice_bytes();
-    if (end - first > room_) {  // the ring begins anew
-      room_ = end - first;
-      ring_.resize(static_cast<std::size_t>(room_) * bytes);
-      uploaded_ = first;
-    }
-    for (std::int64_t k = std::max(first, uploaded_); k < end; ++k) {
-      device_.write(window.slice(k), bytes, ring_.data() + static_cast<std::size_t>(k % room_) * bytes);
-    }
-    uploaded_ = std::max(uploaded_, end);
-  }
 
   template <class Visit>
   void visit_ring(const Visit& visit) {
@@ -400,7 +382,7 @@ class BulkEngine {
     passes.first_vertex = static_cast<Index>(zone_.vertices.size() - counts_.vertices);
     device_.template for_each<&ExtractPasses::count_front>(plane(), passes, counts_.layers, front_next_base_.data());
     device_.scan(front_next_base_, plane_words());
-    const bool last = layers_left() == counts_.layers;
+    const bool last = layers_left() == 0;
     front_next_.resize(last ? 0 : read_one(front_next_base_.data() + plane_words()));
     if (!last) {
       device_.template for_each<&ExtractPasses::list_front>(plane(), passes, counts_.layers,
@@ -443,6 +425,7 @@ class BulkEngine {
   Device device_;
   BulkOptions options_;
   SlabBits bits_;
+  std::int64_t next_layer_ = -1;
   std::int64_t end_layer_ = 0;
 
   // Samples and bits of the slab.

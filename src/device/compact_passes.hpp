@@ -13,16 +13,16 @@ struct CompactPasses {
   Index* front = nullptr;                   // incomplete vertices
   Index* unkeyed = nullptr;                 // half-edges
 
-  ISOWEAVE_HD void keep_front(std::int64_t n) const { vertex_place[front[n]] = 1; }
+  ISOWEAVE_HD void keep_front(std::int64_t n) { vertex_place[front[n]] = 1; }
 
-  ISOWEAVE_HD void keep_triangle(std::int64_t t) const {
+  ISOWEAVE_HD void keep_triangle(std::int64_t t) {
     const Triangle& triangle = from.triangles[static_cast<std::size_t>(t)];
     triangle_place[t] = triangle.sides[0].vertex == kNone ? 0 : 1;
     if (triangle_place[t] == 0) return;
     for (const HalfEdge& side : triangle.sides) store_relaxed(vertex_place[side.vertex], 1);
   }
 
-  ISOWEAVE_HD void move_triangle(std::int64_t n) const {
+  ISOWEAVE_HD void move_triangle(std::int64_t n) {
     const auto t = static_cast<std::size_t>(n);
     if (triangle_place[t + 1] == triangle_place[t]) return;
     Triangle triangle = from.triangles[t];
@@ -33,7 +33,7 @@ struct CompactPasses {
     to.triangles[triangle_place[t]] = triangle;
   }
 
-  ISOWEAVE_HD void move_vertex(std::int64_t n) const {
+  ISOWEAVE_HD void move_vertex(std::int64_t n) {
     const auto v = static_cast<std::size_t>(n);
     if (vertex_place[v + 1] == vertex_place[v]) return;
     const std::size_t place = vertex_place[v];
@@ -46,8 +46,8 @@ struct CompactPasses {
     if (!from.normals.empty()) to.normals[place] = from.normals[v];
   }
 
-  ISOWEAVE_HD void move_front(std::int64_t n) const { front[n] = vertex_place[front[n]]; }
-  ISOWEAVE_HD void move_unkeyed(std::int64_t n) const { unkeyed[n] = moved(unkeyed[n]); }
+  ISOWEAVE_HD void move_front(std::int64_t n) { front[n] = vertex_place[front[n]]; }
+  ISOWEAVE_HD void move_unkeyed(std::int64_t n) { unkeyed[n] = moved(unkeyed[n]); }
 
  private:
   ISOWEAVE_HD Index moved(Index h) const {

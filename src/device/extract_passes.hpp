@@ -152,25 +152,24 @@ struct ExtractPasses {
   };
 
   ISOWEAVE_HD Word word(std::int64_t item) const {
-    return {item / bits.plane(), item / bits.words % bits.rows, item % bits.words};
+    const auto number = static_cast<std::uint32_t>(item);  // divisions of 64 bits are slow on a device
+    const auto words = static_cast<std::uint32_t>(bits.words);
+    const auto rows = static_cast<std::uint32_t>(bits.rows);
+    const std::uint32_t row = number / words;
+    const std::uint32_t n = row / rows;
+    return {n, row - n * rows, number - row * words};
   }
 
-  // Inside bits of a word of slice n + 1.
+  // Whether the n-th lattice point of the slab is inside, from the first one above the front on: words of 64.
   template <class T>
-  ISOWEAVE_HD void classify(std::int64_t item, SliceRing<T> ring) const {
-    const Word at = word(item);
-    const SampleRow<T> samples = ring.row(at.row - 1, bits.first_layer + at.n + 1);
-    std::uint64_t inside = 0;
-    for (int bit = 0; bit < 64; ++bit) {
-      const double f = samples[64 * at.w + bit - 1];
-      const bool is_inside = rule.above ? f >= rule.iso : f <= rule.iso;
-      inside |= std::uint64_t{is_inside} << bit;
-    }
-    bits.inside[bits.word_of(at.n + 1, at.row, at.w)] = inside;
+  ISOWEAVE_HD bool is_inside(std::int64_t n, SliceRing<T> ring) {
+    const Word at = word(n >> 6);
+    const double f = ring.row(at.row - 1, bits.first_layer + at.n + 1)[64 * at.w + (n & 63) - 1];
+    return rule.above ? f >= rule.iso : f <= rule.iso;
   }
 
   // Vertices and triangles of a word: those of layer n and of the slice above it.
-  ISOWEAVE_HD void count(std::int64_t item) const {
+  ISOWEAVE_HD void count(std::int64_t item) {
     const auto [n, row, w] = word(item);
     vertex_base[item] = count_ones(bits.cross_z(n, row, w)) + count_ones(bits.cross_x(n + 1, row, w)) +
                         count_ones(bits.cross_y(n + 1, row, w));
@@ -183,7 +182,7 @@ struct ExtractPasses {
 
   // Makes the vertices of a word: numbered z below the slice first, then x and y on it.
   template <class T>
-  ISOWEAVE_HD void emit_vertices(std::int64_t item, SliceRing<T> ring) const {
+  ISOWEAVE_HD void emit_vertices(std::int64_t item, SliceRing<T> ring) {
     const auto [n, row, w] = word(item);
     const std::int64_t k = bits.first_layer + n;
     Index v = first_vertex + vertex_base[item];
@@ -193,7 +192,7 @@ struct ExtractPasses {
   }
 
   // Makes the triangles of a word, in lattice order.
-  ISOWEAVE_HD void emit_triangles(std::int64_t item, SlabTotals& totals) const {
+  ISOWEAVE_HD void emit_triangles(std::int64_t item, SlabTotals& totals) {
     const auto [n, row, w] = word(item);
     Index t = first_triangle + triangle_base[item];
     for (std::uint64_t active = bits.active_cells(n, row, w); active != 0; active &= active - 1) {
@@ -211,11 +210,11 @@ struct ExtractPasses {
   }
 
   // Crossings of word `at` of the slab's last slice.
-  ISOWEAVE_HD void count_front(std::int64_t at, std::int64_t layers, std::uint32_t* base) const {
+  ISOWEAVE_HD void count_front(std::int64_t at, std::int64_t layers, std::uint32_t* base) {
     const auto [n, row, w] = word(at);
     base[at] = count_ones(bits.cross_x(layers, row, w)) + count_ones(bits.cross_y(layers, row, w));
   }
-  ISOWEAVE_HD void list_front(std::int64_t at, std::int64_t layers, const std::uint32_t* base, Index* vertices) const {
+  ISOWEAVE_HD void list_front(std::int64_t at, std::int64_t layers, const std::uint32_t* base, Index* vertices) {
     const auto [n, row, w] = word(at);
     const Index first = first_vertex + (number_on_slice(layers, row, w) - inherited);
     for (std::uint32_t n_word = base[at]; n_word < base[at + 1]; ++n_word)

@@ -45,7 +45,7 @@ struct FinalPasses {
   Index first_component = 0;
 
   // Vertices all of whose edges are retired are final.
-  ISOWEAVE_HD void name_vertex(std::int64_t n) const {
+  ISOWEAVE_HD void name_vertex(std::int64_t n) {
     const auto v = static_cast<Index>(n);
     VertexState& state = zone.states[v];
     const bool undecided = state == VertexState::kIncomplete || cost_of(zone.turn_keys[v]) <= zone.options.retire;
@@ -56,7 +56,7 @@ struct FinalPasses {
   }
 
   // A triangle is final when its vertices are.
-  ISOWEAVE_HD void name_triangle(std::int64_t t) const {
+  ISOWEAVE_HD void name_triangle(std::int64_t t) {
     const Triangle& triangle = zone.triangles[static_cast<std::size_t>(t)];
     triangle_place[t] = 0;
     if (triangle.sides[0].vertex == kNone) return;
@@ -76,7 +76,7 @@ struct FinalPasses {
 
   // The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must
   // differ.
-  ISOWEAVE_HD void inspect(std::int64_t n, FinalTotals& totals) const {
+  ISOWEAVE_HD void inspect(std::int64_t n, FinalTotals& totals) {
     const auto v = static_cast<Index>(n);
     if ((status[v] & kNewlyFinal) == 0) return;
     std::uint32_t faces = 0;
@@ -98,16 +98,16 @@ struct FinalPasses {
   }
 
   // Places come from scans: what is listed is where they grow.
-  ISOWEAVE_HD void list_triangle(std::int64_t t) const {
+  ISOWEAVE_HD void list_triangle(std::int64_t t) {
     if (triangle_place[t + 1] != triangle_place[t]) final_triangles[triangle_place[t]] = static_cast<Index>(t);
   }
-  ISOWEAVE_HD void list_vertex(std::int64_t v) const {
+  ISOWEAVE_HD void list_vertex(std::int64_t v) {
     if (new_place[v + 1] != new_place[v]) final_vertices[new_place[v]] = static_cast<Index>(v);
     if (old_place[v + 1] != old_place[v]) final_vertices[new_vertices + old_place[v]] = static_cast<Index>(v);
   }
 
   // What the host writes. Vertices that are new get their numbers.
-  ISOWEAVE_HD void write_vertex(std::int64_t n) const {
+  ISOWEAVE_HD void write_vertex(std::int64_t n) {
     const Index v = final_vertices[n];
     Vertex& vertex = zone.vertices[v];
     out_vertices[n] = {vertex.position, vertex.output, vertex.component};
@@ -118,7 +118,7 @@ struct FinalPasses {
   }
 
   // To be called before vertices get their numbers.
-  ISOWEAVE_HD void write_triangle(std::int64_t n) const {
+  ISOWEAVE_HD void write_triangle(std::int64_t n) {
     const Triangle& triangle = zone.triangles[final_triangles[n]];
     for (std::size_t c = 0; c < 3; ++c) {
       const Index v = triangle.sides[c].vertex;
@@ -127,7 +127,7 @@ struct FinalPasses {
   }
 
   // Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
-  ISOWEAVE_HD void close_sides(std::int64_t n, FinalTotals& totals) const {
+  ISOWEAVE_HD void close_sides(std::int64_t n, FinalTotals& totals) {
     for (HalfEdge& side : zone.triangles[final_triangles[n]].sides) {
       const Index twin = load_relaxed(side.twin);
       if (twin == kNone) ++totals.open_edges;
@@ -135,7 +135,7 @@ struct FinalPasses {
     }
   }
 
-  ISOWEAVE_HD void drop(std::int64_t n) const { zone.remove_triangle(final_triangles[n]); }
+  ISOWEAVE_HD void drop(std::int64_t n) { zone.remove_triangle(final_triangles[n]); }
 };
 
 }  // namespace isoweave

@@ -20,15 +20,16 @@ class HostDevice {
   template <class T>
   using Buffer = Array<T>;
 
-  // Runs Pass for the numbers from 0 to `count`, all at the same time. Passes run one after the other.
+  // Runs Pass for the numbers from 0 to `count`, all at the same time. Passes run one after the other. They are members
+  // that are not const: nvcc 13.0 cannot spell pointers to const ones where it launches them.
   template <auto Pass, class Passes, class... Arguments>
-  void for_each(std::int64_t count, const Passes& passes, Arguments... arguments) {
+  void for_each(std::int64_t count, Passes passes, Arguments... arguments) {
     executor_.for_each(count, kBlock, [&](std::int64_t n) { (passes.*Pass)(n, arguments...); });
   }
 
   // The same for a pass that adds to totals.
   template <auto Pass, class Totals, class Passes>
-  Totals sum(std::int64_t count, const Passes& passes) {
+  Totals sum(std::int64_t count, Passes passes) {
     Totals sum;
     std::mutex summing;
     executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
@@ -38,6 +39,18 @@ class HostDevice {
       sum += own;
     });
     return sum;
+  }
+
+  // Bit b of out[n] tells whether Test holds for 32 * n + b.
+  template <auto Test, class Passes, class... Arguments>
+  void fill_bits(std::int64_t count, Passes passes, std::uint32_t* out, Arguments... arguments) {
+    executor_.for_each(count, kBlock, [&](std::int64_t n) {
+      std::uint32_t bits = 0;
+      for (std::int64_t b = 0; b < 32; ++b) {
+        bits |= std::uint32_t{(passes.*Test)(32 * n + b, arguments...)} << b;
+      }
+      out[n] = bits;
+    });
   }
 
   // Replaces the first `count` values by the sums of those before them; the sum of all comes behind them.
@@ -70,6 +83,12 @@ class HostDevice {
   void copy(const T* from, std::size_t count, T* to) {
     if (count > 0) std::memcpy(static_cast<void*>(to), from, count * sizeof(T));
   }
+
+  // Copies to the device that go on beside what else it does. order_uploads() lets them wait for what has been asked
+  // for before, await_uploads() lets everything that comes wait for them.
+  void upload(const std::byte* from, std::size_t bytes, std::byte* to) { copy(from, bytes, to); }
+  void order_uploads() {}
+  void await_uploads() {}
 
   // Runs rounds until nothing changes any more. Returns how many.
   std::uint64_t run_rounds(const RoundPasses<ScalarArithmetic>& passes, DecisionCounts& counts) {

@@ -337,7 +337,8 @@ class Forecaster {
         const double end = at + static_cast<double>(recent);
         return sum(profiles.open, at, end) + sum(profiles.caps, at, end);
       };
-      while (asked == 0 && recent > 1 && extracted() > 2 * kMostSlabVertices) --recent;
+      const double fullest = 2 * static_cast<double>(goal.most_vertices);
+      while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
       const double undecided = held_before(profiles, at, depth);
       const double triangles = extracted();
       most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));

@@ -5,15 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "extract/marching_cubes.hpp"
+#include "device/cuda_engine.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
 #include "pipeline/checkpoint.hpp"
-#include "pipeline/final_output.hpp"
-#include "pipeline/full_output.hpp"
+#include "pipeline/device_slabs.hpp"
+#include "pipeline/host_slabs.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
-#include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
 
@@ -33,36 +32,30 @@ class VolumeSweep {
         options_(options),
         control_(control),
         executor_(control.threads),
-        extractor_(volume_, {stored_rule(volume_, options), options.normals}, executor_),
         voxel_(mean_voxel(volume_.geometry)),
-        // A zone that has been left in the middle cannot be saved.
-        simplifier_(simplifier_options(), executor_, saves() ? nullptr : control.stop),
         world_(volume_.geometry, options.space),
-        output_(world_, sink, executor_, control.measure),
-        full_output_(world_, sink, executor_, control.measure),
+        simplifies_(options.error.value > 0 || !has_cells()),
+        engine_(make_engine(sink)),
         sink_(sink),
-        layers_(extractor_.layers_left()) {
-    if (options.triangles > 0) target_.emplace(simplifier_, executor_, options.triangles);
+        layers_(engine_->layers_left()) {
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
-    window_.emplace(source, extractor_.slices_for(1).first);
+    window_.emplace(source, engine_->slices_for(1).first);
   }
 
   MeshReport run() {
     Stopwatch total;
     start_report();
     if (saves()) save_state();
-    while (extractor_.layers_left() > 0) {
+    while (engine_->layers_left() > 0) {
       stop_if_asked();
-      const SlabPlan plan = next_slab();
-      read_slab(plan);
-      sweep_slab(plan);
+      sweep_slab();
       if (state_is_due()) save_state();
     }
     finish_report();
     check_unchanged();
     Stopwatch finishing;
-    wait_for_sink();
+    engine_->wait_for_sink();
     sink_.finish();
     if (saves()) folder_->clear();
     finishing.lap(report_.seconds_write);
@@ -80,24 +73,51 @@ class VolumeSweep {
     return volume;
   }
 
-  SimplifierOptions simplifier_options() const {
+  double error() const { return options_.error.value * (options_.error.voxels ? voxel_ : 1); }
+
+  ZoneOptions zone_options() const {
     const Lattice lattice{volume_.dims};
     const double a0 = voxel_ * voxel_;
-    const double error = options_.error.value * (options_.error.voxels ? voxel_ : 1);
-    SimplifierOptions out;
-    out.zone = {{lattice.row(), lattice.plane()}, a0, retire_cost(error, a0, options_.triangles)};
-    out.quality = options_.quality;
-    out.schedule = control_.schedule;
-    return out;
+    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error(), a0, options_.triangles)};
+  }
+
+  std::unique_ptr<SlabEngine> make_engine(MeshSink& sink) const {
+    const IsoRule rule = stored_rule(volume_, options_);
+    if (control_.device == Device::kCuda) {
+      check_device_options();
+      return std::make_unique<DeviceSlabs>(
+          make_cuda_engine({volume_, rule, options_.normals, zone_options(), options_.quality}), options_.normals,
+          world_, sink, executor_, control_.measure);
+    }
+    HostSlabs::Options host;
+    host.extract = {rule, options_.normals};
+    host.simplify = {zone_options(), options_.quality, control_.schedule};
+    host.simplifies = simplifies_;
+    host.triangles = options_.triangles;
+    host.voxel = voxel_;
+    host.measure = control_.measure;
+    // A zone that has been left in the middle cannot be saved.
+    return std::make_unique<HostSlabs>(volume_, host, world_, sink, executor_, saves() ? nullptr : control_.stop);
+  }
+
+  // What there is on processors only.
+  void check_device_options() const {
+    const auto refuse = [](const std::string& what) {
+      throw std::invalid_argument("a CUDA device: expected a run without " + what + ", which takes processors");
+    };
+    if (options_.triangles > 0) refuse("a number of triangles to stop at");
+    if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
+    if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
+      refuse("a schedule other than rounds");
+    }
   }
 
   void start_report() {
     report_.threads = executor_.threads();
     report_.slab = options_.slab;
-    report_.schedule = simplifier_.schedule();
-    report_.error = options_.error.value * (options_.error.voxels ? voxel_ : 1);
+    report_.device = control_.device == Device::kCuda ? Device::kCuda : Device::kCpu;
+    report_.error = error();
     const bool turned = options_.space == OutputSpace::kLps || options_.space == OutputSpace::kRas;
-    simplifies_ = report_.error > 0 || !has_cells();
     if (turned && volume_.geometry.space == Space::kUnknown) {
       report_.warnings.push_back(volume_.path + ": the file does not say which space it is in; coordinates are kept");
     }
@@ -117,12 +137,12 @@ class VolumeSweep {
   SlabPlan next_slab() {
     const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
-    const SlabGoal& goal = slab_goal(simplifies_);
+    const SlabGoal& goal = slab_goal(simplifies_, report_.device == Device::kCuda);
     SlabPlan plan;
-    plan.layers = std::min(isoweave::next_slab(volume_, goal, options_.slab, recent_layers_, per_layer),
-                           extractor_.layers_left());
+    plan.layers =
+        std::min(isoweave::next_slab(volume_, goal, options_.slab, recent_layers_, per_layer), engine_->layers_left());
     plan.ahead = slices_ahead(volume_, goal, plan.layers);
-    plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : kMostSlabVertices;
+    plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : goal.most_vertices;
     if (control_.memory > 0) fit_into_cap(plan, per_layer);
     return plan;
   }
@@ -132,7 +152,7 @@ class VolumeSweep {
     const MemoryModel model{
         resident_,           volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
         executor_.threads(), simplifies_,           options_.normals};
-    const auto undecided = static_cast<double>(simplifies_ ? simplifier_.live_triangles() : 0);
+    const auto undecided = static_cast<double>(engine_->held_triangles());
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
       const auto layers = static_cast<double>(plan.layers);
@@ -150,7 +170,7 @@ class VolumeSweep {
   [[noreturn]] void refuse_layer(const MemoryModel& model, double per_layer, double undecided) {
     const auto needed = static_cast<std::uint64_t>(
         model.peak(1, static_cast<double>(window_->room()), per_layer, undecided) / kUsedPart);
-    std::string message = volume_.path + ": layer " + std::to_string(layers_ - extractor_.layers_left() + 1) + " of " +
+    std::string message = volume_.path + ": layer " + std::to_string(layers_ - engine_->layers_left() + 1) + " of " +
                           std::to_string(layers_) + " needs a memory cap of " + std::to_string(needed) +
                           " bytes, found " + std::to_string(control_.memory);
     if (saves()) {
@@ -161,7 +181,7 @@ class VolumeSweep {
   }
 
   void read_slab(const SlabPlan& plan) {
-    const auto [first, end] = extractor_.slices_for(plan.layers);
+    const auto [first, end] = engine_->slices_for(plan.layers);
     std::int64_t read = 0;
     try {
       read = window_->advance(first, end, plan.ahead);
@@ -175,19 +195,24 @@ class VolumeSweep {
     clock_.lap(report_.seconds_read);
   }
 
-  void sweep_slab(const SlabPlan& plan) {
-    const std::int64_t layers = extractor_.extract(*window_, plan.layers, piece_, plan.most_vertices);
-    recent_triangles_ = piece_.triangles.size();
-    recent_layers_ = layers;
-    report_.cells_crossed += piece_.cells_crossed;
-    report_.triangles_extracted += piece_.triangles.size();
-    report_.vertices_extracted += piece_.positions.size();
+  void sweep_slab() {
+    if (plan_.layers == 0) plan_and_read();
+    const std::uint64_t before = report_.triangles_extracted;
+    recent_layers_ = engine_->extract(*window_, plan_.layers, plan_.most_vertices, report_);
+    recent_triangles_ = report_.triangles_extracted - before;
+    plan_ = {};
     clock_.lap(report_.seconds_extract);
-
     SlabRecord record;
-    simplifies_ ? take_final(record) : take_all(record);
+    record.layer = layers_ - engine_->layers_left();
+    record.bytes = window_->bytes();
+    if (engine_->takes_slices_early() && engine_->layers_left() > 0) {
+      plan_and_read();
+      engine_->take_slices(*window_, plan_.layers);
+    }
+    engine_->simplify(record);
+    clock_.lap(report_.seconds_simplify);
+    engine_->write(record, report_);
     clock_.lap(report_.seconds_write);
-    record.layer = layers_ - extractor_.layers_left();
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
     if (control_.progress) {
@@ -195,23 +220,9 @@ class VolumeSweep {
     }
   }
 
-  void take_final(SlabRecord& record) {
-    simplifier_.append(piece_);
-    record.live_triangles = simplifier_.live_triangles();
-    record.bytes = simplifier_.zone().bytes() + window_->bytes();
-    simplifier_.decide();
-    if (target_) extractor_.layers_left() > 0 ? target_->thin_out() : target_->finish();
-    clock_.lap(report_.seconds_simplify);
-    output_.take(simplifier_);
-    output_.report(report_);
-    record.undecided_triangles = simplifier_.live_triangles();
-  }
-
-  void take_all(SlabRecord& record) {
-    record.live_triangles = piece_.triangles.size();
-    record.bytes = window_->bytes();
-    full_output_.take(piece_);
-    full_output_.report(report_);
+  void plan_and_read() {
+    plan_ = next_slab();
+    read_slab(plan_);
   }
 
   // Range of the slices just read, the last ones in the window.
@@ -225,8 +236,7 @@ class VolumeSweep {
   }
 
   void finish_report() {
-    report_simplifier(simplifier_, report_);
-    if (target_) report_target(*target_, options_.triangles, voxel_, report_);
+    engine_->finish(report_);
     const double low = volume_.slope * range_.min + volume_.intercept;
     const double high = volume_.slope * range_.max + volume_.intercept;
     report_.min = volume_.slope > 0 || range_.empty() ? low : high;
@@ -241,11 +251,6 @@ class VolumeSweep {
         volume_.path + ": the surface is empty: iso " + std::to_string(options_.iso) +
         (range_.empty() ? ", no samples are numbers"
                         : ", samples from " + std::to_string(report_.min) + " to " + std::to_string(report_.max)));
-  }
-
-  void wait_for_sink() {
-    output_.wait();
-    full_output_.wait();
   }
 
   // What was read of a file that somebody wrote meanwhile may be of two volumes.
@@ -264,9 +269,9 @@ class VolumeSweep {
   }
 
   bool state_is_due() const {
-    if (!saves() || extractor_.layers_left() == 0) return false;
+    if (!saves() || engine_->layers_left() == 0) return false;
     const CheckpointOptions& options = control_.checkpoint;
-    if (options.layers > 0) return layers_ - extractor_.layers_left() - saved_layer_ >= options.layers;
+    if (options.layers > 0) return layers_ - engine_->layers_left() - saved_layer_ >= options.layers;
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - saved_time_).count() >= options.seconds;
   }
 
@@ -274,10 +279,10 @@ class VolumeSweep {
   void save_state() {
     Checkpoint checkpoint;
     checkpoint.layers = layers_;
-    checkpoint.layer = layers_ - extractor_.layers_left();
+    checkpoint.layer = layers_ - engine_->layers_left();
     if (checkpoint.layer == saved_layer_) return;
     checkpoint.note = control_.checkpoint.note;
-    wait_for_sink();
+    engine_->wait_for_sink();
     checkpoint.mark = sink_.mark();
     const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_);
     exchange(*writer);
@@ -303,10 +308,7 @@ class VolumeSweep {
 
   template <class Archive>
   void exchange(Archive& archive) {
-    extractor_.exchange(archive);
-    simplifier_.exchange(archive);
-    output_.exchange(archive);
-    full_output_.exchange(archive);
+    engine_->exchange(archive);
     archive.value(range_);
     archive.value(recent_layers_);
     archive.value(recent_triangles_);
@@ -320,7 +322,7 @@ class VolumeSweep {
 
   // The first slice that the next slab needs, if the window holds it: its checksum, or nothing.
   std::optional<std::uint32_t> crc_of_next_slice() const {
-    const std::int64_t k = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
+    const std::int64_t k = std::max<std::int64_t>(engine_->slices_for(1).first, 0);
     if (!window_ || k >= window_->end()) return std::nullopt;
     return add_to_crc(0, {window_->slice(k), volume_.slice_bytes()});
   }
@@ -340,17 +342,13 @@ class VolumeSweep {
   const RunIdentity identity_ = identity_of(volume_, options_);  // when the run begins: a file may change meanwhile
   const std::uint64_t resident_ = resident_process_bytes();
   const Executor executor_;
-  MarchingCubes extractor_;
   double voxel_;  // mean side of a voxel
-  Simplifier simplifier_;
-  std::optional<CountTarget> target_;
   World world_;
-  FinalOutput output_;
-  FullOutput full_output_;
-  bool simplifies_ = true;
+  bool simplifies_;
+  std::unique_ptr<SlabEngine> engine_;
   MeshSink& sink_;
   std::optional<SliceWindow> window_;
-  SurfacePiece piece_;
+  SlabPlan plan_;  // of the slices that have been read; no layers: of none
   SampleRange range_;
   MeshReport report_;
   Stopwatch clock_;

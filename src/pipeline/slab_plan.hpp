@@ -12,15 +12,19 @@ namespace isoweave {
 // without it a slab goes through the caches several times.
 struct SlabGoal {
   double triangles;
-  std::int64_t bytes;  // of its slices
+  std::int64_t bytes;           // of its slices
+  std::uint64_t most_vertices;  // a slab that turns out to be fuller is cut, where no thickness is asked for
 };
-inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{64} << 20};
-inline constexpr SlabGoal kFullSlab{100000, std::int64_t{4} << 20};
+inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{64} << 20, 120000};
+inline constexpr SlabGoal kFullSlab{100000, std::int64_t{4} << 20, 120000};
 
-inline const SlabGoal& slab_goal(bool simplifies) { return simplifies ? kSimplifiedSlab : kFullSlab; }
+// A device wants work for all its threads, and has memory of its own.
+inline constexpr SlabGoal kDeviceSlab{4e6, std::int64_t{256} << 20, 3000000};
 
-// A slab that turns out to be fuller is cut, where no thickness is asked for.
-inline constexpr std::uint64_t kMostSlabVertices = 120000;
+inline const SlabGoal& slab_goal(bool simplifies, bool device = false) {
+  if (device) return kDeviceSlab;
+  return simplifies ? kSimplifiedSlab : kFullSlab;
+}
 
 // Of a memory cap, what slabs are planned for: the formula is not exact, and the next layers may be fuller.
 inline constexpr double kUsedPart = 0.8;

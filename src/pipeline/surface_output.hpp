@@ -31,6 +31,9 @@ class SurfaceOutput {
   std::uint64_t vertices() const { return vertices_; }
   ComponentCounter& components() { return components_; }
 
+  // Of the next vertex that is added.
+  std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
+
   // Adds vertices with consecutive numbers from vertices() on and consecutive labels from the one returned.
   // position(n), normal(n): of the n-th of them, called by any thread.
   template <class Position, class Normal>

@@ -1,86 +1,109 @@
-// What a device runs, run on processors: the same mesh, counts and order of output as the host's own path.
+// A device gives the host's mesh: vertices, triangles, their order and every count.
+//
+// The passes that a device runs are run on processors here, always; on a CUDA device where there is one.
 #include <gtest/gtest.h>
 
 #include "device/bulk_engine.hpp"
+#include "device/cuda_engine.hpp"
 #include "device/host_device.hpp"
+#include "pipeline/device_slabs.hpp"
 #include "surfaces.hpp"
 
 namespace isoweave::testing {
 namespace {
 
-using Engine = BulkEngine<HostDevice>;
-
-struct DeviceRun {
-  TriangleMesh mesh;
-  SlabCounts counts;
-  DecisionCounts decisions;
-  std::uint64_t open_edges = 0;
-};
-
-DeviceRun run_on_device(const SurfaceCase& surface, std::int64_t slab, bool normals) {
-  const Executor executor(3);
-  const auto source = generate_volume(surface.volume);
-  Engine engine(HostDevice(executor), {source->info(), surface.rule(), normals, surface.zone(), surface.quality});
-  SliceWindow window(*source, engine.slices_for(1).first);
-  DeviceRun run;
-  FinalPiece piece;
-  while (engine.layers_left() > 0) {
-    const std::int64_t layers = std::min(slab, engine.layers_left());
-    const auto [first, end] = engine.slices_for(layers);
+// The pipeline's way through an engine, slab by slab.
+SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, bool normals, std::int64_t slab) {
+  const Executor executor(2);
+  const World world;
+  MemorySink sink;
+  DeviceSlabs slabs(std::move(engine), normals, world, sink, executor, true);
+  SliceWindow window(source, slabs.slices_for(1).first);
+  SurfaceRun run;
+  while (slabs.layers_left() > 0) {
+    const std::int64_t layers = std::min(slab, slabs.layers_left());
+    const auto [first, end] = slabs.slices_for(layers);
     window.advance(first, end);
-    const SlabCounts counts = engine.extract(window, layers, 1 << 30);
-    run.counts.cells_crossed += counts.cells_crossed;
-    run.counts.triangles += counts.triangles;
-    engine.append();
-    engine.decide();
-    engine.name_final();
-    const std::uint64_t written = run.mesh.vertices.size();
-    engine.take_final(written, 0, piece);
-    for (std::size_t n = 0; n < piece.new_vertices; ++n) {
-      const Vec3 p = piece.vertices[n].position;
-      run.mesh.vertices.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    }
-    run.mesh.normals.insert(run.mesh.normals.end(), piece.normals.begin(), piece.normals.end());
-    for (const auto& triangle : piece.triangles) {
-      std::array<std::uint32_t, 3> numbers;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint64_t number =
-            triangle[c] < piece.new_vertices ? written + triangle[c] : piece.vertices[triangle[c]].output;
-        numbers[c] = static_cast<std::uint32_t>(number);
-      }
-      run.mesh.triangles.push_back(numbers);
-    }
+    slabs.extract(window, layers, 1 << 30, run.report);
+    SlabRecord record;
+    slabs.simplify(record);
+    slabs.write(record, run.report);
+    run.report.sweep.push_back(record);
   }
-  run.decisions = engine.decisions();
-  run.open_edges = engine.open_edges();
-  EXPECT_EQ(engine.defects().nonmanifold_edges, 0u);
-  EXPECT_EQ(engine.defects().nonmanifold_vertices, 0u);
-  EXPECT_EQ(engine.live_triangles(), 0u);
+  slabs.wait_for_sink();
+  slabs.finish(run.report);
+  run.mesh = std::move(sink.mesh);
   return run;
 }
 
-class Device : public ::testing::TestWithParam<std::tuple<std::string, bool>> {};
+BulkOptions bulk_options(const SurfaceCase& surface, const VolumeInfo& volume, bool normals) {
+  return {volume, surface.rule(), normals, surface.zone(), surface.quality};
+}
 
-TEST_P(Device, GivesTheHostsMeshInTheHostsOrder) {
-  SurfaceCase surface;
-  surface.volume.kind = std::get<0>(GetParam());
-  surface.volume.dims = {70, 15, 20};
-  surface.volume.spacing = {0.7, 0.8, 1.9};
-  surface.volume.seed = 7;
-  surface.closed = std::get<1>(GetParam());
-  for (const double error : {0.0, 0.05, 0.4}) {
+SurfaceRun run_on_processors(const SurfaceCase& surface, std::int64_t slab) {
+  const Executor executor(3);
+  const auto source = generate_volume(surface.volume);
+  return sweep_on(
+      std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk_options(surface, source->info(), false)),
+      *source, false, slab);
+}
+
+void expect_same(const SurfaceRun& device, const SurfaceRun& host) {
+  EXPECT_EQ(device.mesh.vertices, host.mesh.vertices);
+  EXPECT_EQ(device.mesh.triangles, host.mesh.triangles);
+  EXPECT_EQ(digest_text(device.report.digest), digest_text(host.report.digest));
+  EXPECT_EQ(device.report.triangles_extracted, host.report.triangles_extracted);
+  EXPECT_EQ(device.report.vertices_extracted, host.report.vertices_extracted);
+  EXPECT_EQ(device.report.collapses, host.report.collapses);
+  EXPECT_EQ(device.report.postponed, host.report.postponed);
+  EXPECT_EQ(device.report.rekeyed, host.report.rekeyed);
+  EXPECT_EQ(device.report.open_edges, host.report.open_edges);
+  EXPECT_EQ(device.report.components, host.report.components);
+  EXPECT_EQ(device.report.euler, host.report.euler);
+  EXPECT_EQ(device.report.nonmanifold_edges, 0u);
+  EXPECT_EQ(device.report.nonmanifold_vertices, 0u);
+}
+
+class Device : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
+ protected:
+  SurfaceCase surface(double error, Quality quality) const {
+    SurfaceCase surface;
+    surface.volume.kind = std::get<0>(GetParam());
+    surface.volume.dims = {70, 15, 20};
+    surface.volume.spacing = {0.7, 0.8, 1.9};
+    surface.volume.seed = 7;
+    surface.closed = std::get<1>(GetParam());
     surface.error = error;
-    for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{5}, kWholeVolume}) {
-      const SurfaceRun host = sweep(surface, Schedule::kRounds, 1, slab);
-      const DeviceRun device = run_on_device(surface, slab, false);
-      EXPECT_EQ(device.mesh.vertices, host.mesh.vertices) << "error " << error << ", slab " << slab;
-      EXPECT_EQ(device.mesh.triangles, host.mesh.triangles) << "error " << error << ", slab " << slab;
-      EXPECT_EQ(device.counts.triangles, host.report.triangles_extracted);
-      EXPECT_EQ(device.decisions.collapses, host.report.collapses);
-      EXPECT_EQ(device.decisions.postponed, host.report.postponed);
-      EXPECT_EQ(device.decisions.rekeyed, host.report.rekeyed);
-      EXPECT_EQ(device.open_edges, host.report.open_edges);
+    surface.quality = quality;
+    return surface;
+  }
+
+  // run(surface, slab): on the device.
+  template <class Run>
+  void expect_host_results(const Run& run) const {
+    for (const Quality quality : {Quality::kFast, Quality::kNormal, Quality::kFine}) {
+      for (const double error : {0.0, 0.05, 0.4}) {
+        if (quality != Quality::kNormal && error != 0.4) continue;
+        const SurfaceCase surface = this->surface(error, quality);
+        for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{5}, kWholeVolume}) {
+          SCOPED_TRACE("error " + std::to_string(error) + ", slab " + std::to_string(slab));
+          expect_same(run(surface, slab), sweep(surface, Schedule::kRounds, 1, slab));
+        }
+      }
     }
+  }
+};
+
+TEST_P(Device, GivesTheHostsMeshInTheHostsOrder) { expect_host_results(run_on_processors); }
+
+TEST_P(Device, GivesTheHostsMeshByCuda) {
+  try {
+    expect_host_results([](const SurfaceCase& surface, std::int64_t slab) {
+      const auto source = generate_volume(surface.volume);
+      return sweep_on(make_cuda_engine(bulk_options(surface, source->info(), false)), *source, false, slab);
+    });
+  } catch (const DeviceError& error) {
+    GTEST_SKIP() << error.what();
   }
 }
 
@@ -90,6 +113,95 @@ INSTANTIATE_TEST_SUITE_P(Volumes, Device,
                          [](const auto& test) {
                            return std::get<0>(test.param) + (std::get<1>(test.param) ? "Closed" : "Open");
                          });
+
+// Every type of sample, with normals, through engine and host: what is read, and what is left out.
+class DeviceSamples : public ::testing::TestWithParam<SampleType> {};
+
+TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
+  GenerateOptions volume;
+  volume.kind = "noise";
+  volume.dims = {67, 9, 11};
+  volume.type = GetParam();
+  volume.seed = 3;
+  for (const bool above : {true, false}) {
+    MeshOptions options;
+    options.iso = suggested_iso(volume.kind, volume.type);
+    options.inside_above = above;
+    options.normals = true;
+    options.error = {0.1, true};
+    options.slab = 4;
+    RunControl control;
+    control.schedule = Schedule::kRounds;
+    MemorySink expected;
+    mesh_volume(*generate_volume(volume), expected, options, control);
+
+    const Executor executor(2);
+    const auto source = generate_volume(volume);
+    const Lattice lattice{volume.dims};
+    const BulkOptions bulk{source->info(),
+                           stored_rule(source->info(), options),
+                           true,
+                           {{lattice.row(), lattice.plane()}, 1, retire_cost(0.1, 1)},
+                           Quality::kNormal};
+    const SurfaceRun run =
+        sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, true, 4);
+    EXPECT_GT(expected.mesh.triangles.size(), 100u);
+    EXPECT_EQ(run.mesh.vertices, expected.mesh.vertices);
+    EXPECT_EQ(run.mesh.normals, expected.mesh.normals);
+    EXPECT_EQ(run.mesh.triangles, expected.mesh.triangles);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, DeviceSamples,
+                         ::testing::Values(SampleType::kUint8, SampleType::kInt8, SampleType::kUint16,
+                                           SampleType::kInt16, SampleType::kUint32, SampleType::kInt32,
+                                           SampleType::kFloat32, SampleType::kFloat64),
+                         [](const auto& test) { return std::string(sample_type_name(test.param)); });
+
+// A slab that turns out too full is cut where the host would cut it.
+TEST(DeviceEngine, CutsSlabsAtTheLayerThatIsTooMuch) {
+  SurfaceCase surface;
+  surface.volume.kind = "gyroid";
+  surface.volume.dims = {40, 40, 24};
+  const Executor executor(2);
+  const auto host_source = generate_volume(surface.volume);
+  MarchingCubes host(host_source->info(), {surface.rule(), false}, executor);
+  SliceWindow host_window(*host_source);
+  const auto source = generate_volume(surface.volume);
+  BulkEngine<HostDevice> engine(HostDevice(executor), bulk_options(surface, source->info(), false));
+  SliceWindow window(*source);
+  SurfacePiece piece;
+  while (engine.layers_left() > 0) {
+    ASSERT_EQ(engine.layers_left(), host.layers_left());
+    const std::int64_t layers = std::min<std::int64_t>(8, engine.layers_left());
+    host_window.advance(host.slices_for(layers).first, host.slices_for(layers).second);
+    window.advance(engine.slices_for(layers).first, engine.slices_for(layers).second);
+    engine.upload(window, layers);
+    const SlabCounts counts = engine.extract(layers, 3000);
+    EXPECT_EQ(counts.layers, host.extract(host_window, layers, piece, 3000));
+    EXPECT_EQ(counts.vertices, piece.positions.size());
+    EXPECT_EQ(counts.triangles, piece.triangles.size());
+    EXPECT_EQ(counts.cells_crossed, piece.cells_crossed);
+    engine.append();
+  }
+}
+
+TEST(DeviceEngine, IsRefusedWhatItCannotDo) {
+  GenerateOptions volume;
+  volume.dims = {8, 8, 8};
+  RunControl control;
+  control.device = isoweave::Device::kCuda;
+  MemorySink sink;
+  MeshOptions options;
+  options.triangles = 100;
+  EXPECT_THROW(mesh_volume(*generate_volume(volume), sink, options, control), std::invalid_argument);
+  options.triangles = 0;
+  control.schedule = Schedule::kQueue;
+  EXPECT_THROW(mesh_volume(*generate_volume(volume), sink, options, control), std::invalid_argument);
+  control.schedule = Schedule::kAutomatic;
+  control.checkpoint.folder = "anywhere";
+  EXPECT_THROW(mesh_volume(*generate_volume(volume), sink, options, control), std::invalid_argument);
+}
 
 }  // namespace
 }  // namespace isoweave::testing

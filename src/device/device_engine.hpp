@@ -1,0 +1,90 @@
+// A slab's way through a device, as the sweep sees it: samples go in, final triangles come out, and what is undecided
+// stays there.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "device/final_passes.hpp"
+#include "extract/rules.hpp"
+#include "isoweave/simplify_options.hpp"
+#include "simplify/zone_view.hpp"
+#include "slab/slice_window.hpp"
+
+namespace isoweave {
+
+struct BulkOptions {
+  VolumeInfo volume;
+  IsoRule rule;
+  bool normals = false;
+  ZoneOptions zone;
+  Quality quality = Quality::kNormal;
+};
+
+// What a slab has brought.
+struct SlabCounts {
+  std::int64_t layers = 0;
+  std::uint64_t cells_crossed = 0, triangles = 0, vertices = 0;
+};
+
+// Triangles that have become final, on the host. Vertices written for the first time come first.
+struct FinalPiece {
+  std::vector<FinalVertex> vertices;
+  std::vector<Point> normals;  // of the new ones; or none
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::size_t new_vertices = 0;
+};
+
+// Throws DeviceError when the device fails or has no memory left.
+class DeviceEngine {
+ public:
+  DeviceEngine() = default;
+  DeviceEngine(const DeviceEngine&) = delete;
+  DeviceEngine& operator=(const DeviceEngine&) = delete;
+  virtual ~DeviceEngine() = default;
+
+  virtual std::int64_t layers_left() const = 0;
+
+  // Slices [first, end) that the next `layers` layers read, unclipped.
+  virtual std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const = 0;
+
+  // The most layers of a slab: whatever its samples are, its vertices and triangles can be counted in 32 bits. Throws
+  // OverMemory when there is no such slab.
+  virtual std::int64_t most_layers() const = 0;
+
+  // Sends slices on their way that the next `layers` layers read; comes back before they are there. The window holds
+  // them, as far as the volume goes.
+  virtual void upload(const SliceWindow& window, std::int64_t layers) = 0;
+
+  // Extracts the next `layers` layers, which have been uploaded, or fewer, though at least one, where they would make
+  // more than `most_vertices`, and adds them to the zone. Throws OverMemory when the zone would hold 2^30 triangles.
+  virtual SlabCounts extract(std::int64_t layers, std::uint64_t most_vertices) = 0;
+
+  // Links the slab to what was there, and gives quadrics and keys to what is complete now.
+  virtual void append() = 0;
+
+  // Decides every edge that can be decided with what has been appended.
+  virtual void decide() = 0;
+
+  // Finds what has become final. Returns how many of its vertices will be written for the first time.
+  virtual std::size_t name_final() = 0;
+
+  // Takes out what name_final() has found, and gives the new vertices consecutive numbers and labels.
+  virtual void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) = 0;
+
+  // Lets the caller replace the labels of the vertices that have been written and are still held.
+  virtual void change_components(const std::function<void(std::span<std::uint32_t*>)>& change) = 0;
+
+  virtual std::uint64_t live_triangles() const = 0;  // held, and not collapsed
+  virtual std::size_t held_vertices() const = 0;
+  virtual std::uint64_t bytes() const = 0;  // of the device
+  virtual std::uint64_t rounds() const = 0;
+  virtual const DecisionCounts& decisions() const = 0;
+  virtual const SurfaceDefects& defects() const = 0;
+  virtual std::uint64_t open_edges() const = 0;
+};
+
+}  // namespace isoweave

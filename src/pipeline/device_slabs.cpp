@@ -1,0 +1,62 @@
+#include "pipeline/device_slabs.hpp"
+
+#include <stdexcept>
+
+namespace isoweave {
+
+std::int64_t DeviceSlabs::extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                                  MeshReport& report) {
+  engine_->upload(window, layers);
+  const SlabCounts counts = engine_->extract(layers, most_vertices);
+  report.cells_crossed += counts.cells_crossed;
+  report.triangles_extracted += counts.triangles;
+  report.vertices_extracted += counts.vertices;
+  return counts.layers;
+}
+
+void DeviceSlabs::simplify(SlabRecord& record) {
+  engine_->append();
+  record.live_triangles = engine_->live_triangles();
+  record.bytes += engine_->bytes();
+  engine_->decide();
+}
+
+void DeviceSlabs::write(SlabRecord& record, MeshReport& report) {
+  const std::uint64_t first = output_.vertices();
+  const std::size_t added = engine_->name_final();
+  const std::uint32_t label = output_.next_label();
+  engine_->take_final(first, label, piece_);
+  output_.add_vertices(
+      added, normals_, [&](std::size_t n) { return piece_.vertices[n].position; },
+      [&](std::size_t n) { return piece_.normals[n]; });
+  const auto corner = [&](std::size_t n, std::size_t c) {
+    const std::uint32_t v = piece_.triangles[n][c];
+    const FinalVertex& vertex = piece_.vertices[v];
+    return v < added ? OutputCorner{first + v, label + v, vertex.position}
+                     : OutputCorner{vertex.output, vertex.component, vertex.position};
+  };
+  output_.add_triangles(
+      piece_.triangles.size(), [&](std::size_t n, std::size_t c) { return corner(n, c).number; }, corner);
+  if (output_.components().labels() > engine_->held_vertices()) {
+    engine_->change_components([&](std::span<std::uint32_t*> labels) { output_.components().compact(labels); });
+  }
+  output_.report(engine_->open_edges(), report);
+  record.undecided_triangles = engine_->live_triangles();
+}
+
+void DeviceSlabs::finish(MeshReport& report) const {
+  report.schedule = Schedule::kRounds;
+  const DecisionCounts& counts = engine_->decisions();
+  report.collapses = counts.collapses;
+  report.postponed = counts.postponed;
+  report.rekeyed = counts.rekeyed;
+  report.rounds = engine_->rounds();
+  report.nonmanifold_edges = engine_->defects().nonmanifold_edges;
+  report.nonmanifold_vertices = engine_->defects().nonmanifold_vertices;
+}
+
+void DeviceSlabs::exchange(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
+
+void DeviceSlabs::exchange(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
+
+}  // namespace isoweave

@@ -1,0 +1,58 @@
+#include "pipeline/host_slabs.hpp"
+
+#include "pipeline/sweep.hpp"
+
+namespace isoweave {
+
+HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, MeshSink& sink,
+                     const Executor& executor, const std::atomic<bool>* stop)
+    : options_(options),
+      extractor_(volume, options.extract, executor),
+      simplifier_(options.simplify, executor, stop),
+      output_(world, sink, executor, options.measure),
+      full_output_(world, sink, executor, options.measure) {
+  if (options.triangles > 0) target_.emplace(simplifier_, executor, options.triangles);
+}
+
+std::int64_t HostSlabs::extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                                MeshReport& report) {
+  const std::int64_t extracted = extractor_.extract(window, layers, piece_, most_vertices);
+  report.cells_crossed += piece_.cells_crossed;
+  report.triangles_extracted += piece_.triangles.size();
+  report.vertices_extracted += piece_.positions.size();
+  return extracted;
+}
+
+void HostSlabs::simplify(SlabRecord& record) {
+  record.live_triangles = piece_.triangles.size();
+  if (!options_.simplifies) return;
+  simplifier_.append(piece_);
+  record.live_triangles = simplifier_.live_triangles();
+  record.bytes += simplifier_.zone().bytes();
+  simplifier_.decide();
+  if (target_) layers_left() > 0 ? target_->thin_out() : target_->finish();
+}
+
+void HostSlabs::write(SlabRecord& record, MeshReport& report) {
+  if (options_.simplifies) {
+    output_.take(simplifier_);
+    output_.report(report);
+    record.undecided_triangles = simplifier_.live_triangles();
+  } else {
+    full_output_.take(piece_);
+    full_output_.report(report);
+  }
+}
+
+void HostSlabs::wait_for_sink() {
+  output_.wait();
+  full_output_.wait();
+}
+
+void HostSlabs::finish(MeshReport& report) const {
+  report.schedule = simplifier_.schedule();
+  report_simplifier(simplifier_, report);
+  if (target_) report_target(*target_, options_.triangles, options_.voxel, report);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,61 @@
+// Slabs on processors.
+#pragma once
+
+#include <optional>
+
+#include "extract/marching_cubes.hpp"
+#include "pipeline/final_output.hpp"
+#include "pipeline/full_output.hpp"
+#include "pipeline/slab_engine.hpp"
+#include "simplify/count_target.hpp"
+
+namespace isoweave {
+
+class HostSlabs final : public SlabEngine {
+ public:
+  struct Options {
+    ExtractOptions extract;
+    SimplifierOptions simplify;
+    bool simplifies = true;
+    std::uint64_t triangles = 0;  // to stop at; 0: no such number
+    double voxel = 1;             // mean side
+    bool measure = true;
+  };
+
+  // stop: set, and simplify() throws Interrupted, if it is not null.
+  HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, MeshSink& sink,
+            const Executor& executor, const std::atomic<bool>* stop);
+
+  std::int64_t layers_left() const override { return extractor_.layers_left(); }
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {
+    return extractor_.slices_for(layers);
+  }
+  std::int64_t extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                       MeshReport& report) override;
+  void simplify(SlabRecord& record) override;
+  void write(SlabRecord& record, MeshReport& report) override;
+  std::uint64_t held_triangles() const override { return options_.simplifies ? simplifier_.live_triangles() : 0; }
+  void wait_for_sink() override;
+  void finish(MeshReport& report) const override;
+  void exchange(StateWriter& state) override { exchange_with(state); }
+  void exchange(StateReader& state) override { exchange_with(state); }
+
+ private:
+  template <class Archive>
+  void exchange_with(Archive& archive) {
+    extractor_.exchange(archive);
+    simplifier_.exchange(archive);
+    output_.exchange(archive);
+    full_output_.exchange(archive);
+  }
+
+  Options options_;
+  MarchingCubes extractor_;
+  Simplifier simplifier_;
+  std::optional<CountTarget> target_;
+  FinalOutput output_;
+  FullOutput full_output_;
+  SurfacePiece piece_;
+};
+
+}  // namespace isoweave
