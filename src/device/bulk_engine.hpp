@@ -202,6 +202,15 @@ class BulkEngine final : public DeviceEngine {
                      status_, corners_, triangle_place_, new_place_, old_place_, final_triangles_, final_vertices_,
                      out_vertices_, out_normals_, out_triangles_);
   }
+  std::uint64_t room_for_vertices(std::uint64_t cap) const override {
+    // In the zone, twice, as compaction moves it from one set of arrays to another; and in the lists of its passes.
+    constexpr std::uint64_t kZone = sizeof(Vertex) + sizeof(Key) + sizeof(Turn) + 2 * sizeof(Triangle) + sizeof(Point);
+    constexpr std::uint64_t kLists = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(FinalVertex) + sizeof(Point);
+    const std::uint64_t held = bytes();
+    std::uint64_t room = device_.free_bytes();
+    if (cap > 0) room = std::min(room, cap > held ? cap - held : 0);
+    return room / (2 * kZone + kLists);
+  }
   std::uint64_t rounds() const override { return rounds_; }
   const DecisionCounts& decisions() const override { return decisions_; }
   const SurfaceDefects& defects() const override { return totals_.defects; }

@@ -144,6 +144,7 @@ class Device {
   }
   Device(Device&& other) noexcept
       : processors_(other.processors_),
+        pool_(other.pool_),
         uploads_(std::exchange(other.uploads_, nullptr)),
         uploaded_(std::exchange(other.uploaded_, nullptr)),
         staging_(std::move(other.staging_)),
@@ -157,6 +158,18 @@ class Device {
     cudaFreeAsync(scratch_, stream());
     cudaEventDestroy(uploaded_);
     cudaStreamDestroy(uploads_);
+  }
+
+  // What the pool holds and nobody uses is free as well.
+  std::uint64_t free_bytes() const {
+    std::size_t free = 0;
+    std::size_t total = 0;
+    check(cudaMemGetInfo(&free, &total), "memory");
+    std::uint64_t reserved = 0;
+    std::uint64_t used = 0;
+    check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved), "memory pool");
+    check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &used), "memory pool");
+    return free + (reserved - used);
   }
 
   template <auto Pass, class Passes, class... Arguments>
@@ -260,11 +273,10 @@ class Device {
   static constexpr std::size_t kStaging = std::size_t{8} << 20;
 
   // Memory that is freed stays with the process: slabs want it again at once.
-  static void keep_freed_memory(int device) {
-    cudaMemPool_t pool = nullptr;
+  void keep_freed_memory(int device) {
     std::uint64_t all = ~std::uint64_t{0};
-    check(cudaDeviceGetDefaultMemPool(&pool, device), "memory pool");
-    check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "memory pool");
+    check(cudaDeviceGetDefaultMemPool(&pool_, device), "memory pool");
+    check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &all), "memory pool");
   }
 
   // Threads take several items where there are many.
@@ -294,6 +306,7 @@ class Device {
   }
 
   int processors_ = 1;
+  cudaMemPool_t pool_ = nullptr;
   cudaStream_t uploads_ = nullptr;
   cudaEvent_t uploaded_ = nullptr;
   std::array<std::unique_ptr<Pinned>, 4> staging_;

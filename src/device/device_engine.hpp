@@ -80,7 +80,11 @@ class DeviceEngine {
 
   virtual std::uint64_t live_triangles() const = 0;  // held, and not collapsed
   virtual std::size_t held_vertices() const = 0;
-  virtual std::uint64_t bytes() const = 0;  // of the device
+  virtual std::uint64_t bytes() const = 0;  // held in the memory of the device
+
+  // New vertices, with their triangles, for which there is room on the device, where no more than `cap` bytes of it may
+  // be held (0: all of it).
+  virtual std::uint64_t room_for_vertices(std::uint64_t cap) const = 0;
   virtual std::uint64_t rounds() const = 0;
   virtual const DecisionCounts& decisions() const = 0;
   virtual const SurfaceDefects& defects() const = 0;

@@ -20,6 +20,9 @@ class HostDevice {
   template <class T>
   using Buffer = Array<T>;
 
+  // Memory that is left.
+  std::uint64_t free_bytes() const { return ~std::uint64_t{0}; }
+
   // Runs Pass for the numbers from 0 to `count`, all at the same time. Passes run one after the other. They are members
   // that are not const: nvcc 13.0 cannot spell pointers to const ones where it launches them.
   template <auto Pass, class Passes, class... Arguments>

@@ -19,6 +19,8 @@ class DeviceSlabs final : public SlabEngine {
   std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {
     return engine_->slices_for(layers);
   }
+  std::uint64_t room_for_vertices(std::uint64_t cap) const override { return engine_->room_for_vertices(cap); }
+  std::int64_t most_layers() const override { return engine_->most_layers(); }
   std::int64_t extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                        MeshReport& report) override;
   bool takes_slices_early() const override { return true; }

@@ -143,6 +143,7 @@ class VolumeSweep {
         std::min(isoweave::next_slab(volume_, goal, options_.slab, recent_layers_, per_layer), engine_->layers_left());
     plan.ahead = slices_ahead(volume_, goal, plan.layers);
     plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : goal.most_vertices;
+    plan.most_vertices = std::min(plan.most_vertices, engine_->room_for_vertices(control_.memory));
     if (control_.memory > 0) fit_into_cap(plan, per_layer);
     return plan;
   }

@@ -24,6 +24,13 @@ class SlabEngine {
   // Slices [first, end) that the next `layers` layers read, unclipped.
   virtual std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const = 0;
 
+  // New vertices that memory other than the process's has room for, where no more than `cap` bytes may be held (0:
+  // all).
+  virtual std::uint64_t room_for_vertices(std::uint64_t) const { return ~std::uint64_t{0}; }
+
+  // The most layers of a slab.
+  virtual std::int64_t most_layers() const { return layers_left(); }
+
   // Extracts the next `layers` layers, whose slices the window holds, or fewer, though at least one, where they would
   // make more than `most_vertices`. Adds what it found to the report, and returns how many layers.
   virtual std::int64_t extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
