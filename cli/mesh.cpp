@@ -66,6 +66,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"iso", fmt::format("{}", options.iso)},
           {"error", arguments.stop.error},
           {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
+          {"specks", arguments.stop.specks},
           {"quality", arguments.quality},
           {"slab", arguments.slab},
           {"inside", arguments.inside},
@@ -83,7 +84,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");
-  arguments.stop = {task.at("error"), task.at("triangles"), ""};
+  arguments.stop = {task.at("error"), task.at("triangles"), "", task.at("specks")};
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
@@ -164,6 +165,7 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   options.closed = !arguments.open;
   options.quality = parse_quality(arguments.quality);
   options.normals = parse_normals(arguments.normals);
+  options.drop_specks = drops_specks(arguments.stop);
   options.space = parse_space(arguments.space);
   return options;
 }

@@ -63,6 +63,7 @@ Json run_json(const MeshReport& report, Json input) {
           {"collapses", report.collapses},
           {"postponed", report.postponed},
           {"rekeyed", report.rekeyed},
+          {"specks", report.specks},
           {"rounds", report.rounds},
           {"triangles", report.triangles},
           {"vertices", report.vertices},

@@ -46,6 +46,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   if (arguments.stop.error.empty() && !arguments.stop.has_number()) throw CLI::RequiredError("--error");
   SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
+  options.drop_specks = drops_specks(arguments.stop);
   check_different({arguments.input, arguments.output.path, run.report});
 
   exit_on_signal();

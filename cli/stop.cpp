@@ -17,11 +17,18 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
       verb.add_option("--triangles", stop.triangles, "Stop at this number of triangles, if the error does not before");
   verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
       ->excludes(triangles);
+  verb.add_option("--specks", stop.specks,
+                  "keep, or drop: a closed component that has shrunk to a tetrahedron within the error vanishes")
+      ->capture_default_str();
 }
 
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
   if (stop.error.empty() && stop.has_number()) return {std::numeric_limits<double>::infinity(), false};
   return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
+}
+
+bool drops_specks(const StopOptions& stop) {
+  return parse_choice<bool>("--specks", stop.specks, {{"keep", false}, {"drop", true}});
 }
 
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
@@ -33,8 +40,9 @@ std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::u
 }
 
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {
-  if (!stop.has_number()) return "error " + (stop.error.empty() ? usual : stop.error);
-  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles);
+  const std::string specks = drops_specks(stop) ? " specks drop" : "";
+  if (!stop.has_number()) return "error " + (stop.error.empty() ? usual : stop.error) + specks;
+  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles) + specks;
 }
 
 }  // namespace isoweave::cli

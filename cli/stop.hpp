@@ -12,6 +12,7 @@ namespace isoweave::cli {
 
 struct StopOptions {
   std::string error, triangles, ratio;  // as given; empty: not
+  std::string specks = "keep";
 
   bool has_number() const { return !triangles.empty() || !ratio.empty(); }
 };
@@ -21,10 +22,12 @@ void add_stop_options(CLI::App& verb, StopOptions& stop);
 // `usual` is the error where nothing is given. Where only a number of triangles is, the error is infinite.
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
 
+bool drops_specks(const StopOptions& stop);
+
 // 0: no number is asked for. count() tells the triangles of the full surface, for a ratio.
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);
 
-// "error 0.2vox", "triangles 20000", or both.
+// "error 0.2vox", "triangles 20000", or both; and "specks drop".
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles);
 
 }  // namespace isoweave::cli

@@ -71,6 +71,7 @@ struct SurfaceCase {
   bool closed = true;
   double error = 0.2;  // mean voxels
   Quality quality = Quality::kNormal;
+  bool drop_specks = false;
 
   IsoRule rule() const { return {suggested_iso(volume.kind, volume.type), true, closed}; }
   double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
@@ -78,7 +79,7 @@ struct SurfaceCase {
   ZoneOptions zone() const {
     const Lattice lattice{volume.dims};
     const double a0 = voxel() * voxel();
-    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error * voxel(), a0)};
+    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error * voxel(), a0), drop_specks};
   }
 };
 

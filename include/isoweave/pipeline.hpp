@@ -91,6 +91,9 @@ struct MeshOptions {
   // such number. The error may be infinite then. Up to three times as many triangles are held.
   std::uint64_t triangles = 0;
   Quality quality = Quality::kNormal;
+  // A closed component that has shrunk to a tetrahedron goes when half its longest edge is no longer than the error.
+  // Else every component stays, and topology with it.
+  bool drop_specks = false;
   std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
   bool normals = false;   // from gradients, unit length, outwards
   OutputSpace space = OutputSpace::kAsVolume;
@@ -114,6 +117,7 @@ struct MeshReport {
   double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
+  std::uint64_t specks = 0;                   // components dropped
   std::uint64_t triangles = 0, vertices = 0;  // written
   // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
   // construction and is not looked at.
@@ -144,6 +148,7 @@ struct SimplifyOptions {
   Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
   Quality quality = Quality::kNormal;
   std::uint64_t triangles = 0;  // as in MeshOptions
+  bool drop_specks = false;     // as in MeshOptions
 };
 
 // What a run will take, from a sample of the volume.

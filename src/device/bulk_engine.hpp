@@ -205,11 +205,11 @@ class BulkEngine final : public DeviceEngine {
   std::uint64_t room_for_vertices(std::uint64_t cap) const override {
     // In the zone, twice, as compaction moves it from one set of arrays to another; and in the lists of its passes.
     constexpr std::uint64_t kZone = sizeof(Vertex) + sizeof(Key) + sizeof(Turn) + 2 * sizeof(Triangle) + sizeof(Point);
-    constexpr std::uint64_t kLists = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(FinalVertex) + sizeof(Point);
+    constexpr std::uint64_t kPasses = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(FinalVertex) + sizeof(Point);
     const std::uint64_t held = bytes();
     std::uint64_t room = device_.free_bytes();
     if (cap > 0) room = std::min(room, cap > held ? cap - held : 0);
-    return room / (2 * kZone + kLists);
+    return room / (2 * kZone + kPasses);
   }
   std::uint64_t rounds() const override { return rounds_; }
   const DecisionCounts& decisions() const override { return decisions_; }

@@ -15,7 +15,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 2\n";  // the number changes with the fields
+constexpr std::string_view kFormat = "isoweave state 3\n";  // the number changes with the fields
 
 struct Header {
   std::uint64_t number = 0;
@@ -107,7 +107,7 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
        << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
        << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << ", quality "
        << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
-       << (options.normals ? ", normals" : "");
+       << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
   identity.options = text.str();
   return identity;
 }

@@ -50,6 +50,7 @@ void DeviceSlabs::finish(MeshReport& report) const {
   report.collapses = counts.collapses;
   report.postponed = counts.postponed;
   report.rekeyed = counts.rekeyed;
+  report.specks = counts.specks;
   report.rounds = engine_->rounds();
   report.nonmanifold_edges = engine_->defects().nonmanifold_edges;
   report.nonmanifold_vertices = engine_->defects().nonmanifold_vertices;

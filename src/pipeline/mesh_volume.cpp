@@ -78,7 +78,7 @@ class VolumeSweep {
   ZoneOptions zone_options() const {
     const Lattice lattice{volume_.dims};
     const double a0 = voxel_ * voxel_;
-    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error(), a0, options_.triangles)};
+    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error(), a0, options_.triangles), options_.drop_specks};
   }
 
   std::unique_ptr<SlabEngine> make_engine(MeshSink& sink) const {

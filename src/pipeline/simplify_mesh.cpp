@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "isoweave/pipeline.hpp"
@@ -53,6 +54,9 @@ std::uint64_t count_locked(const Zone& zone) {
 
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control) {
+  if (control.device == Device::kCuda) {
+    throw std::invalid_argument("a CUDA device: expected a volume, found a mesh, which takes processors");
+  }
   Stopwatch total;
   Stopwatch clock;
   MeshReport report;
@@ -62,7 +66,8 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   report.threads = executor.threads();
   report.error = options.error.value * (options.error.voxels ? std::sqrt(a0) : 1);
   SimplifierOptions simplifier_options;
-  simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0, options.triangles)};
+  simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0, options.triangles),
+                             options.drop_specks};
   simplifier_options.quality = options.quality;
   simplifier_options.schedule = control.schedule;
   Simplifier simplifier(simplifier_options, executor, control.stop);

@@ -78,6 +78,7 @@ void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
   report.collapses = counts.collapses;
   report.postponed = counts.postponed;
   report.rekeyed = counts.rekeyed;
+  report.specks = counts.specks;
   report.rounds = simplifier.rounds();
   report.nonmanifold_edges = simplifier.defects().nonmanifold_edges;
   report.nonmanifold_vertices = simplifier.defects().nonmanifold_vertices;

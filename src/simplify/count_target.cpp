@@ -83,7 +83,8 @@ void CountTarget::thin_out() {
 
 void CountTarget::finish() {
   while (simplifier_.triangles() > target_ + kInOrder) {
-    const CostBits limit = limit_within((simplifier_.triangles() - target_) / 2);
+    const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
+    const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each);
     if (limit <= simplifier_.zone().limit) break;
     raise_limit(limit);
   }

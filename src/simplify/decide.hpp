@@ -61,6 +61,9 @@ class BasicDecider {
     return collapsed_;
   }  // second()'s vertex is gone then, and first()'s has the merged star
   ISOWEAVE_HD const Star& merged() const { return merged_; }
+
+  // The edge's whole component was a tetrahedron and has gone: first()'s vertex and its three neighbours.
+  ISOWEAVE_HD bool vanished() const { return vanished_; }
   ISOWEAVE_HD const DecisionCounts& counts() const { return counts_; }
 
  private:
@@ -71,6 +74,11 @@ class BasicDecider {
   // An edge goes back when its full cost exceeds its key by this factor.
   ISOWEAVE_HD static constexpr float refinement_limit(Quality quality) {
     return quality == Quality::kFine ? 1.0F : 4.0F;
+  }
+
+  // The face of a star of three that does not hold `other`.
+  ISOWEAVE_HD static Index far_face(const Star& star, Index other) {
+    return star.out[(star.place_of(other) + 1) % 3] >> 2;
   }
 
   ISOWEAVE_HD static void swap_indices(Index& a, Index& b) {
@@ -86,6 +94,8 @@ class BasicDecider {
     fan.drop(place > 0 ? place - 1 : star.count() - 1);
   }
 
+  ISOWEAVE_HD bool is_tetrahedron() const;
+  ISOWEAVE_HD void decide_tetrahedron(CostBits key);
   ISOWEAVE_HD bool topology_allows();
   ISOWEAVE_HD bool keeps_sides(Vec3 x) const;
   ISOWEAVE_HD Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
@@ -108,14 +118,16 @@ class BasicDecider {
   std::array<Key, Star::kRoom> before_;
   int changed_count_ = 0;
   bool collapsed_ = false;
+  bool vanished_ = false;
   DecisionCounts counts_;
 };
 
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   changed_count_ = 0;
-  collapsed_ = false;
+  collapsed_ = vanished_ = false;
   const CostBits key = zone_.cost(edge_);
+  if (zone_.options.drop_specks && is_tetrahedron()) return decide_tetrahedron(key);
   if (u_.overflow || v_.overflow || !topology_allows()) {
     ++counts_.postponed;
     raise_key(postponed_cost(key));
@@ -159,6 +171,44 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   collapsed_ = true;
   collapse(x);
   update_keys(key);
+}
+
+// Both ends see nobody but each other and two more, and all their faces close.
+template <class Arithmetic>
+ISOWEAVE_HD bool BasicDecider<Arithmetic>::is_tetrahedron() const {
+  if (u_.border || v_.border || u_.neighbours != 3 || v_.neighbours != 3) return false;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Index w = u_.neighbour[n];
+    if (w != v_.vertex && w != v_.neighbour[0] && w != v_.neighbour[1] && w != v_.neighbour[2]) return false;
+  }
+  return true;
+}
+
+// Vanishes at a cost of its own: half its longest edge, squared. Until an edge has that key it goes back, so that
+// levels nest.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::decide_tetrahedron(CostBits key) {
+  double longest = 0;
+  const Index corners[4] = {u_.vertex, u_.neighbour[0], u_.neighbour[1], u_.neighbour[2]};
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < a; ++b) {
+      const Vec3 edge = zone_.vertices[corners[a]].position - zone_.vertices[corners[b]].position;
+      const double length = dot(edge, edge);
+      longest = length > longest ? length : longest;
+    }
+  }
+  const CostBits cost = to_cost(longest / (4 * zone_.options.a0));
+  if (cost > key) {
+    ++counts_.rekeyed;
+    raise_key(cost);
+    return;
+  }
+  for (int n = 0; n < 3; ++n) zone_.remove_triangle(u_.out[static_cast<std::size_t>(n)] >> 2);
+  zone_.remove_triangle(far_face(v_, u_.vertex));
+  for (const Index corner : corners) zone_.vertices[corner].half_edge = kNone;
+  counts_.removed += 4;
+  ++counts_.specks;
+  vanished_ = true;
 }
 
 // Link condition (Dey, Edelsbrunner, Guha and Nekhayev, 1999), border and valence rules.

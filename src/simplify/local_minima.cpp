@@ -155,6 +155,11 @@ class LocalMinima::Worker {
   void settle() {
     const Star& first = decider_.first();
     const Star& second = decider_.second();
+    if (decider_.vanished()) {
+      end_turns(first.vertex);
+      for (std::size_t n = 0; n < 3; ++n) end_turns(first.neighbour[n]);
+      return;
+    }
     if (!decider_.collapsed()) {
       renew_turn(zone_, first);
       renew_turn(zone_, second);

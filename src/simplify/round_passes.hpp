@@ -63,6 +63,9 @@ struct RoundPasses {
     decider.decide();
     mark(decider.first().vertex, kChanged, changed);
     mark(decider.second().vertex, kChanged, changed);
+    if (decider.vanished()) {
+      for (std::size_t m = 0; m < 3; ++m) mark(decider.first().neighbour[m], kChanged, changed);
+    }
     if (decider.collapsed()) {
       decider.merged().each_neighbour(zone, [&](Index w) {
         list(w, kChanged, changed);

@@ -12,12 +12,14 @@ struct DecisionCounts {
   std::uint64_t postponed = 0;  // decided, and illegal at the time
   std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
   std::uint64_t removed = 0;    // triangles
+  std::uint64_t specks = 0;     // tetrahedra that have vanished
 
   ISOWEAVE_HD void operator+=(const DecisionCounts& other) {
     collapses += other.collapses;
     postponed += other.postponed;
     rekeyed += other.rekeyed;
     removed += other.removed;
+    specks += other.specks;
   }
 };
 

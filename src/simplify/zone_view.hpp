@@ -82,8 +82,9 @@ struct Turn {
 
 struct ZoneOptions {
   EdgeNumbering numbering;
-  double a0 = 1;        // mean voxel face, length squared
-  CostBits retire = 0;  // edges with a higher cost are retired
+  double a0 = 1;             // mean voxel face, length squared
+  CostBits retire = 0;       // edges with a higher cost are retired
+  bool drop_specks = false;  // a tetrahedron within its cost vanishes
 };
 
 struct ZoneView {

@@ -15,7 +15,8 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 ZoneOptions zone_options(const SurfaceCase& surface) {
   const double a0 = surface.voxel() * surface.voxel();
   const Lattice lattice{surface.volume.dims};
-  return {{lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1)};
+  return {
+      {lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1), surface.drop_specks};
 }
 
 SurfaceCase make_case(const std::string& kind, bool closed) {
@@ -94,6 +95,22 @@ INSTANTIATE_TEST_SUITE_P(Volumes, Counts,
                          [](const auto& instance) {
                            return std::get<0>(instance.param) + (std::get<1>(instance.param) ? "Closed" : "Open");
                          });
+
+// One decision takes four triangles away then.
+TEST(CountsOfSpecks, StopWhereTheReferenceQueueWould) {
+  SurfaceCase surface = make_case("specks", true);
+  surface.error = kNoLimit;
+  surface.drop_specks = true;
+  const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+  for (const std::uint64_t triangles : {all / 2, all / 5, all / 20, std::uint64_t{3}, std::uint64_t{1}}) {
+    const SurfaceRun expected = oracle(surface, triangles);
+    for (const std::int64_t slab : {std::int64_t{6}, kWholeVolume}) {
+      const SurfaceRun found = run(surface, triangles, Schedule::kLocal, 3, slab, 0);
+      EXPECT_EQ(digest_text(found.report.digest), digest_text(expected.report.digest)) << triangles << " of " << all;
+      EXPECT_EQ(found.report.triangles, expected.report.triangles);
+    }
+  }
+}
 
 TEST(CountsHeld, NoMoreThanIsNeeded) {
   SurfaceCase surface = make_case("smooth", true);

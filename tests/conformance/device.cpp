@@ -57,6 +57,7 @@ void expect_same(const SurfaceRun& device, const SurfaceRun& host) {
   EXPECT_EQ(device.report.collapses, host.report.collapses);
   EXPECT_EQ(device.report.postponed, host.report.postponed);
   EXPECT_EQ(device.report.rekeyed, host.report.rekeyed);
+  EXPECT_EQ(device.report.specks, host.report.specks);
   EXPECT_EQ(device.report.open_edges, host.report.open_edges);
   EXPECT_EQ(device.report.components, host.report.components);
   EXPECT_EQ(device.report.euler, host.report.euler);
@@ -75,6 +76,7 @@ class Device : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
     surface.closed = std::get<1>(GetParam());
     surface.error = error;
     surface.quality = quality;
+    surface.drop_specks = quality == Quality::kFast;
     return surface;
   }
 
