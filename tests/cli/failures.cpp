@@ -67,6 +67,7 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
       {mesh(kSmall, {"--error", "-1vox"}), "-1vox"},
       {mesh(kSmall, {"--error", "nan"}), "nan"},
       {mesh(kSmall, {"--quality", "superb"}), "superb"},
+      {mesh(kSmall, {"--specks", "maybe"}), "maybe"},
       {mesh(kSmall, {"--slab", "0"}), "--slab"},
       {mesh(kSmall, {"--threads", "0"}), "--threads"},
       {mesh(kSmall, {"--threads", "two"}), "two"},
