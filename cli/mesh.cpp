@@ -59,6 +59,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"level", arguments.input.level},
           {"channel", arguments.input.channel},
           {"time", arguments.input.time},
+          {"roi", arguments.input.roi},
+          {"step", arguments.input.step},
           {"output", absolute_path(arguments.output.path)},
           {"compress", arguments.output.compress},
           {"segment", arguments.output.segment},
@@ -79,8 +81,9 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
 
 // The task of a saved state, and how it was to run where nothing else is said now.
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
-  arguments.input = {task.at("volume"),  task.at("raw"),   task.at("spacing"), task.at("origin"), task.at("series"),
-                     task.at("dataset"), task.at("level"), task.at("channel"), task.at("time")};
+  arguments.input = {task.at("volume"), task.at("raw"),     task.at("spacing"), task.at("origin"),
+                     task.at("series"), task.at("dataset"), task.at("level"),   task.at("channel"),
+                     task.at("time"),   task.at("roi"),     task.at("step")};
   arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   arguments.iso = task.at("iso");

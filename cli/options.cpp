@@ -149,6 +149,9 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--level", input.level, "Which of the sizes of an image in OME-Zarr or N5, 0 being the full one");
   verb.add_option("--channel", input.channel, "Which channel of an array, from 0");
   verb.add_option("--time", input.time, "Which time of an array, from 0");
+  verb.add_option("--roi", input.roi,
+                  "Only samples I0:I1,J0:J1,K0:K1, the last ones not included; an end left out is that of the volume");
+  verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
 }
 
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
@@ -181,7 +184,9 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   return options;
 }
 
-std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
+namespace {
+
+std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   if (const std::optional<GenerateOptions> generated = generated_input(input)) return generate_volume(*generated);
   OpenOptions options;
   if (!input.raw.empty()) options.raw = parse_raw_layout(input.raw);
@@ -193,6 +198,39 @@ std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
   options.channel = parse_index("--channel", input.channel);
   options.time = parse_index("--time", input.time);
   return open_volume(input.path, options);
+}
+
+// One end of a range, or what it is when it is left out.
+std::int64_t parse_end(std::string_view text, std::int64_t left_out, std::string_view all) {
+  if (text.empty()) return left_out;
+  const std::optional<std::int64_t> end = to_number<std::int64_t>(text);
+  if (!end) wrong_value("--roi", "three ranges I0:I1,J0:J1,K0:K1", all);
+  return *end;
+}
+
+Region parse_region(std::string_view text, const std::array<std::int64_t, 3>& dims) {
+  const std::vector<std::string_view> ranges = split(text, ',');
+  if (ranges.size() != dims.size()) wrong_value("--roi", "three ranges I0:I1,J0:J1,K0:K1", text);
+  Region region;
+  for (std::size_t axis = 0; axis < dims.size(); ++axis) {
+    const std::vector<std::string_view> ends = split(ranges[axis], ':');
+    if (ends.size() != 2) wrong_value("--roi", "three ranges I0:I1,J0:J1,K0:K1", text);
+    region.first[axis] = parse_end(ends[0], 0, text);
+    region.end[axis] = parse_end(ends[1], dims[axis], text);
+  }
+  return region;
+}
+
+}  // namespace
+
+std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
+  std::unique_ptr<SliceSource> volume = open_whole(input);
+  if (!input.roi.empty()) {
+    const Region region = parse_region(input.roi, volume->info().dims);
+    volume = crop_volume(std::move(volume), region);
+  }
+  if (!input.step.empty()) volume = downsample_volume(std::move(volume), parse_count("--step", input.step));
+  return volume;
 }
 
 void add_run_options(CLI::App& verb, RunOptions& run) {

@@ -109,4 +109,20 @@ struct OpenOptions {
 // this build leaves out, or its header is wrong.
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
 
+// A box of samples: [first, end) along each axis.
+struct Region {
+  std::array<std::int64_t, 3> first{0, 0, 0};
+  std::array<std::int64_t, 3> end{0, 0, 0};
+};
+
+// A part of a volume, in the place that it has in the whole. Reads slices of the whole, one at a time. Throws
+// std::invalid_argument for a region that is empty or reaches outside.
+std::unique_ptr<SliceSource> crop_volume(std::unique_ptr<SliceSource> volume, const Region& region);
+
+// A smaller volume: every sample is the mean of a block of step x step x step samples, of as many as there are at the
+// upper ends, and lies in the middle of the block. NaN does not count, and is what a block of nothing else gives. Means
+// of 8- and 16-bit integers and of float32 are float32, others float64: they are not rounded. For values, not for
+// labels. Holds one slice of sums and one of the volume. Throws std::invalid_argument for a step below 1.
+std::unique_ptr<SliceSource> downsample_volume(std::unique_ptr<SliceSource> volume, std::int64_t step);
+
 }  // namespace isoweave

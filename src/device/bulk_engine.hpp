@@ -64,6 +64,7 @@ class BulkEngine final : public DeviceEngine {
     const std::size_t bytes = options_.volume.slice_bytes();
     if (end - first > room_) {
       room_ = end - first;
+      device_.await_uploads();  // to where the ring has been
       ring_.resize(static_cast<std::size_t>(room_) * bytes);
       uploaded_ = first;
       device_.order_uploads();

@@ -63,8 +63,8 @@ struct RoundTotals {
   std::uint64_t rounds = 0;
 };
 
-// All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. A list is emptied in a pass
-// that neither reads nor fills it.
+// All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. The size of a list is set to
+// zero in a pass that neither reads that size nor adds to the list.
 static __global__ void __launch_bounds__(kThreads) rounds_kernel(RoundPasses<ScalarArithmetic> passes, RoundTotals* totals) {
   const cooperative_groups::grid_group grid = cooperative_groups::this_grid();
   const bool first = first_item() == 0;
@@ -80,12 +80,12 @@ static __global__ void __launch_bounds__(kThreads) rounds_kernel(RoundPasses<Sca
     for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.pick_minimum(n);
     grid.sync();
     const std::int64_t minima = size(passes.minima);
-    for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.forget_candidate(n);
+    if (first) *passes.candidates.size = 0;
     for (std::int64_t n = first_item(); n < minima; n += item_step()) passes.decide(n, own.decisions);
     grid.sync();
     const std::int64_t touched = size(passes.changed);
-    if (first) *passes.candidates.size = 0;
     for (std::int64_t n = first_item(); n < touched; n += item_step()) passes.renew(n);
+    for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.forget_candidate(n);
     grid.sync();
     if (first) ++own.rounds;
   }

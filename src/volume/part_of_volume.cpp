@@ -1,0 +1,157 @@
+// A box of a volume, and a volume made smaller.
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "isoweave/volume.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+namespace {
+
+// Moves the origin to where sample `at`, or a place between samples, has been.
+void move_origin(Geometry& geometry, const std::array<double, 3>& at) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      geometry.origin[row] += geometry.direction[3 * row + axis] * (geometry.spacing[axis] * at[axis]);
+    }
+  }
+}
+
+void check_range(const VolumeInfo& info, std::int64_t first, std::int64_t count) {
+  if (first < 0 || count < 0 || first > info.dims[2] - count) {
+    throw std::invalid_argument(info.path + ": slices " + std::to_string(first) + " to " +
+                                std::to_string(first + count) + " are not all in the volume");
+  }
+}
+
+class CroppedVolume final : public SliceSource {
+ public:
+  CroppedVolume(std::unique_ptr<SliceSource> whole, const Region& region)
+      : whole_(std::move(whole)), info_(whole_->info()), region_(region), slice_(info_.slice_bytes()) {
+    std::array<double, 3> first{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (region.first[axis] < 0 || region.first[axis] >= region.end[axis] || region.end[axis] > info_.dims[axis]) {
+        throw std::invalid_argument(info_.path + ": expected a region within 0:" + std::to_string(info_.dims[axis]) +
+                                    " on axis " + std::to_string(axis) + ", found " +
+                                    std::to_string(region.first[axis]) + ":" + std::to_string(region.end[axis]));
+      }
+      info_.dims[axis] = region.end[axis] - region.first[axis];
+      first[axis] = static_cast<double>(region.first[axis]);
+    }
+    move_origin(info_.geometry, first);
+  }
+
+  const VolumeInfo& info() const override { return info_; }
+  bool skips() const override { return whole_->skips(); }
+
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    check_range(info_, first, count);
+    for (std::int64_t k = first; k < first + count; ++k) {
+      whole_->read(region_.first[2] + k, 1, slice_);
+      copy_rows(out.data() + static_cast<std::size_t>(k - first) * info_.slice_bytes());
+    }
+  }
+
+ private:
+  void copy_rows(std::byte* out) const {
+    const std::size_t sample = sample_bytes(info_.type);
+    const std::size_t row = static_cast<std::size_t>(info_.dims[0]) * sample;
+    const std::size_t whole_row = static_cast<std::size_t>(whole_->info().dims[0]) * sample;
+    const std::byte* from = slice_.data() + static_cast<std::size_t>(region_.first[1]) * whole_row +
+                            static_cast<std::size_t>(region_.first[0]) * sample;
+    for (std::int64_t j = 0; j < info_.dims[1]; ++j, from += whole_row, out += row) std::memcpy(out, from, row);
+  }
+
+  std::unique_ptr<SliceSource> whole_;
+  VolumeInfo info_;
+  Region region_;
+  std::vector<std::byte> slice_;  // of the whole
+};
+
+bool means_are_float32(SampleType type) { return sample_bytes(type) <= 2 || type == SampleType::kFloat32; }
+
+class SmallerVolume final : public SliceSource {
+ public:
+  SmallerVolume(std::unique_ptr<SliceSource> whole, std::int64_t step)
+      : whole_(std::move(whole)), info_(whole_->info()), step_(step), slice_(info_.slice_bytes()) {
+    if (step < 1) throw std::invalid_argument("step: expected at least 1, found " + std::to_string(step));
+    const double middle = static_cast<double>(step - 1) / 2;
+    move_origin(info_.geometry, {middle, middle, middle});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      info_.dims[axis] = (info_.dims[axis] - 1) / step + 1;
+      info_.geometry.spacing[axis] *= static_cast<double>(step);
+    }
+    info_.type = means_are_float32(info_.type) ? SampleType::kFloat32 : SampleType::kFloat64;
+    sums_.resize(static_cast<std::size_t>(info_.slice_samples()));
+    counts_.resize(sums_.size());
+  }
+
+  const VolumeInfo& info() const override { return info_; }
+  bool skips() const override { return whole_->skips(); }
+
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    check_range(info_, first, count);
+    for (std::int64_t k = first; k < first + count; ++k) {
+      add_slices(k * step_, std::min((k + 1) * step_, whole_->info().dims[2]));
+      std::byte* const slice = out.data() + static_cast<std::size_t>(k - first) * info_.slice_bytes();
+      info_.type == SampleType::kFloat32 ? write_means<float>(slice) : write_means<double>(slice);
+    }
+  }
+
+ private:
+  void add_slices(std::int64_t first, std::int64_t end) {
+    std::fill(sums_.begin(), sums_.end(), 0.0);
+    std::fill(counts_.begin(), counts_.end(), 0U);
+    for (std::int64_t k = first; k < end; ++k) {
+      whole_->read(k, 1, slice_);
+      visit_sample_type(whole_->info().type, [&]<class T>() { add_slice<T>(); });
+    }
+  }
+
+  template <class T>
+  void add_slice() {
+    const auto [nx, ny, nz] = whole_->info().dims;
+    const T* sample = reinterpret_cast<const T*>(slice_.data());
+    for (std::int64_t j = 0; j < ny; ++j) {
+      const auto row = static_cast<std::size_t>(j / step_ * info_.dims[0]);
+      for (std::int64_t i = 0; i < nx; ++i, ++sample) {
+        const auto value = static_cast<double>(*sample);
+        if (value != value) continue;
+        const std::size_t block = row + static_cast<std::size_t>(i / step_);
+        sums_[block] += value;
+        ++counts_[block];
+      }
+    }
+  }
+
+  template <class T>
+  void write_means(std::byte* out) const {
+    for (std::size_t n = 0; n < sums_.size(); ++n) {
+      const T mean = counts_[n] > 0 ? static_cast<T>(sums_[n] / counts_[n]) : std::numeric_limits<T>::quiet_NaN();
+      std::memcpy(out + n * sizeof mean, &mean, sizeof mean);
+    }
+  }
+
+  std::unique_ptr<SliceSource> whole_;
+  VolumeInfo info_;
+  std::int64_t step_;
+  std::vector<std::byte> slice_;  // of the whole
+  std::vector<double> sums_;      // of the blocks of one slice
+  std::vector<std::uint32_t> counts_;
+};
+
+}  // namespace
+
+std::unique_ptr<SliceSource> crop_volume(std::unique_ptr<SliceSource> volume, const Region& region) {
+  return std::make_unique<CroppedVolume>(std::move(volume), region);
+}
+
+std::unique_ptr<SliceSource> downsample_volume(std::unique_ptr<SliceSource> volume, std::int64_t step) {
+  return std::make_unique<SmallerVolume>(std::move(volume), step);
+}
+
+}  // namespace isoweave
