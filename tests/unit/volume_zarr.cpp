@@ -1,4 +1,7 @@
 // Zarr 2 and 3, OME-Zarr: folders written by hand.
+#include <sys/resource.h>
+
+#include "sanitized.hpp"
 #include "zarr_helpers.hpp"
 
 namespace isoweave::testing {
@@ -134,6 +137,26 @@ TEST(Zarr2, ClaimsBeyondWhatIsStoredAreRefusedBeforeMemoryIsTaken) {
   EXPECT_TRUE(contains(refusal(folder / "b"), "expected a volume of fewer than 2^63 bytes"));
   put_zarr2(folder / "c", {{"chunks", {1 << 12, 1 << 12, 1 << 14}}, {"compressor", {{"id", "zlib"}}}}, {}, zlibbed);
   EXPECT_TRUE(contains(refusal(folder / "c"), "which cannot hold them"));
+}
+
+// Half a million chunks in a slice of half a megabyte: what is held must not grow with their number.
+TEST(Zarr2, ManySmallChunksTakeNoMemoryOfTheirOwn) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const TempFolder folder;
+  ArrayJson metadata = kZarr2;
+  metadata.update({{"shape", {1, 512, 1024}}, {"chunks", {1, 1, 1}}, {"dtype", "|u1"}, {"fill_value", 2}});
+  put_json(folder / "a/.zarray", metadata);
+  put_file(folder / "a/0.0.0", "7");
+  const auto most_held = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;  // KiB
+  };
+  const auto before = most_held();
+  const auto samples = read_file<std::uint8_t>(folder / "a");
+  EXPECT_LT(most_held() - before, 8 << 10);
+  EXPECT_EQ(samples[0], '7');
+  EXPECT_EQ(samples.back(), 2);
 }
 
 TEST(Zarr2, ChangedBytesOfMetadataAreSafe) {
