@@ -6,6 +6,7 @@ target_compile_options(isoweave_options INTERFACE -ffp-contract=off)
 
 target_compile_options(isoweave_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 warns inside std::string (GCC bug 105651)
   $<$<BOOL:${ISOWEAVE_WERROR}>:-Werror>)
 

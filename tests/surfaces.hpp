@@ -15,16 +15,10 @@
 #include "isoweave/pipeline.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/sweep.hpp"
+#include "sanitized.hpp"
 #include "simplify/simplifier.hpp"
 
 namespace isoweave::testing {
-
-// Sanitizers make every run five to fifteen times slower: they see the same code on fewer combinations.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
 
 // A volume in memory.
 class MemoryVolume final : public SliceSource {

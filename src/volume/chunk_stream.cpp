@@ -4,7 +4,6 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
 #include "volume/band_stream.hpp"
@@ -24,6 +23,18 @@ struct Piece {
   std::int64_t shard = 0;
 };
 
+// Calls visit for every run of pieces that lie in one shard.
+template <class Visit>
+void for_shards(std::span<const Piece> pieces, const Visit& visit) {
+  while (!pieces.empty()) {
+    const auto other = [shard = pieces.front().shard](const Piece& piece) { return piece.shard != shard; };
+    const auto end = std::find_if(pieces.begin(), pieces.end(), other);
+    const auto count = static_cast<std::size_t>(end - pieces.begin());
+    visit(pieces.first(count));
+    pieces = pieces.subspan(count);
+  }
+}
+
 class ChunkStream final : public BandStream {
  public:
   ChunkStream(const ChunkedArray& array, const VolumeInfo& info, AxisChoice choice, std::int64_t depth)
@@ -37,15 +48,16 @@ class ChunkStream final : public BandStream {
   void fill(std::int64_t first, std::int64_t count, std::span<std::byte> band) override {
     put_fill_value(band);
     const Piece k = pieces(2, first, first + count).front();
-    std::vector<std::pair<Piece, Piece>> row;
-    for (const Piece& j : pieces(1, 0, dims_[1])) {
-      for (const Piece& i : pieces(0, 0, dims_[0])) row.emplace_back(i, j);
-    }
+    const std::vector<Piece> rows = pieces(1, 0, dims_[1]);
+    const std::vector<Piece> columns = pieces(0, 0, dims_[0]);
     // The chunks of a file one after another: its index is read once for the band.
-    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) {
-      return std::tie(a.second.shard, a.first.shard) < std::tie(b.second.shard, b.first.shard);
+    for_shards(rows, [&](std::span<const Piece> in_rows) {
+      for_shards(columns, [&](std::span<const Piece> in_columns) {
+        for (const Piece& j : in_rows) {
+          for (const Piece& i : in_columns) put_chunk({i, j, k}, band);
+        }
+      });
     });
-    for (const auto& [i, j] : row) put_chunk({i, j, k}, band);
   }
 
  private:

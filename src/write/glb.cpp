@@ -22,7 +22,7 @@ std::string scene_text(const MeshFileOptions& options, const Counts& counts, con
   if (counts.vertices == 0) {
     // glTF has no empty meshes, nor scenes with an empty list of nodes.
     json.erase("nodes");
-    json["scenes"] = {GltfJson::object({{"name", "empty"}})};
+    json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
     return gltf_text(json);
   }
   GltfJson attributes{{"POSITION", 0}};
@@ -52,7 +52,7 @@ std::string scene_text(const MeshFileOptions& options, const Counts& counts, con
   } else {
     primitive["mode"] = kGltfPoints;
   }
-  json["meshes"] = {{{"primitives", {primitive}}}};
+  json["meshes"] = {{{"primitives", GltfJson::array({primitive})}}};
   json["buffers"] = {{{"byteLength", end}}};
   return gltf_text(json);
 }

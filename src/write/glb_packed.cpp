@@ -161,7 +161,7 @@ class PackedGlbSink final : public WholeMeshSink {
   void write_empty() {
     GltfJson json = gltf_scene(options());
     json.erase("nodes");
-    json["scenes"] = {GltfJson::object({{"name", "empty"}})};
+    json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
     write(json, {});
   }
 

@@ -44,7 +44,7 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   if (metres != 1) root["scale"] = {metres, metres, metres};
   if (placed.is_null()) {
     root["mesh"] = 0;
-    json["nodes"] = {root};
+    json["nodes"] = GltfJson::array({root});  // {root} is root to some compilers
   } else {
     root["children"] = {1};
     json["nodes"] = {root, placed};

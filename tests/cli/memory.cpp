@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "program.hpp"
+#include "sanitized.hpp"
 
 namespace isoweave {
 namespace {
@@ -50,9 +51,7 @@ TEST(CliMemory, EveryRunHasWhatWasPredictedBesideWhatItTook) {
 }
 
 TEST(CliMemory, ACapIsKept) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers hold memory of their own";
-#endif
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
   const files::Folder folder;
   ASSERT_EQ(run(folder.path(), mesh({"--dry-run"})).code, 0);
   const auto cap = report(folder).at("forecast").at("least_bytes").get<std::uint64_t>() + 1'000'000;

@@ -66,12 +66,16 @@ TEST_P(Counts, RunsStopWhereTheReferenceQueueWould) {
     surface.error = error;
     const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
     ASSERT_GT(all, 200U);
-    for (const std::uint64_t triangles : {all / 2, all / 5 + 1, all / 20, std::uint64_t{1}, all + 1}) {
+    const std::vector<std::uint64_t> counts =
+        kSanitized ? std::vector{all / 5 + 1, std::uint64_t{1}}
+                   : std::vector{all / 2, all / 5 + 1, all / 20, std::uint64_t{1}, all + 1};
+    for (const std::uint64_t triangles : counts) {
       const SurfaceRun expected = oracle(surface, triangles);
       if (triangles == all / 2 && std::isinf(error)) {
         ASSERT_GE(expected.report.triangles + 2, triangles);
       }
       for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{6}, kWholeVolume}) {
+        if (kSanitized && slab == 6) continue;
         const auto same = [&](Schedule schedule, int threads) {
           const SurfaceRun found = run(surface, triangles, schedule, threads, slab, 0);
           EXPECT_EQ(digest_text(found.report.digest), digest_text(expected.report.digest))

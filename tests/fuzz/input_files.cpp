@@ -17,7 +17,9 @@ InputFiles::InputFiles(std::string_view names)
   if (whole_folder) names.remove_prefix(2);
   while (!names.empty()) {
     const std::size_t end = std::min(names.find(':'), names.size());
-    names_.push_back((folder_ / names.substr(0, end)).string());
+    const std::filesystem::path name = folder_ / names.substr(0, end);
+    std::filesystem::create_directories(name.parent_path());
+    names_.push_back(name.string());
     names.remove_prefix(std::min(end + 1, names.size()));
   }
   path_ = whole_folder ? folder_.string() : names_.front();

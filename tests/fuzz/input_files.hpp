@@ -14,10 +14,13 @@ namespace isoweave::fuzz {
 // Stands between two files in an input.
 inline constexpr std::string_view kNextFile = "<NEXT-FILE>";
 
+// The names of the files of this target.
+extern const char* const kInputNames;
+
 // A folder of this process under TMPDIR, which should be in memory.
 class InputFiles {
  public:
-  // Names between colons; one that ends in '/' is no file but the folder itself, to be opened as such.
+  // Names between colons, of files in this folder and those below; "/:" in front: the folder is opened, not a file.
   explicit InputFiles(std::string_view names);
   ~InputFiles();
   InputFiles(const InputFiles&) = delete;

@@ -19,7 +19,7 @@ void check_file(const std::string& path) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static fuzz::InputFiles files(ISOWEAVE_FUZZ_FILES);
+  static fuzz::InputFiles files(fuzz::kInputNames);
   files.put({data, size});
   fuzz::expect_bad_input_at_worst(check_file, files.path());
   return 0;

@@ -1,11 +1,10 @@
 // Writes small valid files as seeds for the fuzzer: write_seeds FOLDER makes FOLDER/TARGET/*.
+#include "seeds.hpp"
+
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <string>
 
-#include "input_files.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
@@ -28,22 +27,8 @@ namespace {
 using namespace isoweave;
 using namespace isoweave::testing;
 
-const std::string kNext(fuzz::kNextFile);
-
-class Seeds {
- public:
-  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
-
-  void put(const std::string& target, const std::string& content) {
-    const std::filesystem::path folder = folder_ / target;
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / std::to_string(count_[target]++), std::ios::binary) << content;
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::map<std::string, int> count_;
-};
+using fuzz::kNext;
+using fuzz::Seeds;
 
 const std::string kWords = stored(ramp<std::int16_t>(3 * 2 * 5));
 const std::string kHalves = kNext + kWords.substr(0, 30) + kNext + kWords.substr(30);
@@ -246,7 +231,7 @@ void put_meshes(Seeds& seeds) {
   const TempFolder folder;
   TriangleMesh mesh = meshes::tetrahedron();
   mesh.normals.assign(mesh.vertices.size(), {0, 0, 1});
-  for (const std::string name : {"ply", "stl", "obj"}) {
+  for (const std::string name : {"ply", "stl", "obj", "off", "vtp", "glb", "3mf"}) {
     const auto sink = open_mesh_file(folder / ("a." + name), {true, {"a comment"}});
     std::vector<std::array<std::uint64_t, 3>> triangles;
     for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
@@ -266,6 +251,12 @@ void put_meshes(Seeds& seeds) {
   seeds.put("obj",
             "# c\nmtllib m\no a\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\n"
             "f 1/1/1 2/1/1 3/1/1\nf -4 -2 -1\nf 1//1 2//1 3//1 4//1\n");
+  seeds.put("off", "OFF # one line\n4 2 0\n0 0 0\n1 0 0\n\n0 1 0\n0 0 1\n4 0 1 2 3 255 0 0\n3 1 2 3\n");
+  seeds.put(
+      "3mf_model",
+      "<?xml version=\"1.0\"?><model unit=\"micron\"><resources><object id=\"1\" type=\"model\"><mesh><vertices>"
+      "<vertex x=\"0\" y=\"0\" z=\"1e-1\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\" />"
+      "</vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources></model>");
 }
 
 void put_options(Seeds& seeds) {
@@ -308,6 +299,9 @@ int main(int argc, char** argv) {
 #endif
 #ifdef ISOWEAVE_HAS_DICOM
   put_dicom(seeds);
+#endif
+#ifdef ISOWEAVE_HAS_ZARR
+  fuzz::put_arrays(seeds);
 #endif
   put_meshes(seeds);
   put_options(seeds);

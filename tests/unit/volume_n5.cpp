@@ -1,34 +1,10 @@
 // N5: folders written by hand.
-#include "array_helpers.hpp"
+#include "zarr_helpers.hpp"
 
 namespace isoweave::testing {
 namespace {
 
-// Blocks begin with their sizes, in numbers whose most significant byte comes first.
-std::string block(const ChunkOf& array, std::int64_t k, std::int64_t j, std::int64_t i) {
-  std::string text = bytes_of(std::uint16_t{0}, true) + bytes_of(std::uint16_t{3}, true);
-  const std::array<std::int64_t, 3> index{i, j, k};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t left = array.dims.at(a) - index.at(a) * array.chunk.at(a);
-    text += bytes_of(static_cast<std::uint32_t>(std::min(left, array.chunk.at(a))), true);
-  }
-  return text;
-}
-
-void put_n5(
-    const std::string& folder, const std::string& compression, const ArrayJson& attributes = {},
-    const std::function<std::string(const std::string&)>& encode = [](const std::string& data) { return data; }) {
-  ArrayJson metadata = {{"dimensions", {5, 4, 3}},
-                        {"blockSize", {2, 3, 2}},
-                        {"dataType", "int16"},
-                        {"compression", {{"type", compression}}}};
-  if (!attributes.is_null()) metadata.update(attributes);
-  put_json(folder + "/attributes.json", metadata);
-  const ChunkOf chunks{.big = true, .cut = true};
-  for_chunks(chunks, [&](std::int64_t k, std::int64_t j, std::int64_t i) {
-    put_file(folder + "/" + key({i, j, k}, "/"), block(chunks, k, j, i) + encode(chunks.bytes<std::int16_t>(k, j, i)));
-  });
-}
+using namespace zarr_files;
 
 const std::vector<std::int16_t> kExpected = expected_samples<std::int16_t>({5, 4, 3});
 

@@ -1,51 +1,10 @@
 // What a folder of Zarr or N5 holds, which part of it is read, and where its samples lie.
-#include "array_helpers.hpp"
+#include "zarr_helpers.hpp"
 
 namespace isoweave::testing {
 namespace {
 
-const ArrayJson kAxes = {{{"name", "z"}, {"type", "space"}, {"unit", "micrometer"}},
-                         {{"name", "y"}, {"type", "space"}, {"unit", "micrometer"}},
-                         {{"name", "x"}, {"type", "space"}, {"unit", "micrometer"}}};
-
-// A list of one is not that one.
-ArrayJson list(const std::vector<ArrayJson>& entries) { return entries; }
-
-ArrayJson scale(const std::vector<double>& factors) { return {{"type", "scale"}, {"scale", factors}}; }
-ArrayJson shift(const std::vector<double>& offsets) { return {{"type", "translation"}, {"translation", offsets}}; }
-
-// An array of one chunk whose samples are 1, 2, 3, ...
-void put_array(const std::string& folder, const std::vector<std::int64_t>& shape, const ArrayJson& attributes = {}) {
-  std::int64_t count = 1;
-  for (const std::int64_t size : shape) count *= size;
-  std::string samples;
-  for (std::int64_t n = 1; n <= count; ++n) samples += bytes_of(static_cast<std::int16_t>(n));
-  put_json(folder + "/.zarray", {{"zarr_format", 2},
-                                 {"shape", shape},
-                                 {"chunks", shape},
-                                 {"dtype", "<i2"},
-                                 {"order", "C"},
-                                 {"fill_value", 0},
-                                 {"compressor", nullptr},
-                                 {"filters", nullptr}});
-  put_file(folder + "/" + key(std::vector<std::int64_t>(shape.size(), 0), "."), samples);
-  if (!attributes.is_null()) put_json(folder + "/.zattrs", attributes);
-}
-
-void put_group(const std::string& folder, const ArrayJson& attributes) {
-  put_json(folder + "/.zgroup", {{"zarr_format", 2}});
-  put_json(folder + "/.zattrs", attributes);
-}
-
-ArrayJson image(const ArrayJson& axes, const ArrayJson& datasets, const ArrayJson& whole = nullptr) {
-  ArrayJson multiscale = {{"version", "0.4"}, {"axes", axes}, {"datasets", datasets}};
-  if (!whole.is_null()) multiscale["coordinateTransformations"] = whole;
-  return {{"multiscales", list({multiscale})}};
-}
-
-ArrayJson level(const std::string& path, const ArrayJson& transformations) {
-  return {{"path", path}, {"coordinateTransformations", transformations}};
-}
+using namespace zarr_files;
 
 void expect_places(const Geometry& geometry, const std::array<double, 3>& spacing,
                    const std::array<double, 3>& origin) {

@@ -155,6 +155,14 @@ TEST(WriteGlb, PointsAloneArePoints) {
   EXPECT_EQ(read_mesh(folder / "a.glb").vertices.size(), 3U);
 }
 
+TEST(WriteGlb, AnEmptyMeshIsAnEmptyScene) {
+  const files::Folder folder;
+  open_mesh_file(folder / "a.glb")->finish();
+  const Json scene = glb_scene(files::read_bytes(folder / "a.glb"));
+  EXPECT_EQ(scene["scenes"].dump(), R"([{"name":"empty"}])");
+  EXPECT_FALSE(scene.contains("nodes"));
+}
+
 TEST(WriteGlb, FourGibibytesAreTheMost) {
   EXPECT_NO_THROW(check_glb_fits("a.glb", 1000, 1000, false, 0xffffffffU - 24000));
   EXPECT_THROW(check_glb_fits("a.glb", 1000, 1000, false, 0xffffffffU - 23999), CannotWrite);

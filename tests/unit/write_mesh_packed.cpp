@@ -166,6 +166,7 @@ TEST(WritePackedGlb, AnEmptyMeshIsAnEmptyScene) {
   write(folder / "a.glb", {}, packed_options());
   const std::string bytes = files::read_bytes(folder / "a.glb");
   EXPECT_EQ(bytes.size(), 20U + word_at(bytes, 12));
+  EXPECT_EQ(Json::parse(bytes.substr(20))["scenes"].dump(), R"([{"name":"empty"}])");
 }
 #endif
 

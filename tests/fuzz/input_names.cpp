@@ -1,0 +1,3 @@
+#include "input_files.hpp"
+
+const char* const isoweave::fuzz::kInputNames = ISOWEAVE_FUZZ_FILES;

@@ -1,0 +1,34 @@
+// Folders of seeds, and what fills those that are many.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "input_files.hpp"
+
+namespace isoweave::fuzz {
+
+inline const std::string kNext(kNextFile);
+
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void put(const std::string& target, const std::string& content) {
+    const std::filesystem::path folder = folder_ / target;
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / std::to_string(count_[target]++), std::ios::binary) << content;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, int> count_;
+};
+
+// Zarr 2 and 3, OME-Zarr, N5.
+void put_arrays(Seeds& seeds);
+
+}  // namespace isoweave::fuzz
