@@ -28,7 +28,7 @@ export function shown(key, format = 'text') {
     'data-value': JSON.stringify(value),
     'data-format': format,
     title: number ? String(value) : undefined,
-    class: number ? 'number' : undefined,
+    class: number ? 'number' : format === 'code' ? 'code' : undefined,
   }, formatted(value, number || typeof value === 'boolean' ? format : 'text', unit));
 }
 

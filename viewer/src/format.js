@@ -24,6 +24,7 @@ function scaled(value, base, units) {
 const formats = {
   count: (value) => minus(grouped.format(value)),
   number: (value) => significant(value, 7),
+  bare: (value) => significant(value, 4),
   length: (value, unit) => `${significant(value, 4)}${unit ? ` ${unit}` : ''}`,
   seconds: (value) => (value < 0.1 ? `${significant(value * 1000, 3)} ms` : `${significant(value, 4)} s`),
   bytes: (value) => scaled(value, 1000, ['B', 'kB', 'MB', 'GB', 'TB']),

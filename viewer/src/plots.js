@@ -30,6 +30,13 @@ function series(label, name, format, more = {}) {
   };
 }
 
+// Of a logarithmic axis, only powers of ten: there are nine times as many other lines.
+const decades = {
+  filter: (_, ticks) => ticks.map((tick) => (Number.isInteger(Math.log10(tick)) ? tick : null)),
+};
+const logAxis = () => axis(short, { size: 58, ...decades, grid: { stroke: colour('line'), width: 1, ...decades } });
+const nameAxis = (label, values) => axis(values, { label, labelSize: 20, labelFont: '12px system-ui, sans-serif' });
+
 const column = (key) => report.sweep.map((record) => record[key]);
 // Nothing has no logarithm.
 const positive = (values) => values.map((value) => (value > 0 ? value : null));
@@ -39,7 +46,7 @@ function triangleOptions() {
   const points = { show: few(), size: 6 };
   return {
     scales: { x: { time: false }, y: { distr: 3 } },
-    axes: [axis(short, { label: 'layers swept', labelSize: 22, labelFont: '12px system-ui, sans-serif' }), axis(short, { size: 58 })],
+    axes: [nameAxis('layers swept', short), logAxis()],
     series: [
       { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
       series('Final', 'plot-final', 'count', { points }),
@@ -52,7 +59,7 @@ function triangleOptions() {
 function memoryOptions() {
   return {
     scales: { x: { time: false }, y: { range: (_, low, high) => [0, high * 1.08 || 1] } },
-    axes: [axis(short, { label: 'layers swept', labelSize: 22, labelFont: '12px system-ui, sans-serif' }),
+    axes: [nameAxis('layers swept', short),
       axis((value) => formatted(value, 'bytes'), { size: 66 })],
     series: [
       { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
@@ -67,9 +74,11 @@ const bins = () => report.page.distance.bins;
 function errorOptions() {
   const bars = uPlot.paths.bars({ size: [0.9, 100], align: 1 });
   return {
-    scales: { x: { time: false, range: () => [0, report.page.distance.max || 1] }, y: { distr: 3, range: (_, low, high) => [0.5, high * 1.6] } },
-    axes: [axis((value) => formatted(value, 'number'), { label: `distance${unit ? ` (${unit})` : ''}`, labelSize: 22, labelFont: '12px system-ui, sans-serif' }),
-      axis((value) => (Number.isInteger(Math.log10(value)) && value >= 1 ? short(value) : ''), { size: 58 })],
+    scales: {
+      x: { time: false, range: () => [0, report.page.distance.max || 1] },
+      y: { distr: 3, range: (_, low, high) => [0.5, high * 1.6] },
+    },
+    axes: [nameAxis(`distance${unit ? ` (${unit})` : ''}`, (value) => formatted(value, 'bare')), logAxis()],
     series: [
       { label: 'From', value: (_, value) => (value === null ? '–' : formatted(value, 'length', unit)) },
       series('Vertices', 'plot-error', 'count', { paths: bars, points: { show: false }, fill: `${colour('plot-error')}99`, width: 1 }),

@@ -1,5 +1,5 @@
 // The numbers: tiles on top, cards with tables below.
-import { report, valueAt } from './data.js';
+import { report, unit, valueAt } from './data.js';
 import { element, shown } from './element.js';
 
 const kInput = [
@@ -13,7 +13,7 @@ const kInput = [
 const kOptions = [
   ['Iso-value', 'iso', 'number'], ['Inside', 'inside'], ['Closed at the border', 'closed', 'flag'],
   ['Error', 'error', 'length'], ['Triangles asked for', 'target.triangles', 'count'], ['Quality', 'quality'],
-  ['Schedule', 'schedule'], ['Threads', 'threads', 'count'], ['Layers per slab', 'slab', 'count'],
+  ['Schedule', 'schedule'], ['Threads', 'threads', 'count'], ['Layers per slab (0: as it fits)', 'slab', 'count'],
   ['Back end', 'backend'], ['Coordinates', 'space'], ['Mesh file', 'output'],
 ];
 const kCounts = [
@@ -38,7 +38,7 @@ const kChecks = [
   ['Non-manifold edges', 'nonmanifold_edges', 'count'], ['Non-manifold vertices', 'nonmanifold_vertices', 'count'],
   ['Misoriented edges', 'misoriented_edges', 'count'], ['Degenerate triangles', 'degenerate_triangles', 'count'],
   ['Unused vertices', 'unused_vertices', 'count'], ['Components', 'components', 'count'],
-  ['Euler number', 'euler', 'count'], ['Area', 'area', 'number'], ['Volume', 'volume', 'number'], ['Digest', 'digest'],
+  ['Euler number', 'euler', 'count'], ['Area', 'area', 'number'], ['Volume', 'volume', 'number'], ['Digest', 'digest', 'code'],
 ];
 
 function card(title, ...content) {
@@ -102,10 +102,10 @@ function distanceCard() {
   const kinds = [['mean', 'Mean'], ['rms', 'RMS'], ['max', 'Largest']];
   const ways = [['a_to_b', 'To the full surface'], ['b_to_a', 'From the full surface'], ['both', 'Both ways']];
   const rows = [['page.distance', 'At vertices'], ...ways.map(([key, label]) => [`page.distance.sampled.${key}`, label])];
-  const head = element('tr', {}, element('th', { scope: 'col' }, 'Distance'),
+  const head = element('tr', {}, element('th', { scope: 'col' }, unit ? `In ${unit}` : ''),
     ...kinds.map(([, label]) => element('th', { scope: 'col' }, label)));
   const body = rows.map(([key, label]) => element('tr', {}, element('th', { scope: 'row' }, label),
-    ...kinds.map(([kind]) => element('td', {}, shown(`${key}.${kind}`, 'length')))));
+    ...kinds.map(([kind]) => element('td', {}, shown(`${key}.${kind}`, 'bare')))));
   const note = element('p', { class: 'small' }, 'At the ', shown('page.distance.vertices', 'count'),
     ' vertices of the mesh, and at ', shown('page.distance.samples', 'count'), ' points spread over each surface by area.');
   return card('Distance to the full surface',
@@ -166,7 +166,7 @@ export function fillTiles() {
       ? ['on ', shown('threads', 'count'), report.threads === 1 ? ' thread' : ' threads'] : [])),
     tile('Peak memory', shown('memory.peak_bytes', 'bytes'), ...(valueAt('memory.predicted_bytes')
       ? ['predicted ', shown('memory.predicted_bytes', 'bytes')] : [])),
-    tile('Digest', shown('page.check.digest'), ...(report.digest === undefined ? []
+    tile('Digest', shown('page.check.digest', 'code'), ...(report.digest === undefined ? []
       : [report.digest === check.digest ? 'the run’s, and the file’s' : 'of the file: the run’s is another'])),
   ];
   document.getElementById('tiles').append(...tiles.filter(Boolean));
