@@ -96,8 +96,8 @@ void write_script(AtomicFile& file, std::string_view id, const Json& json) {
 }  // namespace
 
 std::uint64_t page_memory(std::uint64_t triangles) {
-  constexpr std::uint64_t kBytesPerTriangle = 300;
-  constexpr std::uint64_t kElse = 400'000'000;  // the full surface, what it is measured with, the text
+  constexpr std::uint64_t kBytesPerTriangle = 220;
+  constexpr std::uint64_t kElse = 200'000'000;  // the full surface, what it is measured with, the text
   return triangles * kBytesPerTriangle + kElse;
 }
 

@@ -30,6 +30,7 @@ function addSurfaces(choose) {
 export function markSurface(index) {
   byId(`surface-choice-${index}`).checked = true;
   byId('drawn').textContent = '';
+  byId('split-line').lastChild.textContent = surfaceNames()[index].toLowerCase();
   byId('drawn').append(`${surfaceNames()[index]}: `, shown(`page.surfaces.${index}.triangles`, 'count'), ' triangles');
 }
 
@@ -79,9 +80,30 @@ function addSlabs(view, middle) {
   cut();
 }
 
+// The surface before simplification beside what is chosen, each on its side of a line.
+function addSplit(view, startSplit) {
+  const possible = report.page.surfaces[0].name === 'full';
+  byId('compare').hidden = !possible;
+  if (!possible) return;
+  const range = byId('split-range');
+  const move = () => {
+    const shown = !byId('split').hidden;
+    view.setSplit(shown ? range.value / 100 : null);
+    byId('split-line').hidden = !shown;
+    byId('split-line').style.left = `${range.value}%`;
+    range.setAttribute('aria-valuetext', `${range.value} percent of the width`);
+  };
+  range.addEventListener('input', move);
+  toggle('compare', async (on) => {
+    byId('split').hidden = !on;
+    if (on) await startSplit();
+    move();
+  });
+}
+
 function addKeys(view, choose, current) {
   const turns = { ArrowLeft: [-kTurn, 0], ArrowRight: [kTurn, 0], ArrowUp: [0, -kTurn], ArrowDown: [0, kTurn] };
-  const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', 0: 'reset' };
+  const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', c: 'compare', 0: 'reset' };
   byId('view').addEventListener('keydown', (event) => {
     const turn = turns[event.key];
     if (!turn || event.altKey || event.ctrlKey || event.metaKey) return;
@@ -99,13 +121,14 @@ function addKeys(view, choose, current) {
   });
 }
 
-// `choose` shows a surface by its number, `current` tells which one is shown.
-export function startControls(view, middle, choose, current) {
+// `choose` shows a surface by its number, `current` tells which one is shown, `startSplit` brings in the one before.
+export function startControls(view, middle, { choose, current, startSplit }) {
   addSurfaces(choose);
   toggle('wireframe', (on) => view.setWireframe(on));
   toggle('smooth', (on) => view.setSmooth(on));
   byId('reset').addEventListener('click', () => view.reset());
   addErrors(view);
   addSlabs(view, middle);
+  addSplit(view, startSplit);
   addKeys(view, choose, current);
 }

@@ -29,7 +29,11 @@ class Surfaces {
     const first = await unpack(packedSurface(this.shown));
     this.middle = middleOf(first);
     this.keep(this.shown, first);
-    startControls(this.view, this.middle, (index) => this.choose(index), () => this.shown);
+    startControls(this.view, this.middle, {
+      choose: (index) => this.choose(index),
+      current: () => this.shown,
+      startSplit: async () => this.view.setBefore(await this.geometry(0)),
+    });
     await this.choose(this.shown);
   }
 
@@ -37,11 +41,16 @@ class Surfaces {
     this.geometries.set(index, geometryOf(surface, this.middle, report.page.distance?.max ?? 0));
   }
 
+  async geometry(index) {
+    if (!this.geometries.has(index)) this.keep(index, await unpack(packedSurface(index)));
+    return this.geometries.get(index);
+  }
+
   async choose(index) {
     this.shown = index;
     markSurface(index);
-    if (!this.geometries.has(index)) this.keep(index, await unpack(packedSurface(index)));
-    if (this.shown === index) this.view.show(this.geometries.get(index));
+    const geometry = await this.geometry(index);
+    if (this.shown === index) this.view.show(geometry);
   }
 }
 

@@ -36,10 +36,13 @@ export class View {
     this.edges = new Mesh(this.surface.geometry, new MeshBasicMaterial({
       wireframe: true, color: 0x16324a, transparent: true, opacity: 0.55,
     }));
-    this.edges.visible = false;
+    this.wireframe = false;
+    this.before = new Mesh(new BufferGeometry(), this.surface.material); // left of the split
+    this.beforeEdges = new Mesh(this.before.geometry, this.edges.material);
+    this.split = null; // part of the width, or none
     this.planes = new Group();
     this.planes.visible = false;
-    this.scene.add(this.surface, this.edges, this.planes);
+    this.scene.add(this.surface, this.edges, this.before, this.beforeEdges, this.planes);
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
@@ -80,7 +83,18 @@ export class View {
   }
 
   setWireframe(on) {
-    this.edges.visible = on;
+    this.wireframe = on;
+    this.draw();
+  }
+
+  setBefore(geometry) {
+    this.before.geometry = geometry;
+    this.beforeEdges.geometry = geometry;
+  }
+
+  // Shows the surface from before simplification left of this part of the width; nowhere for null.
+  setSplit(part) {
+    this.split = part;
     this.draw();
   }
 
@@ -152,6 +166,25 @@ export class View {
   drawNow() {
     cancelAnimationFrame(this.asked);
     this.asked = 0;
+    if (this.split === null) {
+      this.drawOne(false);
+      return;
+    }
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const edge = Math.round(width * this.split);
+    this.renderer.setScissorTest(true);
+    this.renderer.setScissor(0, 0, edge, height);
+    this.drawOne(true);
+    this.renderer.setScissor(edge, 0, width - edge, height);
+    this.drawOne(false);
+    this.renderer.setScissorTest(false);
+  }
+
+  drawOne(before) {
+    this.surface.visible = !before;
+    this.edges.visible = !before && this.wireframe;
+    this.before.visible = before;
+    this.beforeEdges.visible = before && this.wireframe;
     this.renderer.render(this.scene, this.camera);
   }
 }

@@ -120,8 +120,8 @@ describe('numbers', () => {
     const count = await expectNumbersOf(page, report, 180);
     assert.equal(count('sweep.'), 5 * report.sweep.length);
     for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 13], ['page.surfaces.', 8],
-      ['page.distance.', 17 + 3 * report.page.distance.bins.length], ['input.', 26]]) assert.equal(count(part), keys, part);
-    assert.deepEqual(await page.evaluate(kOtherDigits), ['LOD 1', 'LOD 2', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
+      ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
+    assert.deepEqual(await page.evaluate(kOtherDigits), ['0', 'LOD 1', 'LOD 2', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
   }));
 
   test('of the plots are those of the report', () => withPage('mesh.html', kDesktop, async (page) => {
@@ -179,7 +179,7 @@ describe('the view', () => {
 
   test('changes with its buttons, and back', () => withPage('mesh.html', kSmall, async (page) => {
     const first = await picture(page);
-    for (const id of ['wireframe', 'smooth', 'error', 'slabs']) {
+    for (const id of ['wireframe', 'smooth', 'error', 'slabs', 'compare']) {
       const was = await pressed(page, id);
       await page.click(`#${id}`);
       assert.notEqual(await pressed(page, id), was, id);
@@ -202,6 +202,27 @@ describe('the view', () => {
       assert.equal(numberIn(said.split(':')[1]), json('mesh.json').page.surfaces[index].triangles);
     }
     assert.equal(sums.size, 4);
+  }));
+
+  test('shows before and after on two sides of a line', () => withPage('mesh.html', kSmall, async (page) => {
+    const move = (percent) => page.evaluate(`(() => {
+      const range = document.getElementById('split-range');
+      range.value = ${percent};
+      range.dispatchEvent(new Event('input'));
+    })()`);
+    const after = await picture(page);
+    await page.click('label[for=surface-choice-0]');
+    await settled(page);
+    const first = await picture(page);
+    await page.click('label[for=surface-choice-1]');
+    await page.click('#compare');
+    await settled(page);
+    const both = await picture(page);
+    assert.ok(both.sum !== after.sum && both.sum !== first.sum);
+    await move(100);
+    assert.equal((await picture(page)).sum, first.sum, 'all of it before');
+    await move(0);
+    assert.equal((await picture(page)).sum, after.sum, 'all of it after');
   }));
 
   test('cuts the mesh where a slab ended', () => withPage('mesh.html', kSmall, async (page) => {
@@ -231,7 +252,7 @@ describe('the view', () => {
       await page.press('0');
       assert.equal((await picture(page)).sum, first.sum, `${key} and reset`);
     }
-    for (const [key, id] of [['w', 'wireframe'], ['s', 'smooth'], ['e', 'error'], ['p', 'slabs']]) {
+    for (const [key, id] of [['w', 'wireframe'], ['s', 'smooth'], ['e', 'error'], ['p', 'slabs'], ['c', 'compare']]) {
       const was = await pressed(page, id);
       await page.press(key);
       assert.notEqual(await pressed(page, id), was, key);
@@ -297,6 +318,7 @@ describe('looks', () => {
         await page.click('#theme');
         assert.equal(await pressed(page, 'theme'), String(!dark));
         assert.notEqual(await back(), first);
+        await page.evaluate('localStorage.clear()');
       }));
   }
 
@@ -330,7 +352,7 @@ describe('looks', () => {
       assert.equal(outline, 'solid', `${id} shows that it has the focus`);
       reached.push(id);
     }
-    assert.deepEqual(reached, ['a', 'theme', 'view', 'surface-choice-1', 'wireframe', 'smooth', 'error', 'slabs', 'reset',
+    assert.deepEqual(reached, ['a', 'theme', 'view', 'surface-choice-1', 'wireframe', 'smooth', 'error', 'slabs', 'compare', 'reset',
       'summary', 'summary', 'summary']);
   }));
 
@@ -338,6 +360,7 @@ describe('looks', () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('mesh.html', { ...screen, dark }, async (page) => {
+          assert.equal(await pressed(page, 'theme'), String(dark));
           const name = (more) => join(folder, `${device}-${dark ? 'dark' : 'light'}${more}.png`);
           await page.screenshot(name(''));
           for (const id of ['error', 'wireframe', 'slabs']) await page.click(`#${id}`);
