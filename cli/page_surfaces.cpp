@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "measure/geometry.hpp"
@@ -14,19 +13,38 @@
 namespace isoweave::cli {
 namespace {
 
+using measure::operator-;
+
 constexpr std::array<std::uint64_t, 2> kCoarser{4, 16};  // one of so many triangles is left
 constexpr std::uint64_t kFewestTriangles = 500;          // of a coarser level
+constexpr double kWorthIt = 0.75;                        // part of the triangles that a level may have of the finer one
+// Part of the mesh's size that coarser surfaces may be off. Some surfaces, noise, cannot be made of so few triangles,
+// and trying takes minutes.
+constexpr double kMostError = 0.02;
 constexpr std::size_t kBins = 40;
 constexpr std::uint64_t kSamples = 200'000;
 constexpr std::int64_t kVerticesPerBlock = 1024;
 
-// Whatever error that takes.
+// Diagonal of the box.
+double size_of(const TriangleMesh& mesh) {
+  measure::Vector low = measure::vector_of(mesh.vertices.front());
+  measure::Vector high = low;
+  for (const Point& vertex : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], double{vertex[axis]});
+      high[axis] = std::max(high[axis], double{vertex[axis]});
+    }
+  }
+  return std::sqrt(measure::dot(high - low, high - low));
+}
+
+// To so many triangles, or to as few as kMostError allows.
 TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const RunControl& control) {
   RunControl quiet = control;
   quiet.measure = false;
   quiet.progress = nullptr;
   MemorySink sink;
-  SimplifyOptions options{{std::numeric_limits<double>::infinity(), false}, Quality::kNormal, triangles};
+  const SimplifyOptions options{{kMostError * size_of(mesh), false}, Quality::kNormal, triangles};
   simplify_mesh(mesh, sink, options, quiet);
   return sink.take();
 }
@@ -84,7 +102,9 @@ std::vector<PageSurface> levels_of(TriangleMesh mesh, std::uint64_t most_triangl
   const std::uint64_t finest = levels[0].mesh.triangles.size();
   for (const std::uint64_t part : kCoarser) {
     if (finest / part < kFewestTriangles) break;
-    TriangleMesh coarser = simplified(levels.back().mesh, finest / part, control);
+    const TriangleMesh& finer = levels.back().mesh;
+    TriangleMesh coarser = simplified(finer, finest / part, control);
+    if (static_cast<double>(coarser.triangles.size()) > kWorthIt * static_cast<double>(finer.triangles.size())) break;
     levels.push_back({"level", std::move(coarser), {}});
   }
   return levels;

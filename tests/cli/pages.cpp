@@ -199,15 +199,24 @@ TEST(CliPage, LargeMeshesGetAStandInAndANote) {
 
 TEST(CliPage, ASurfaceTooLargeToCompareWithIsNoted) {
   const files::Folder folder;
-  expect_done(folder,
-              {"mesh", "generate:white:80x80x80:uint8", "--iso", "127.5", "-o", "out.ply", "--triangles", "1200000",
-               "--html", "out.html", "--report", "out.json", "--quiet", "--page-triangles", "20000"});
+  expect_done(folder, mesh({"--html", "out.html", "--report", "out.json", "--page-triangles", "20000"},
+                           "generate:gyroid:160x160x160:uint8"));
   const Json report = report_of(folder, "out.json");
   ASSERT_GT(report["triangles_extracted"], 1'000'000);
   EXPECT_EQ(report["page"]["surfaces"][0]["name"], "stand-in");
   EXPECT_EQ(report["page"]["distance"], nullptr);
   EXPECT_NE(report["page"]["notes"].dump().find("more than the 1,000,000"), std::string::npos)
       << report["page"]["notes"];
+}
+
+TEST(CliPage, NoiseIsShownAsCoarselyAsItCanBe) {
+  const files::Folder folder;
+  expect_done(folder, mesh({"--html", "out.html", "--report", "out.json", "--page-triangles", "2000"},
+                           "generate:white:24x24x24:uint8"));
+  const Json surfaces = report_of(folder, "out.json")["page"]["surfaces"];
+  ASSERT_EQ(surfaces.size(), 2U) << surfaces;
+  EXPECT_EQ(surfaces[1]["name"], "stand-in");
+  EXPECT_GT(surfaces[1]["triangles"], 2000);
 }
 
 TEST(CliPage, WhatWasNotSimplifiedAndWhatIsEmptyIsSaid) {

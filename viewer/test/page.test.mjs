@@ -30,7 +30,7 @@ const address = (name) => pathToFileURL(join(folder, name)).href;
 
 let browser;
 before(async () => {
-  run('generate', 'gyroid', '--size', '72', '--type', 'uint8', '--spacing', '0.5,0.5,0.75', '-o', kVolume, '--quiet');
+  run('generate', 'gyroid', '--size', '56', '--type', 'uint8', '--spacing', '0.5,0.5,0.75', '-o', kVolume, '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '--slab', '12', '-o', 'mesh.ply', '--html', 'mesh.html', '--report',
     'mesh.json', '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '-o', 'large.ply', '--page-triangles', '3000', '--html', 'large.html',
@@ -121,7 +121,7 @@ describe('numbers', () => {
     assert.equal(count('sweep.'), 5 * report.sweep.length);
     for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 13], ['page.surfaces.', 8],
       ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
-    assert.deepEqual(await page.evaluate(kOtherDigits), ['0', 'LOD 1', 'LOD 2', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
+    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
   }));
 
   test('of the plots are those of the report', () => withPage('mesh.html', kDesktop, async (page) => {
