@@ -33,6 +33,7 @@ export function shown(key, format = 'text') {
 }
 
 function list(key, values, format) {
+  const between = key.endsWith('dims') ? ' × ' : ' ';
   const parts = values.map((_, index) => shown(`${key}.${index}`, format));
-  return element('span', { class: 'list' }, ...parts.flatMap((part, index) => (index > 0 ? [' ', part] : [part])));
+  return element('span', { class: 'list' }, ...parts.flatMap((part, index) => (index > 0 ? [between, part] : [part])));
 }

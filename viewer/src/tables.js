@@ -160,8 +160,8 @@ export function fillTiles() {
       ? [shown('triangles / triangles_extracted', 'percent'), ' of ', shown('triangles_extracted', 'count')]
       : [shown('page.check.vertices', 'count'), ' vertices'])),
     stateTile(check),
-    tile('Error asked for', shown('error', 'length'), ...(distance
-      ? ['largest measured ', shown('page.distance.max', 'length')] : [])),
+    tile('Error', shown('error', 'length'), ...(distance
+      ? ['largest found ', shown('page.distance.max', 'length')] : [])),
     tile('Time', shown('seconds.total', 'seconds'), ...(report.threads
       ? ['on ', shown('threads', 'count'), report.threads === 1 ? ' thread' : ' threads'] : [])),
     tile('Peak memory', shown('memory.peak_bytes', 'bytes'), ...(valueAt('memory.predicted_bytes')
