@@ -322,14 +322,20 @@ describe('looks', () => {
       }));
   }
 
-  for (const width of [390, 320, 768]) {
-    test(`nothing sticks out of ${width} pixels`, async () => {
+  for (const width of [390, 320, 768, 1320]) {
+    test(`nothing sticks out of ${width} pixels and of its card`, async () => {
       for (const name of ['mesh.html', 'view.html', 'mesh.ply.html', 'empty.html']) {
         await withPage(name, { ...kPhone, width }, async (page) => {
           assert.equal(await page.evaluate('document.documentElement.scrollWidth'), width, name);
           const wide = await page.evaluate(`[...document.querySelectorAll('main *, header *')].filter((e) =>
             !e.closest('.scroll, .u-wrap') && e.getBoundingClientRect().right > ${width} + 0.5).map((e) => e.outerHTML.slice(0, 80))`);
           assert.deepEqual(wide, [], name);
+          const cards = await page.evaluate(`[...document.querySelectorAll('.card, .tiles li')].filter((card) => {
+            const inside = card.getBoundingClientRect().right - parseFloat(getComputedStyle(card).paddingRight);
+            return [...card.querySelectorAll('dl, table, span')].some((e) =>
+              !e.closest('.u-wrap') && e.getBoundingClientRect().right > inside + 1);
+          }).map((card) => card.innerText.slice(0, 20))`);
+          assert.deepEqual(cards, [], name);
         });
       }
     });
