@@ -4,7 +4,7 @@
 // Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -39,6 +39,8 @@ before(async () => {
   run('simplify', 'mesh.ply', '--triangles', '4000', '-o', 'small.stl', '--html', 'small.html', '--report', 'small.json', '--quiet');
   run('view', 'mesh.ply', '--quiet');
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
+  writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
+  run('view', 'other.json', '-o', 'other.html', '--quiet');
   browser = await Browser.start();
 });
 after(() => browser?.close());
@@ -93,6 +95,12 @@ const kOtherDigits = `(() => {
   }
   return found;
 })()`;
+
+// What an element says to those who see it.
+const visibleText = (page, id) => page.evaluate(`(() => {
+  const e = document.getElementById('${id}');
+  return e.offsetHeight > 0 ? e.innerText : '';
+})()`);
 
 // What is drawn: how much of the canvas, in how many colours, and a sum that changes with the picture.
 const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
@@ -149,6 +157,15 @@ describe('numbers', () => {
     const report = { version: check.version, output: 'mesh.ply', page: { check, surfaces, notes } };
     await expectNumbersOf(page, report, 20);
   }));
+
+  const differing = (page) => page.evaluate(`[...document.querySelectorAll('.differs th')].map((e) => e.innerText)`);
+  test('that the file does not have stand out', async () => {
+    await withPage('mesh.html', kDesktop, async (page) => assert.deepEqual(await differing(page), []));
+    await withPage('other.html', kDesktop, async (page) => {
+      assert.deepEqual(await differing(page), ['Triangles', 'Vertices', 'Digest']);
+      assert.match(await visibleText(page, 'notes'), /another digest/);
+    });
+  });
 
   test('of a report are those of the run', () => withPage('view.html', kDesktop, async (page) => {
     const report = json('mesh.json');
@@ -271,19 +288,19 @@ describe('the view', () => {
     assert.deepEqual(surfaces.map(({ name }) => name).slice(0, 2), ['full', 'stand-in']);
     assert.ok(surfaces[1].triangles <= 3000 && check.triangles === triangles && triangles > 3000);
     assert.match(notes[0], /stand-in/);
-    assert.ok((await page.evaluate(`document.getElementById('notes').innerText`)).includes(notes[0]));
-    assert.match(await page.evaluate(`document.getElementById('drawn').textContent`), /^Stand-in: /);
+    assert.ok((await visibleText(page, 'notes')).includes(notes[0]));
+    assert.match(await visibleText(page, 'drawn'), /^Stand-in: /);
   }));
 
   test('says that an empty mesh is empty', () => withPage('empty.html', kSmall, async (page) => {
-    assert.match(await page.evaluate(`document.getElementById('view-message').innerText`), /no triangles/);
+    assert.match(await visibleText(page, 'view-message'), /no triangles/);
   }));
 
   test('says that a browser cannot draw it', async () => {
     const blind = await Browser.start(['--disable-3d-apis']);
     try {
       const page = await blind.open(address('mesh.html'), kSmall);
-      assert.match(await page.evaluate(`document.getElementById('view-message').innerText`), /no WebGL/);
+      assert.match(await visibleText(page, 'view-message'), /no WebGL/);
       await expectNumbersOf(page, json('mesh.json'), 150);
     } finally {
       await blind.close();
@@ -352,10 +369,11 @@ describe('looks', () => {
       const [id, outline] = await page.evaluate(`(() => {
         const e = document.activeElement;
         const ring = e.type === 'radio' ? e.nextElementSibling : e;
-        return [e.id || e.localName, getComputedStyle(ring).outlineStyle];
+        const { outlineStyle, outlineWidth } = getComputedStyle(ring);
+        return [e.id || e.localName, outlineStyle === 'solid' && parseFloat(outlineWidth) >= 2];
       })()`);
       if (id === 'body') break;
-      assert.equal(outline, 'solid', `${id} shows that it has the focus`);
+      assert.ok(outline, `${id} shows that it has the focus`);
       reached.push(id);
     }
     assert.deepEqual(reached, ['a', 'theme', 'view', 'surface-choice-1', 'wireframe', 'smooth', 'error', 'slabs', 'compare', 'reset',
