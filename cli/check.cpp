@@ -16,24 +16,6 @@ struct CheckArguments {
   bool json = false;
 };
 
-Json check_json(const MeshCheck& check, const std::string& path) {
-  return {{"version", ISOWEAVE_VERSION},
-          {"path", path},
-          {"triangles", check.triangles},
-          {"vertices", check.vertices},
-          {"unused_vertices", check.unused_vertices},
-          {"open_edges", check.open_edges},
-          {"nonmanifold_edges", check.nonmanifold_edges},
-          {"nonmanifold_vertices", check.nonmanifold_vertices},
-          {"misoriented_edges", check.misoriented_edges},
-          {"degenerate_triangles", check.degenerate_triangles},
-          {"components", check.components},
-          {"euler", check.euler},
-          {"area", number_or_null(check.area)},
-          {"volume", number_or_null(check.volume)},
-          {"digest", digest_text(check.digest)}};
-}
-
 std::string check_text(const MeshCheck& check, const std::string& path) {
   std::string text =
       fmt::format("{}: {}{}\n", path, state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),

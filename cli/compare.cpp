@@ -17,18 +17,6 @@ struct CompareArguments {
   bool json = false;
 };
 
-Json distance_json(double mean, double rms, double max) { return {{"mean", mean}, {"rms", rms}, {"max", max}}; }
-
-// In lengths of `unit`.
-Json distances_json(const MeshDistance& distance, double unit) {
-  const auto one_way = [&](const OneWayDistance& way) {
-    return distance_json(way.mean / unit, way.rms / unit, way.max / unit);
-  };
-  return {{"a_to_b", one_way(distance.a_to_b)},
-          {"b_to_a", one_way(distance.b_to_a)},
-          {"both", distance_json(distance.mean / unit, distance.rms / unit, distance.max / unit)}};
-}
-
 std::string distances_text(const MeshDistance& distance, double unit, std::string_view name) {
   std::string text = fmt::format("{:<18}{:>14}{:>14}{:>14}\n", name, "mean", "RMS", "max");
   const auto line = [&](std::string_view way, double mean, double rms, double max) {

@@ -9,7 +9,9 @@
 #include <thread>
 #include <utility>
 
+#include "evidence.hpp"
 #include "isoweave/error.hpp"
+#include "memory_sink.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -32,6 +34,7 @@ Examples:
   isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
   isoweave mesh --resume gyroid.run
   isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
+  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
 
 Without --error, --triangles and --ratio the error is 0.2vox. The result does not depend on --threads, --schedule and
 --slab.)";
@@ -43,6 +46,7 @@ struct MeshArguments {
   RunOptions run;
   OutputOptions output;
   StopOptions stop;
+  PageOptions page;
   std::string iso, quality = "normal", slab, inside = "above", normals = "none";
   std::string space, memory, checkpoint, every, resume;
   bool open = false, closed = false, dry_run = false;
@@ -65,6 +69,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"compress", arguments.output.compress},
           {"segment", arguments.output.segment},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
+          {"html", arguments.page.given() ? absolute_path(arguments.page.path) : ""},
+          {"page_triangles", arguments.page.triangles},
           {"iso", fmt::format("{}", options.iso)},
           {"error", arguments.stop.error},
           {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
@@ -86,6 +92,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
                      task.at("time"),   task.at("roi"),     task.at("step")};
   arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
+  if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
   arguments.stop = {task.at("error"), task.at("triangles"), "", task.at("specks")};
   arguments.quality = task.at("quality");
@@ -240,7 +247,34 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["output"] = arguments.output.name();
+  json["space"] = space_text(info.geometry, options.space);
   return json;
+}
+
+void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles) {
+  if (!arguments.page.given() || cap == 0 || page_memory(triangles) <= cap) return;
+  throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more for --html, found {}", arguments.input.path,
+                               std::ceil(static_cast<double>(page_memory(triangles)) * 1e-6), arguments.memory));
+}
+
+// The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
+PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
+                           const RunControl& control) {
+  PageContents contents{read_mesh(arguments.output.path), std::nullopt, ""};
+  if (report.collapses == 0) {
+    contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
+  } else if (report.triangles_extracted > kMostFullTriangles) {
+    contents.full_note = too_full_note(report.triangles_extracted);
+  } else {
+    MeshOptions full = options;
+    full.error = {0, false};
+    full.triangles = 0;
+    full.normals = false;
+    MemorySink sink;
+    mesh_volume(*open_input(arguments.input), sink, full, control);
+    contents.full = sink.take();
+  }
+  return contents;
 }
 
 void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
@@ -249,7 +283,8 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   parse_slab(arguments.slab, 1);
-  check_different({arguments.input.path, arguments.output.path, run.report});
+  check_page(arguments.page, arguments.output);
+  check_different({arguments.input.path, arguments.output.path, run.report, arguments.page.path});
 
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
@@ -259,8 +294,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
 
   control.stop = &stop_on_signal();
-  std::optional<AtomicFile> report_file;
-  if (!run.report.empty()) report_file.emplace(run.report);
+  Evidence evidence(run, arguments.page);
   if (arguments.iso == "auto") {
     open_output(arguments.output,
                 mesh_file_options(arguments.output, {}));  // finds out now what would stop the run after the first pass
@@ -272,12 +306,12 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   MeshFileOptions file = file_options(arguments, options, info.geometry);
   std::optional<Forecast> forecast;
   if (resume == nullptr) forecast = checked_forecast(arguments, options, file, control);
+  if (forecast) check_page_memory(arguments, control.memory, forecast->triangles);
   if (arguments.dry_run) {
     const std::uint64_t bytes = output_bytes(*forecast, arguments, file);
     const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_out(forecast_text(*forecast, bytes, threads));
-    if (report_file)
-      write_report(*report_file, {{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
+    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
     return;
   }
   if (!arguments.checkpoint.empty()) {
@@ -297,11 +331,12 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = mesh_volume(*volume, *sink, options, control);
   printer.finish();
-  if (report_file) {
-    Json json = report_json(report, info, arguments, options, file, forecast);
-    json["notes"] = sink->notes();
-    write_report(*report_file, json);
-  }
+  Json json = report_json(report, info, arguments, options, file, forecast);
+  json["notes"] = sink->notes();
+  evidence.write(std::move(json), control, [&](const RunControl& quiet) {
+    check_page_memory(arguments, control.memory, report.triangles);
+    return page_contents(arguments, options, report, quiet);
+  });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);
@@ -330,8 +365,9 @@ void run_mesh(MeshArguments arguments) {
 
 // The task of a run that goes on is known; how it runs may be said anew.
 void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
-  constexpr std::array<std::string_view, 10> kRunning{"--help",   "--slab",   "--memory",   "--every",    "--threads",
-                                                      "--device", "--report", "--schedule", "--progress", "--quiet"};
+  constexpr std::array<std::string_view, 12> kRunning{"--help",     "--slab",     "--memory", "--every",
+                                                      "--threads",  "--device",   "--report", "--html",
+                                                      "--schedule", "--progress", "--quiet",  "--page-triangles"};
   for (CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
     if (option != &resume && std::ranges::find(kRunning, name) == kRunning.end()) resume.excludes(option);
@@ -364,6 +400,7 @@ void add_mesh_verb(CLI::App& app) {
   verb->add_option("--every", arguments->every, "How often: a number of layers or a time: 16layers, 90s, 5min, 2h")
       ->default_str("5min");
   add_run_options(*verb, arguments->run);
+  add_page_options(*verb, arguments->page);
   CLI::Option* resume =
       verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
   exclude_task_options(*verb, *resume);

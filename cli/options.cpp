@@ -287,11 +287,10 @@ void not_available(std::string_view what) {
 }
 
 void refuse_unavailable(const std::vector<std::string>& arguments) {
-  if (!arguments.empty() && arguments[0] == "view") not_available("view");
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--max-distance", "--lods", "--html"}) {
+    for (const std::string_view option : {"--max-distance", "--lods"}) {
       if (name == option) not_available(option);
     }
   }

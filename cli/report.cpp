@@ -5,7 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "isoweave/measure.hpp"
 #include "output.hpp"
 
 namespace isoweave::cli {
@@ -22,6 +21,8 @@ Json sweep_json(const std::vector<SlabRecord>& sweep) {
   }
   return records;
 }
+
+Json distance_json(double mean, double rms, double max) { return {{"mean", mean}, {"rms", rms}, {"max", max}}; }
 
 }  // namespace
 
@@ -93,6 +94,33 @@ Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
           {"peak_bytes", forecast.peak_bytes},
           {"least_bytes", forecast.least_bytes},
           {"seconds", forecast.seconds}};
+}
+
+Json check_json(const MeshCheck& check, const std::string& path) {
+  return {{"version", ISOWEAVE_VERSION},
+          {"path", path},
+          {"triangles", check.triangles},
+          {"vertices", check.vertices},
+          {"unused_vertices", check.unused_vertices},
+          {"open_edges", check.open_edges},
+          {"nonmanifold_edges", check.nonmanifold_edges},
+          {"nonmanifold_vertices", check.nonmanifold_vertices},
+          {"misoriented_edges", check.misoriented_edges},
+          {"degenerate_triangles", check.degenerate_triangles},
+          {"components", check.components},
+          {"euler", check.euler},
+          {"area", number_or_null(check.area)},
+          {"volume", number_or_null(check.volume)},
+          {"digest", digest_text(check.digest)}};
+}
+
+Json distances_json(const MeshDistance& distance, double unit) {
+  const auto one_way = [&](const OneWayDistance& way) {
+    return distance_json(way.mean / unit, way.rms / unit, way.max / unit);
+  };
+  return {{"a_to_b", one_way(distance.a_to_b)},
+          {"b_to_a", one_way(distance.b_to_a)},
+          {"both", distance_json(distance.mean / unit, distance.rms / unit, distance.max / unit)}};
 }
 
 std::string json_text(const Json& json) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "isoweave/volume.hpp"
 #include "volume/histogram.hpp"
@@ -28,6 +29,12 @@ Json run_json(const MeshReport& report, Json input);
 
 // What a run was expected to take.
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
+
+// What a mesh is, by its triangles alone.
+Json check_json(const MeshCheck& check, const std::string& path);
+
+// Distances between two meshes A and B, in lengths of `unit`.
+Json distances_json(const MeshDistance& distance, double unit);
 
 // JSON text that ends with a line feed. Names that are not UTF-8 do not stop it.
 std::string json_text(const Json& json);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "evidence.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -25,6 +26,7 @@ struct SimplifyArguments {
   StopOptions stop;
   OutputOptions output;
   RunOptions run;
+  PageOptions page;
 };
 
 Json report_json(const MeshReport& report, const TriangleMesh& mesh, const SimplifyArguments& arguments) {
@@ -39,6 +41,17 @@ Json report_json(const MeshReport& report, const TriangleMesh& mesh, const Simpl
   return json;
 }
 
+// The mesh as it is in the file, beside the one that was given.
+PageContents page_contents(const std::string& path, TriangleMesh full) {
+  PageContents contents{read_mesh(path), std::nullopt, ""};
+  if (full.triangles.size() <= kMostFullTriangles) {
+    contents.full = std::move(full);
+  } else {
+    contents.full_note = too_full_note(full.triangles.size());
+  }
+  return contents;
+}
+
 void run_simplify(const SimplifyArguments& arguments) {
   if (!arguments.output.given()) throw CLI::RequiredError("--output");
   const RunOptions& run = arguments.run;
@@ -47,14 +60,14 @@ void run_simplify(const SimplifyArguments& arguments) {
   if (arguments.stop.error.empty() && !arguments.stop.has_number()) throw CLI::RequiredError("--error");
   SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
   options.drop_specks = drops_specks(arguments.stop);
-  check_different({arguments.input, arguments.output.path, run.report});
+  check_page(arguments.page, arguments.output);
+  check_different({arguments.input, arguments.output.path, run.report, arguments.page.path});
 
   exit_on_signal();
-  const TriangleMesh mesh = read_mesh(arguments.input);
+  TriangleMesh mesh = read_mesh(arguments.input);
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
-  std::optional<AtomicFile> report_file;
-  if (!run.report.empty()) report_file.emplace(run.report);
+  Evidence evidence(run, arguments.page);
   MeshFileOptions file;
   file.comments = {
       "isoweave " ISOWEAVE_VERSION,
@@ -64,11 +77,10 @@ void run_simplify(const SimplifyArguments& arguments) {
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const MeshReport report = simplify_mesh(mesh, *sink, options, control);
   printer.finish();
-  if (report_file) {
-    Json json = report_json(report, mesh, arguments);
-    json["notes"] = sink->notes();
-    write_report(*report_file, json);
-  }
+  Json json = report_json(report, mesh, arguments);
+  json["notes"] = sink->notes();
+  evidence.write(std::move(json), control,
+                 [&](const RunControl&) { return page_contents(arguments.output.path, std::move(mesh)); });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(*sink);
@@ -86,6 +98,7 @@ void add_simplify_verb(CLI::App& app) {
   add_stop_options(*verb, arguments->stop);
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   add_run_options(*verb, arguments->run);
+  add_page_options(*verb, arguments->page);
   verb->footer(kExamples);
   verb->callback([arguments] { run_simplify(*arguments); });
 }

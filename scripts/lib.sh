@@ -49,7 +49,11 @@ build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libcli11-dev nlohman
   libmeshoptimizer-dev libdraco-dev)
 test_packages=(libgtest-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind
   python3-numpy python3-nibabel python3-pydicom python3-tifffile python3-pil python3-vtk9 teem-apps
-  python3-h5py python3-numcodecs python3-zarr draco)
+  python3-h5py python3-numcodecs python3-zarr draco chromium)
+
+# What the page for the browser is built with. Where there is a node that is not Debian's, Debian's npm conflicts with it.
+viewer_packages=()
+command -v npm > /dev/null || viewer_packages=(nodejs npm)
 
 # Runs a command with its output kept back, and shown only when it fails.
 quietly() {

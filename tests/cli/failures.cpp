@@ -99,11 +99,10 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
 
 TEST(CliUsage, WhatIsPromisedForLaterIsRefusedNotIgnored) {
   const files::Folder folder;
-  for (const std::string option : {"--max-distance", "--lods", "--html"}) {
+  for (const std::string option : {"--max-distance", "--lods"}) {
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, "isoweave: " + option + " is not available in version 0.");
     expect_failure(folder, mesh(kSmall, {option + "=1"}), 2, option + " is not available");
   }
-  expect_failure(folder, {"view", "a.ply"}, 2, "view is not available");
   expect_failure(folder, mesh(kSmall, {"--normals", "quadric"}), 2, "--normals quadric is not available");
 }
 

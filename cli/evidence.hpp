@@ -1,0 +1,34 @@
+// The files beside a mesh that tell of its run: the report and the page.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "options.hpp"
+#include "page.hpp"
+#include "report.hpp"
+#include "write/atomic_file.hpp"
+
+namespace isoweave::cli {
+
+class Evidence {
+ public:
+  // Opens the files that are asked for before the run, so that nothing is computed in vain.
+  Evidence(const RunOptions& run, const PageOptions& page);
+
+  // Completes the report, without a page.
+  void write_forecast(const Json& forecast);
+
+  // Completes both. `contents` is called where there is a page to be made, with a quiet control. Whatever becomes of
+  // the page, the report is written.
+  void write(Json report, const RunControl& control, const std::function<PageContents(const RunControl&)>& contents);
+
+ private:
+  void make_page(Json& report, const RunControl& control,
+                 const std::function<PageContents(const RunControl&)>& contents);
+
+  const PageOptions& options_;
+  std::optional<AtomicFile> report_, page_;
+};
+
+}  // namespace isoweave::cli

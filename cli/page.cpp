@@ -1,0 +1,126 @@
+// The page in builds with the viewer.
+#include "page.hpp"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "options.hpp"
+#include "output.hpp"
+#include "page_geometry.hpp"
+#include "page_surfaces.hpp"
+#include "page_template.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr std::string_view kMark = "%%data%%";
+
+Json bins_json(const PageErrors& errors) {
+  const auto count = static_cast<double>(errors.counts.size());
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < errors.counts.size(); ++bin) {
+    const auto place = static_cast<double>(bin);
+    bins.push_back({{"from", errors.max * place / count},
+                    {"to", errors.max * (place + 1) / count},
+                    {"vertices", errors.counts[bin]}});
+  }
+  return bins;
+}
+
+Json errors_json(const PageErrors& errors) {
+  Json json = {{"vertices", errors.vertices}, {"mean", errors.mean},       {"rms", errors.rms},
+               {"max", errors.max},           {"bins", bins_json(errors)}, {"samples", errors.samples}};
+  json["sampled"] = distances_json(errors.sampled, 1);
+  return json;
+}
+
+Json surfaces_json(const std::vector<PageSurface>& surfaces) {
+  Json json = Json::array();
+  for (const PageSurface& surface : surfaces) {
+    json.push_back({{"name", surface.name},
+                    {"triangles", surface.mesh.triangles.size()},
+                    {"vertices", surface.mesh.vertices.size()}});
+  }
+  return json;
+}
+
+bool has_stand_in(const std::vector<PageSurface>& surfaces) {
+  for (const PageSurface& surface : surfaces) {
+    if (surface.name == "stand-in") return true;
+  }
+  return false;
+}
+
+// What a reader of the page has to know.
+Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& report, const std::string& full_note) {
+  Json notes = Json::array();
+  if (page.surfaces.empty()) notes.push_back("The mesh has no triangles.");
+  if (has_stand_in(page.surfaces)) {
+    notes.push_back(
+        "What is drawn is a stand-in: the mesh has more triangles than a page shows (--page-triangles). "
+        "Counts, checks and distances are those of the mesh.");
+  }
+  if (!full_note.empty()) notes.push_back(full_note);
+  const Json& digest = report["digest"];
+  if (digest.is_string() && digest != digest_text(check.digest)) {
+    notes.push_back("The mesh in the file has another digest than the run reported: it was rounded, or changed since.");
+  }
+  return notes;
+}
+
+// Nothing in it can end the script element that it is put in.
+std::string script_text(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+void write_text(AtomicFile& file, std::string_view text) { file.write(std::as_bytes(std::span(text))); }
+
+void write_script(AtomicFile& file, std::string_view id, const Json& json) {
+  write_text(file, fmt::format("<script type=\"application/json\" id=\"{}\">", id));
+  write_text(file, script_text(json));
+  write_text(file, "</script>\n");
+}
+
+}  // namespace
+
+std::uint64_t page_memory(std::uint64_t triangles) {
+  constexpr std::uint64_t kBytesPerTriangle = 220;
+  constexpr std::uint64_t kElse = 200'000'000;  // the full surface, what it is measured with, the text
+  return triangles * kBytesPerTriangle + kElse;
+}
+
+void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageContents contents,
+                const RunControl& control) {
+  const auto most_triangles = static_cast<std::uint64_t>(parse_count("--page-triangles", page.triangles));
+  const MeshCheck check = check_mesh(contents.mesh);
+  PageSurfaces shown = page_surfaces(std::move(contents.mesh), std::move(contents.full), most_triangles, control);
+  Json& json = report["page"];
+  json["check"] = check_json(check, report["output"]);
+  json["surfaces"] = surfaces_json(shown.surfaces);
+  json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
+  json["notes"] = notes_json(shown, check, report, contents.full_note);
+
+  const std::string_view html = page_template();
+  const std::size_t mark = html.find(kMark);
+  write_text(file, html.substr(0, mark));
+  write_script(file, "report", report);
+  for (std::size_t i = 0; i < shown.surfaces.size(); ++i) {
+    write_script(file, fmt::format("surface-{}", i), packed_surface(std::move(shown.surfaces[i])));
+  }
+  write_text(file, html.substr(mark + kMark.size()));
+  file.commit();
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,56 @@
+// The page that shows a mesh and the report of its run in a browser: one file, which holds all it needs. viewer/ has
+// its sources; builds without the viewer refuse to make one.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+#include "mesh_output.hpp"
+#include "report.hpp"
+#include "write/atomic_file.hpp"
+
+namespace isoweave::cli {
+
+// A page holds the surface before simplification as well, where that has no more triangles than this.
+inline constexpr std::uint64_t kMostFullTriangles = 1'000'000;
+
+struct PageOptions {
+  std::string path;  // empty: no page
+  std::string triangles = "2000000";
+
+  bool given() const { return !path.empty(); }
+};
+
+// --html and --page-triangles.
+void add_page_options(CLI::App& verb, PageOptions& page);
+void add_page_triangles(CLI::App& verb, PageOptions& page);
+
+// Refuses with std::invalid_argument what is known to fail: `wanted`, the option or verb, in a build without the
+// viewer, and a number that is none.
+void check_page(const PageOptions& page, std::string_view wanted);
+
+// The same, and a mesh that cannot be read again once it is written.
+void check_page(const PageOptions& page, const OutputOptions& output);
+
+// What is in memory while a page is made from a mesh of so many triangles, about.
+std::uint64_t page_memory(std::uint64_t triangles);
+
+struct PageContents {
+  TriangleMesh mesh;
+  std::optional<TriangleMesh> full;  // before simplification
+  std::string full_note;             // why that is not there
+};
+
+// Why a surface of more than kMostFullTriangles is not there.
+std::string too_full_note(std::uint64_t triangles);
+
+// Adds what the page shows beside the report to it, as "page", and completes the file.
+void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageContents contents,
+                const RunControl& control);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,135 @@
+#include "page_surfaces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "measure/geometry.hpp"
+#include "measure/triangle_tree.hpp"
+#include "memory_sink.hpp"
+#include "parallel/parallel.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+using measure::operator-;
+
+constexpr std::array<std::uint64_t, 2> kCoarser{4, 16};  // one of so many triangles is left
+constexpr std::uint64_t kFewestTriangles = 500;          // of a coarser level
+constexpr double kWorthIt = 0.75;                        // part of the triangles that a level may have of the finer one
+// Part of the mesh's size that coarser surfaces may be off. Some surfaces, noise, cannot be made of so few triangles,
+// and trying takes minutes.
+constexpr double kMostError = 0.02;
+constexpr std::size_t kBins = 40;
+constexpr std::uint64_t kSamples = 200'000;
+constexpr std::int64_t kVerticesPerBlock = 1024;
+
+// Diagonal of the box.
+double size_of(const TriangleMesh& mesh) {
+  measure::Vector low = measure::vector_of(mesh.vertices.front());
+  measure::Vector high = low;
+  for (const Point& vertex : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], double{vertex[axis]});
+      high[axis] = std::max(high[axis], double{vertex[axis]});
+    }
+  }
+  return std::sqrt(measure::dot(high - low, high - low));
+}
+
+// To so many triangles, or to as few as kMostError allows.
+TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const RunControl& control) {
+  RunControl quiet = control;
+  quiet.measure = false;
+  quiet.progress = nullptr;
+  MemorySink sink;
+  const SimplifyOptions options{{kMostError * size_of(mesh), false}, Quality::kNormal, triangles};
+  simplify_mesh(mesh, sink, options, quiet);
+  return sink.take();
+}
+
+std::vector<float> distances_from(const measure::TriangleTree& tree, const TriangleMesh& mesh,
+                                  const Executor& executor) {
+  std::vector<float> distances(mesh.vertices.size());
+  const auto count = static_cast<std::int64_t>(distances.size());
+  executor.for_blocks(count, kVerticesPerBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::size_t hint = measure::TriangleTree::kNoHint;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const double squared = tree.squared_distance_from(measure::vector_of(mesh.vertices[i]), hint);
+      distances[i] = static_cast<float>(std::sqrt(squared));
+    }
+  });
+  return distances;
+}
+
+PageErrors errors_of(const std::vector<float>& distances) {
+  PageErrors errors;
+  errors.vertices = distances.size();
+  errors.counts.assign(kBins, 0);
+  for (const float distance : distances) errors.max = std::max(errors.max, double{distance});
+  double sum = 0;
+  double squares = 0;
+  for (const float distance : distances) {
+    const double d = distance;
+    sum += d;
+    squares += d * d;
+    const double part = errors.max > 0 ? d / errors.max : 0;
+    ++errors.counts[std::min(static_cast<std::size_t>(part * kBins), kBins - 1)];
+  }
+  const auto count = static_cast<double>(distances.size());
+  errors.mean = sum / count;
+  errors.rms = std::sqrt(squares / count);
+  return errors;
+}
+
+PageErrors measured_errors(const TriangleMesh& mesh, const TriangleMesh& full, const measure::TriangleTree& tree,
+                           const Executor& executor) {
+  PageErrors errors = errors_of(distances_from(tree, mesh, executor));
+  DistanceOptions options;
+  options.samples = errors.samples = kSamples;
+  options.threads = executor.threads();
+  errors.sampled = compare_meshes(mesh, full, options);
+  return errors;
+}
+
+// The mesh, or what stands in for it, and what is coarser.
+std::vector<PageSurface> levels_of(TriangleMesh mesh, std::uint64_t most_triangles, const RunControl& control) {
+  std::vector<PageSurface> levels;
+  const bool fits = mesh.triangles.size() <= most_triangles;
+  if (!fits) mesh = simplified(mesh, most_triangles, control);
+  levels.push_back({fits ? "mesh" : "stand-in", std::move(mesh), {}});
+  const std::uint64_t finest = levels[0].mesh.triangles.size();
+  for (const std::uint64_t part : kCoarser) {
+    if (finest / part < kFewestTriangles) break;
+    const TriangleMesh& finer = levels.back().mesh;
+    TriangleMesh coarser = simplified(finer, finest / part, control);
+    if (static_cast<double>(coarser.triangles.size()) > kWorthIt * static_cast<double>(finer.triangles.size())) break;
+    levels.push_back({"level", std::move(coarser), {}});
+  }
+  return levels;
+}
+
+}  // namespace
+
+PageSurfaces page_surfaces(TriangleMesh mesh, std::optional<TriangleMesh> full, std::uint64_t most_triangles,
+                           const RunControl& control) {
+  PageSurfaces page;
+  if (mesh.triangles.empty()) return page;
+  mesh.normals = {};
+  const bool comparable = full && !full->triangles.empty();
+  const Executor executor(control.threads);
+  std::optional<measure::TriangleTree> tree;
+  if (comparable) {
+    tree.emplace(*full, executor);
+    page.errors = measured_errors(mesh, *full, *tree, executor);
+  }
+  page.surfaces = levels_of(std::move(mesh), most_triangles, control);
+  if (comparable) {
+    for (PageSurface& surface : page.surfaces) surface.distances = distances_from(*tree, surface.mesh, executor);
+    page.surfaces.insert(page.surfaces.begin(), PageSurface{"full", std::move(*full), {}});
+  }
+  return page;
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,107 @@
+// isoweave view: a page for a mesh, or for a report and its mesh.
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "isoweave/error.hpp"
+#include "isoweave/measure.hpp"
+#include "options.hpp"
+#include "output.hpp"
+#include "page.hpp"
+#include "report.hpp"
+#include "signals.hpp"
+#include "verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave view bone.ply
+  isoweave view bone.json -o bone.html --before full.ply
+The report is one that mesh or simplify wrote (--report); the page shows the mesh that it names.)";
+
+struct ViewArguments {
+  std::string input, before, threads = "all";
+  PageOptions page;
+  bool quiet = false;
+};
+
+// No mesh begins like this.
+bool is_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char c = ' ';
+  while (std::isspace(static_cast<unsigned char>(c)) != 0 && file.get(c)) continue;
+  return c == '{';
+}
+
+Json read_report(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  Json report = Json::parse(text, nullptr, false);
+  const bool known = report.is_object() && report.contains("output") && report["output"].is_string() &&
+                     report.contains("triangles") && report["triangles"].is_number_unsigned();
+  if (!known) throw BadInput(path + ": expected a report that names its mesh as \"output\", found another file");
+  return report;
+}
+
+// As the run was told, or beside the report when both were moved.
+std::string mesh_of(const Json& report, const std::string& report_path) {
+  const std::filesystem::path named = report["output"].get<std::string>();
+  std::error_code error;
+  if (std::filesystem::exists(named, error)) return named.string();
+  const std::filesystem::path beside = std::filesystem::path(report_path).parent_path() / named.filename();
+  if (std::filesystem::exists(beside, error)) return beside.string();
+  throw BadInput(
+      fmt::format("{}: expected the mesh {} of the report, found no such file", report_path, named.string()));
+}
+
+void run_view(ViewArguments arguments) {
+  check_page(arguments.page, "view");
+  RunControl control;
+  control.threads = parse_threads(arguments.threads);
+  if (!arguments.page.given()) arguments.page.path = arguments.input + ".html";
+
+  exit_on_signal();
+  const bool reported = is_json(arguments.input);
+  Json report = reported ? read_report(arguments.input) : Json::object();
+  const std::string mesh_path = reported ? mesh_of(report, arguments.input) : arguments.input;
+  check_different(
+      {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
+  PageContents contents{read_mesh(mesh_path), std::nullopt, ""};
+  if (arguments.before.empty()) {
+    contents.full_note =
+        "No surface from before simplification was given: there is no before and after, and no "
+        "error to show (isoweave view --before MESH, or --html of the run itself).";
+  } else {
+    contents.full = read_mesh(arguments.before);
+    report["before"] = arguments.before;
+  }
+  if (!reported) report["version"] = ISOWEAVE_VERSION;
+  report["output"] = mesh_path;
+  control.stop = &stop_on_signal();
+  AtomicFile file(arguments.page.path);
+  write_page(file, arguments.page, report, std::move(contents), control);
+  if (!arguments.quiet) print_note(arguments.page.path + ": open it in a browser");
+}
+
+}  // namespace
+
+void add_view_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("view", "A page that shows a mesh, or a report and its mesh, in a browser");
+  const auto arguments = std::make_shared<ViewArguments>();
+  verb->add_option("MESH|REPORT", arguments->input, "Mesh, or report that mesh or simplify wrote")->required();
+  verb->add_option("-o,--output", arguments->page.path, "Page to write (default: the name and .html)");
+  verb->add_option("--before", arguments->before, "Mesh before simplification, to compare with");
+  add_page_triangles(*verb, arguments->page);
+  verb->add_option("--threads", arguments->threads, "Threads, or all")->capture_default_str();
+  verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  verb->footer(kExamples);
+  verb->callback([arguments] { run_view(*arguments); });
+}
+
+}  // namespace isoweave::cli

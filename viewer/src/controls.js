@@ -1,0 +1,134 @@
+// Buttons, sliders and keys of the view.
+import { report } from './data.js';
+import { element, shown } from './element.js';
+import { drawLegend } from './colours.js';
+import { slabCount } from './slabs.js';
+
+const kTurn = Math.PI / 24;
+const kZoom = 1.15;
+
+const byId = (id) => document.getElementById(id);
+
+export function surfaceNames() {
+  let level = 0;
+  const names = { full: 'Before', mesh: 'Result', 'stand-in': 'Stand-in' };
+  return report.page.surfaces.map(({ name }) => names[name] ?? `LOD ${(level += 1)}`);
+}
+
+// Radio buttons, one per surface; `choose` is called with its number.
+function addSurfaces(choose) {
+  const names = surfaceNames();
+  const box = byId('surfaces').querySelector('div');
+  names.forEach((name, index) => {
+    const input = element('input', { type: 'radio', name: 'surface', id: `surface-choice-${index}`, value: index });
+    input.addEventListener('change', () => choose(index));
+    box.append(input, element('label', { for: input.id }, element('b', {}, name),
+      shown(`page.surfaces.${index}.triangles`, 'count')));
+  });
+}
+
+export function markSurface(index) {
+  byId(`surface-choice-${index}`).checked = true;
+  byId('drawn').textContent = '';
+  byId('split-line').lastChild.textContent = surfaceNames()[index].toLowerCase();
+  byId('drawn').append(`${surfaceNames()[index]}: `, shown(`page.surfaces.${index}.triangles`, 'count'), ' triangles');
+}
+
+// A button that is pressed or not.
+function toggle(id, act) {
+  const button = byId(id);
+  button.addEventListener('click', () => {
+    const on = button.getAttribute('aria-pressed') !== 'true';
+    button.setAttribute('aria-pressed', String(on));
+    act(on);
+  });
+}
+
+function addErrors(view) {
+  const { distance } = report.page;
+  byId('error').hidden = !distance;
+  if (!distance) return;
+  drawLegend(byId('legend-bar'));
+  byId('legend-title').append('Distance to the full surface');
+  byId('legend-low').append('0');
+  byId('legend-high').append(shown('page.distance.max', 'length'));
+  toggle('error', (on) => {
+    view.setErrorColours(on);
+    byId('legend').hidden = !on;
+  });
+}
+
+function addSlabs(view, middle) {
+  byId('slabs').hidden = slabCount === 0;
+  if (slabCount === 0) return;
+  view.makePlanes(middle);
+  const range = byId('cut-range');
+  range.max = slabCount;
+  const cut = () => {
+    const slab = Number(range.value) - 1;
+    const all = slab === slabCount - 1 || byId('cut').hidden;
+    view.cut(all ? null : slab, middle);
+    byId('cut-value').replaceChildren('layer ', shown(`sweep.${slab}.layer`, 'count'));
+  };
+  range.value = slabCount;
+  range.addEventListener('input', cut);
+  toggle('slabs', (on) => {
+    view.setPlanes(on);
+    byId('cut').hidden = !on;
+    cut();
+  });
+  cut();
+}
+
+// The surface before simplification beside what is chosen, each on its side of a line.
+function addSplit(view, startSplit) {
+  const possible = report.page.surfaces[0].name === 'full';
+  byId('compare').hidden = !possible;
+  if (!possible) return;
+  const range = byId('split-range');
+  const move = () => {
+    const shown = !byId('split').hidden;
+    view.setSplit(shown ? range.value / 100 : null);
+    byId('split-line').hidden = !shown;
+    byId('split-line').style.left = `${range.value}%`;
+    range.setAttribute('aria-valuetext', `${range.value} percent of the width`);
+  };
+  range.addEventListener('input', move);
+  toggle('compare', async (on) => {
+    byId('split').hidden = !on;
+    if (on) await startSplit();
+    move();
+  });
+}
+
+function addKeys(view, choose, current) {
+  const turns = { ArrowLeft: [-kTurn, 0], ArrowRight: [kTurn, 0], ArrowUp: [0, -kTurn], ArrowDown: [0, kTurn] };
+  const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', c: 'compare', 0: 'reset' };
+  byId('view').addEventListener('keydown', (event) => {
+    const turn = turns[event.key];
+    if (!turn || event.altKey || event.ctrlKey || event.metaKey) return;
+    view.orbit(...turn);
+    event.preventDefault();
+  });
+  document.addEventListener('keydown', (event) => {
+    if (event.altKey || event.ctrlKey || event.metaKey || event.target.type === 'range') return;
+    const { key } = event;
+    if (presses[key] && !byId(presses[key]).hidden) byId(presses[key]).click();
+    else if (key === '+' || key === '=') view.orbit(0, 0, kZoom);
+    else if (key === '-') view.orbit(0, 0, 1 / kZoom);
+    else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? 1 : 0);
+    else if (/^[1-9]$/.test(key) && Number(key) <= report.page.surfaces.length) choose(Number(key) - 1);
+  });
+}
+
+// `choose` shows a surface by its number, `current` tells which one is shown, `startSplit` brings in the one before.
+export function startControls(view, middle, { choose, current, startSplit }) {
+  addSurfaces(choose);
+  toggle('wireframe', (on) => view.setWireframe(on));
+  toggle('smooth', (on) => view.setSmooth(on));
+  byId('reset').addEventListener('click', () => view.reset());
+  addErrors(view);
+  addSlabs(view, middle);
+  addSplit(view, startSplit);
+  addKeys(view, choose, current);
+}

@@ -1,0 +1,16 @@
+// What isoweave put into the page.
+
+const json = (id) => JSON.parse(document.getElementById(id)?.textContent ?? 'null');
+
+export const report = json('report');
+
+// The packed surface that belongs to report.page.surfaces[index].
+export const packedSurface = (index) => json(`surface-${index}`);
+
+// The value of a key such as "input.dims.0", or undefined.
+export function valueAt(key) {
+  return key.split('.').reduce((value, part) => value?.[part], report);
+}
+
+// The unit of lengths, or nothing where the volume does not say.
+export const unit = valueAt('input.unit') ?? '';

@@ -1,0 +1,150 @@
+// Plots: triangles and memory along the sweep, and how many vertices are how far from the full surface.
+import uPlot from 'uplot';
+import { report, unit } from './data.js';
+import { element, shown } from './element.js';
+import { formatted, short } from './format.js';
+
+const kHeight = 250;
+const plots = []; // { make, host, plot }
+
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+function axis(values, more = {}) {
+  return {
+    stroke: colour('muted'),
+    grid: { stroke: colour('line'), width: 1 },
+    ticks: { stroke: colour('line'), width: 1, size: 4 },
+    font: '12px system-ui, sans-serif',
+    values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : values(tick))),
+    ...more,
+  };
+}
+
+function series(label, name, format, more = {}) {
+  return {
+    label,
+    stroke: colour(name),
+    width: 2,
+    value: (_, value) => (value === null || value === undefined ? '–' : formatted(value, format, unit)),
+    ...more,
+  };
+}
+
+// Of a logarithmic axis, only powers of ten: there are nine times as many other lines.
+const decades = {
+  filter: (_, ticks) => ticks.map((tick) => (Number.isInteger(Math.log10(tick)) ? tick : null)),
+};
+const logAxis = () => axis(short, { size: 58, ...decades, grid: { stroke: colour('line'), width: 1, ...decades } });
+const nameAxis = (label, values) => axis(values, { label, labelSize: 20, labelFont: '12px system-ui, sans-serif' });
+
+const column = (key) => report.sweep.map((record) => record[key]);
+// Nothing has no logarithm.
+const positive = (values) => values.map((value) => (value > 0 ? value : null));
+const few = () => report.sweep.length < 30;
+
+function triangleOptions() {
+  const points = { show: few(), size: 6 };
+  return {
+    scales: { x: { time: false }, y: { distr: 3 } },
+    axes: [nameAxis('layers swept', short), logAxis()],
+    series: [
+      { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
+      series('Final', 'plot-final', 'count', { points }),
+      series('Live', 'plot-live', 'count', { points }),
+      series('Undecided', 'plot-undecided', 'count', { points, dash: [5, 4] }),
+    ],
+  };
+}
+
+function memoryOptions() {
+  return {
+    scales: { x: { time: false }, y: { range: (_, low, high) => [0, high * 1.08 || 1] } },
+    axes: [nameAxis('layers swept', short),
+      axis((value) => formatted(value, 'bytes'), { size: 66 })],
+    series: [
+      { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
+      series('Held by slab and zone', 'plot-memory', 'bytes',
+        { points: { show: few(), size: 6 }, fill: `${colour('plot-memory')}26` }),
+    ],
+  };
+}
+
+const bins = () => report.page.distance.bins;
+
+function errorOptions() {
+  const bars = uPlot.paths.bars({ size: [0.9, 100], align: 1 });
+  return {
+    scales: {
+      x: { time: false, range: () => [0, report.page.distance.max || 1] },
+      y: { distr: 3, range: (_, low, high) => [0.5, high * 1.6] },
+    },
+    axes: [nameAxis(`distance${unit ? ` (${unit})` : ''}`, (value) => formatted(value, 'bare')), logAxis()],
+    series: [
+      { label: 'From', value: (_, value) => (value === null ? '–' : formatted(value, 'length', unit)) },
+      series('Vertices', 'plot-error', 'count', { paths: bars, points: { show: false }, fill: `${colour('plot-error')}99`, width: 1 }),
+    ],
+  };
+}
+
+// The numbers of a plot, for those who cannot see it. Filled when it is opened: sweeps have thousands of slabs.
+function numberTable(columns, rowCount, cells) {
+  const details = element('details', {}, element('summary', {}, 'Numbers'));
+  details.addEventListener('toggle', () => {
+    if (!details.open || details.querySelector('table')) return;
+    const head = element('tr', {}, ...columns.map((name) => element('th', { scope: 'col' }, name)));
+    const rows = Array.from({ length: rowCount }, (_, row) =>
+      element('tr', {}, ...cells(row).map((cell) => element('td', {}, cell))));
+    const table = element('table', {}, element('thead', {}, head), element('tbody', {}, ...rows));
+    details.append(element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Numbers of the plot' }, table));
+  });
+  return details;
+}
+
+function addPlot(id, title, say, options, data, table) {
+  const host = element('div', { class: 'plot', role: 'img', 'aria-label': say });
+  document.getElementById('plots').append(element('article', { class: 'card', id }, element('h2', {}, title), host, table));
+  plots.push({ make: () => new uPlot({ ...options(), width: host.clientWidth, height: kHeight }, data, host), host });
+}
+
+function addSweepPlots() {
+  const layers = column('layer');
+  const cells = (keys) => (row) => keys.map(([key, format]) => shown(`sweep.${row}.${key}`, format));
+  addPlot('plot-triangles', 'Triangles along the sweep',
+    'Final, live and undecided triangles after each slab, on a logarithmic scale', triangleOptions,
+    [layers, ...['final_triangles', 'live_triangles', 'undecided_triangles'].map((key) => positive(column(key)))],
+    numberTable(['Layers', 'Final', 'Live', 'Undecided'], layers.length, cells([['layer', 'count'],
+      ['final_triangles', 'count'], ['live_triangles', 'count'], ['undecided_triangles', 'count']])));
+  addPlot('plot-memory', 'Memory along the sweep', 'Bytes that slab and undecided zone hold after each slab', memoryOptions,
+    [layers, column('bytes')],
+    numberTable(['Layers', 'Bytes'], layers.length, cells([['layer', 'count'], ['bytes', 'bytes']])));
+}
+
+function addErrorPlot() {
+  addPlot('plot-error', 'Distance to the full surface',
+    'How many vertices of the mesh lie how far from the full surface, on a logarithmic scale', errorOptions,
+    [bins().map(({ from }) => from), positive(bins().map(({ vertices }) => vertices))],
+    numberTable(['From', 'To', 'Vertices'], bins().length, (row) => [shown(`page.distance.bins.${row}.from`, 'length'),
+      shown(`page.distance.bins.${row}.to`, 'length'), shown(`page.distance.bins.${row}.vertices`, 'count')]));
+}
+
+// The colours of a plot are fixed when it is made.
+export function drawPlots() {
+  for (const entry of plots) {
+    entry.plot?.destroy();
+    entry.plot = entry.make();
+  }
+}
+
+export function startPlots() {
+  if (report.sweep?.length > 0) addSweepPlots();
+  if (report.page.distance) addErrorPlot();
+  const observer = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      plots.find(({ host }) => host === target)?.plot?.setSize({ width: target.clientWidth, height: kHeight });
+    }
+  });
+  for (const { host } of plots) observer.observe(host);
+}
+
+// What the plots were given, for tests.
+export const plotData = () => Object.fromEntries(plots.map(({ host, plot }) => [host.parentElement.id, plot.data]));
