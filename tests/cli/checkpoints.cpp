@@ -20,7 +20,10 @@ using program::listing;
 using program::Result;
 using program::run;
 
-constexpr const char* kVolume = "generate:gyroid:96x96x160:uint8";
+constexpr std::size_t kSide = testing::kSanitized ? 64 : 96;
+constexpr std::size_t kSlices = testing::kSanitized ? 112 : 160;
+const std::string kSlice = std::to_string(kSide) + "x" + std::to_string(kSide);
+const std::string kVolume = "generate:gyroid:" + kSlice + "x" + std::to_string(kSlices) + ":uint8";
 
 std::vector<std::string> mesh(const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"mesh", kVolume, "-o", "out.ply", "--iso", "127.5", "--report", "out.json"};
@@ -124,18 +127,21 @@ TEST(CliCheckpoint, ResumesFromAnywhere) {
 
 // The volume as the second channel of an array of Zarr, in chunks of 8 slices; the first is left out.
 void put_array(const files::Folder& folder) {
-  ASSERT_EQ(run(folder.path(), {"generate", "gyroid", "--size", "96x96x160", "--type", "uint8", "-o", "a.raw"}).code,
-            0);
+  const std::string size = kSlice + "x" + std::to_string(kSlices);
+  ASSERT_EQ(run(folder.path(), {"generate", "gyroid", "--size", size, "--type", "uint8", "-o", "a.raw"}).code, 0);
   const std::string samples = files::read_bytes(folder / "a.raw");
   std::filesystem::create_directories(folder / "a/deep");
-  const std::size_t chunk = 8 * 96 * 96;
-  for (std::size_t n = 0; n < 20; ++n) {
+  const std::size_t chunk = 8 * kSide * kSide;
+  for (std::size_t n = 0; n < kSlices / 8; ++n) {
     files::write_bytes(folder / ("a/deep/1." + std::to_string(n) + ".0.0"), samples.substr(n * chunk, chunk));
   }
   files::write_bytes(folder / "a/deep/.zattrs", R"({"_ARRAY_DIMENSIONS": ["c", "z", "y", "x"]})");
   files::write_bytes(folder / "a/.zgroup", R"({"zarr_format": 2})");
-  files::write_bytes(folder / "a/deep/.zarray", R"({"zarr_format": 2, "shape": [2, 160, 96, 96], "order": "C",
-    "chunks": [1, 8, 96, 96], "dtype": "|u1", "fill_value": 0, "compressor": null, "filters": null})");
+  const nlohmann::json metadata = {{"zarr_format", 2},      {"shape", {2, kSlices, kSide, kSide}},
+                                   {"order", "C"},          {"chunks", {1, 8, kSide, kSide}},
+                                   {"dtype", "|u1"},        {"fill_value", 0},
+                                   {"compressor", nullptr}, {"filters", nullptr}};
+  files::write_bytes(folder / "a/deep/.zarray", metadata.dump());
 }
 
 TEST(CliCheckpoint, AnArrayIsResumedByItsPart) {
