@@ -41,6 +41,9 @@ class Zone : public ZoneView {
   Zone(const Zone&) = delete;
   Zone& operator=(const Zone&) = delete;
 
+  // To be copied: what a pass needs of the zone.
+  const ZoneView& view() const { return *this; }
+
   SettledVertices settled;  // with the last piece
 
   // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide. All
