@@ -1,8 +1,12 @@
 // isoweave compare: distances between two meshes, both ways.
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <vector>
 
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
+#include "isoweave/mesh.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -12,8 +16,10 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr std::int64_t kMostBins = 1'000'000;
+
 struct CompareArguments {
-  std::string a, b, samples = "500000", threads = "all", voxel;
+  std::string a, b, samples = "500000", threads = "all", voxel, histogram, distances;
   bool json = false;
 };
 
@@ -28,6 +34,26 @@ std::string distances_text(const MeshDistance& distance, double unit, std::strin
   return text;
 }
 
+// Bars for both ways side by side would be too wide: one after the other.
+std::string histogram_text(const OneWayDistance& way, double max, std::string_view name) {
+  constexpr double kWidest = 40;
+  const std::uint64_t most = std::ranges::max(way.histogram);
+  std::string text = fmt::format("{} (bars: square roots of the counts)\n", name);
+  for (std::size_t n = 0; n < way.histogram.size(); ++n) {
+    const double low = max * static_cast<double>(n) / static_cast<double>(way.histogram.size());
+    const double part = std::sqrt(static_cast<double>(way.histogram[n]) / static_cast<double>(most));
+    text += fmt::format("  from {:>12.6g} {:>16} {}\n", low, grouped(way.histogram[n]),
+                        std::string(static_cast<std::size_t>(std::ceil(kWidest * part)), '#'));
+  }
+  return text;
+}
+
+// The distances from A's vertices to B, as colours for whoever looks at A.
+void write_distances(const CompareArguments& arguments, const TriangleMesh& a, const TriangleMesh& b, int threads) {
+  const std::vector<std::string> comments{"isoweave " ISOWEAVE_VERSION, "quality: distance to the other mesh"};
+  write_ply_with_quality(arguments.distances, a, vertex_distances(a, b, threads), comments);
+}
+
 TriangleMesh read_surface(const std::string& path) {
   TriangleMesh mesh = read_mesh(path);
   if (mesh.triangles.empty()) throw BadInput(path + ": expected a mesh with triangles, found none");
@@ -40,11 +66,24 @@ void run_compare(const CompareArguments& arguments) {
   options.threads = parse_threads(arguments.threads);
   const double voxel = arguments.voxel.empty() ? 0 : parse_number("--voxel", arguments.voxel);
   if (!arguments.voxel.empty() && !(voxel > 0)) wrong_value("--voxel", "a positive length", arguments.voxel);
+  if (!arguments.histogram.empty()) {
+    options.bins = static_cast<std::size_t>(parse_count("--histogram", arguments.histogram));
+    if (options.bins > kMostBins) wrong_value("--histogram", fmt::format("at most {}", kMostBins), arguments.histogram);
+  }
+  check_different({arguments.a, arguments.distances});
+  check_different({arguments.b, arguments.distances});
   exit_on_signal();
-  const MeshDistance distance = compare_meshes(read_surface(arguments.a), read_surface(arguments.b), options);
+  const TriangleMesh a = read_surface(arguments.a);
+  const TriangleMesh b = read_surface(arguments.b);
+  const MeshDistance distance = compare_meshes(a, b, options);
+  if (!arguments.distances.empty()) write_distances(arguments, a, b, options.threads);
   if (!arguments.json) {
     std::string text = distances_text(distance, 1, "distance");
     if (voxel > 0) text += distances_text(distance, voxel, "in voxels");
+    if (options.bins > 0) {
+      text += histogram_text(distance.a_to_b, distance.max, "A to B");
+      text += histogram_text(distance.b_to_a, distance.max, "B to A");
+    }
     return print_out(text);
   }
   Json json = {{"version", ISOWEAVE_VERSION}, {"a", arguments.a}, {"b", arguments.b}, {"samples", options.samples}};
@@ -52,6 +91,12 @@ void run_compare(const CompareArguments& arguments) {
   if (voxel > 0) {
     json["voxel"] = voxel;
     json["voxels"] = distances_json(distance, voxel);
+  }
+  if (options.bins > 0) {
+    json["histogram"] = {{"low", 0},
+                         {"high", distance.max},
+                         {"a_to_b", distance.a_to_b.histogram},
+                         {"b_to_a", distance.b_to_a.histogram}};
   }
   print_out(json_text(json));
 }
@@ -65,6 +110,9 @@ void add_compare_verb(CLI::App& app) {
   verb->add_option("B", arguments->b, "Mesh")->required();
   verb->add_option("--samples", arguments->samples, "Points on each mesh")->capture_default_str();
   verb->add_option("--voxel", arguments->voxel, "Length of a voxel: prints distances in voxels, too");
+  verb->add_option("--histogram", arguments->histogram, "Counts the distances in so many equal parts, both ways");
+  verb->add_option("--distances", arguments->distances,
+                   "Write A as PLY with the distance to B at each vertex, as the property quality");
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_compare(*arguments); });

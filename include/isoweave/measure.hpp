@@ -42,12 +42,14 @@ std::string digest_text(std::uint64_t digest);
 struct DistanceOptions {
   std::uint64_t samples = 500000;  // on each mesh, uniform by area
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all
+  int threads = 0;       // 0: all
+  std::size_t bins = 0;  // of the histograms; 0: none are made. They take 8 bytes for each sample meanwhile
 };
 
 // Distances from one surface to another: mean, root mean square and largest over the samples, in the meshes' unit.
 struct OneWayDistance {
   double mean = 0, rms = 0, max = 0;
+  std::vector<std::uint64_t> histogram;  // samples in equal parts of [0, MeshDistance::max]; or none
 };
 
 struct MeshDistance {
@@ -59,5 +61,9 @@ struct MeshDistance {
 // hierarchy. Same result for any thread count; a mesh without area is sampled by triangle. Throws
 // std::invalid_argument when a mesh has no triangles, an index out of range or a coordinate that is not finite.
 MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options = {});
+
+// The distance of every vertex of a mesh to the nearest point of another, in the meshes' unit. Throws as compare_meshes
+// does. threads: 0: all; the result is the same for any number.
+std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads = 0);
 
 }  // namespace isoweave

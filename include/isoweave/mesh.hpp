@@ -71,6 +71,12 @@ struct MeshFileOptions {
   std::uint64_t segment = 1;  // .precomputed: the number of the object
 };
 
+// Writes a whole mesh as binary PLY with a number of its own at each vertex, as the property `quality` that viewers
+// colour by. The file is complete or absent. Throws CannotWrite, and std::invalid_argument when the numbers are not as
+// many as the vertices.
+void write_ply_with_quality(const std::string& path, const TriangleMesh& mesh, std::span<const float> quality,
+                            std::span<const std::string> comments = {});
+
 // Writes a mesh file, the format by the name's ending; docs/formats.md says what each holds:
 //   .ply          binary little-endian, 32-bit indices
 //   .stl          binary; keeps the positions of all vertices in memory, 12 bytes each

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "isoweave/measure.hpp"
@@ -66,7 +65,10 @@ struct Sums {
   double distance = 0, squared = 0, max = 0;
 };
 
-Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, std::int64_t begin, std::int64_t end) {
+// keep(i, distance): called for every sample.
+template <class Keep>
+Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, std::int64_t begin, std::int64_t end,
+                const Keep& keep) {
   Sums sums;
   std::size_t hint = measure::TriangleTree::kNoHint;
   for (std::int64_t i = begin; i < end; ++i) {
@@ -75,19 +77,25 @@ Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, s
     sums.distance += distance;
     sums.squared += squared;
     sums.max = std::max(sums.max, distance);
+    keep(i, distance);
   }
   return sums;
 }
 
-// Blocks are fixed and their sums are added in their order: the result is the same for any number of threads.
+// Blocks are fixed and their sums are added in their order: the result is the same for any number of threads. Fills
+// `distances`, of all samples, where histograms are wanted.
 OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const DistanceOptions& options,
-                       const Executor& executor) {
+                       const Executor& executor, std::vector<double>& distances) {
   const AreaSampler sampler(from, options);
   const measure::TriangleTree tree(to, executor);
   const std::int64_t samples = static_cast<std::int64_t>(options.samples);
   std::vector<Sums> blocks(static_cast<std::size_t>((samples + kSamplesPerBlock - 1) / kSamplesPerBlock));
+  distances.resize(options.bins > 0 ? options.samples : 0);
   executor.for_blocks(samples, kSamplesPerBlock, [&](std::int64_t begin, std::int64_t end) {
-    blocks[static_cast<std::size_t>(begin / kSamplesPerBlock)] = block_sums(sampler, tree, begin, end);
+    blocks[static_cast<std::size_t>(begin / kSamplesPerBlock)] =
+        block_sums(sampler, tree, begin, end, [&](std::int64_t i, double distance) {
+          if (!distances.empty()) distances[static_cast<std::size_t>(i)] = distance;
+        });
   });
   Sums total;
   for (const Sums& block : blocks) {
@@ -96,7 +104,16 @@ OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const D
     total.max = std::max(total.max, block.max);
   }
   const double count = static_cast<double>(samples);
-  return {total.distance / count, std::sqrt(total.squared / count), total.max};
+  return {total.distance / count, std::sqrt(total.squared / count), total.max, {}};
+}
+
+std::vector<std::uint64_t> histogram_of(const std::vector<double>& distances, std::size_t bins, double max) {
+  std::vector<std::uint64_t> counts(bins, 0);
+  for (const double distance : distances) {
+    const double part = max > 0 ? distance / max : 0;
+    ++counts[std::min(bins - 1, static_cast<std::size_t>(part * static_cast<double>(bins)))];
+  }
+  return counts;
 }
 
 void check_arguments(const TriangleMesh& mesh) {
@@ -118,13 +135,37 @@ MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const 
   if (options.samples == 0) throw std::invalid_argument("expected at least one sample");
   const Executor executor(options.threads);
   MeshDistance result;
-  result.a_to_b = one_way(a, b, options, executor);
-  result.b_to_a = one_way(b, a, options, executor);
-  const auto& [ab, ba] = std::pair(result.a_to_b, result.b_to_a);
+  std::vector<double> from_a;
+  std::vector<double> from_b;
+  result.a_to_b = one_way(a, b, options, executor, from_a);
+  result.b_to_a = one_way(b, a, options, executor, from_b);
+  const OneWayDistance& ab = result.a_to_b;
+  const OneWayDistance& ba = result.b_to_a;
   result.mean = (ab.mean + ba.mean) / 2;
   result.rms = std::sqrt((ab.rms * ab.rms + ba.rms * ba.rms) / 2);
   result.max = std::max(ab.max, ba.max);
+  if (options.bins > 0) {
+    result.a_to_b.histogram = histogram_of(from_a, options.bins, result.max);
+    result.b_to_a.histogram = histogram_of(from_b, options.bins, result.max);
+  }
   return result;
+}
+
+std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads) {
+  check_arguments(mesh);
+  check_arguments(to);
+  const Executor executor(threads);
+  const measure::TriangleTree tree(to, executor);
+  std::vector<float> distances(mesh.vertices.size());
+  executor.for_blocks(static_cast<std::int64_t>(distances.size()), kSamplesPerBlock,
+                      [&](std::int64_t begin, std::int64_t end) {
+                        std::size_t hint = measure::TriangleTree::kNoHint;
+                        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+                          const double squared = tree.squared_distance_from(measure::vector_of(mesh.vertices[v]), hint);
+                          distances[v] = static_cast<float>(std::sqrt(squared));
+                        }
+                      });
+  return distances;
 }
 
 }  // namespace isoweave

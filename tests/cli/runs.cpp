@@ -290,6 +290,21 @@ TEST(CliSimplify, MakesAMeshSmallerWithinTheDistanceAsked) {
             std::string::npos);
 }
 
+TEST(CliCompare, WritesDistancesAsNumbersOfVertices) {
+  const files::Folder folder;
+  succeed(folder, {"mesh", "generate:sphere:20x20x20", "-o", "full.ply", "--iso", "0", "--error", "0"});
+  succeed(folder, {"simplify", "full.ply", "-o", "small.ply", "--error", "0.1"});
+  const Result result = succeed(
+      folder, {"compare", "small.ply", "full.ply", "--samples", "500", "--histogram", "5", "--distances", "d.ply"});
+  EXPECT_NE(result.out.find("B to A (bars"), std::string::npos) << result.out;
+  const std::string header = files::read_bytes(folder / "d.ply").substr(0, 400);
+  EXPECT_NE(header.find("property float quality\nelement face"), std::string::npos) << header;
+  const auto digest = [&](const std::string& mesh) {
+    return Json::parse(succeed(folder, {"check", mesh, "--json"}).out)["digest"];
+  };
+  EXPECT_EQ(digest("d.ply"), digest("small.ply"));
+}
+
 TEST(CliMesh, StopsAtANumberOfTriangles) {
   const files::Folder folder;
   const std::vector<std::string> mesh{

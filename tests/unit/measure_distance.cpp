@@ -53,6 +53,35 @@ TriangleMesh sphere(double radius, int refinements) {
   return mesh;
 }
 
+// Parallel squares, and one corner of them pulled away.
+TEST(MeasureDistance, HistogramsCountEverySampleOnce) {
+  const TriangleMesh low = meshes::grid(4);
+  TriangleMesh high = meshes::grid(4, 3);
+  const MeshDistance flat = compare_meshes(low, high, {.samples = 5000, .bins = 8});
+  EXPECT_EQ(flat.a_to_b.histogram, (std::vector<std::uint64_t>{0, 0, 0, 0, 0, 0, 0, 5000}));
+  EXPECT_EQ(flat.b_to_a.histogram, flat.a_to_b.histogram);
+  for (Point& p : high.vertices) p[2] = 1.5F + p[0];  // from 1.5 to 5.5: nothing below a quarter of the largest
+  const MeshDistance slanted = compare_meshes(high, low, {.samples = 5000, .bins = 4});
+  std::uint64_t samples = 0;
+  for (const std::uint64_t count : slanted.a_to_b.histogram) samples += count;
+  EXPECT_EQ(samples, 5000u);
+  EXPECT_EQ(slanted.a_to_b.histogram[0], 0u);
+  EXPECT_GT(slanted.a_to_b.histogram[3], 1000u);
+  EXPECT_TRUE(compare_meshes(low, high, {.samples = 10}).a_to_b.histogram.empty());
+  const MeshDistance none = compare_meshes(low, low, {.samples = 100, .bins = 3});
+  EXPECT_EQ(none.a_to_b.histogram, (std::vector<std::uint64_t>{100, 0, 0}));
+}
+
+TEST(MeasureDistance, OfEveryVertex) {
+  const TriangleMesh square = meshes::grid(3);
+  TriangleMesh points = meshes::tetrahedron();
+  points.vertices = {{1, 1, 0.5F}, {0, 0, 0}, {-3, 0, 4}, {5, 3, 0}};
+  for (const int threads : {1, 3}) {
+    EXPECT_EQ(vertex_distances(points, square, threads), (std::vector<float>{0.5F, 0, 5, 2}));
+  }
+  EXPECT_THROW(vertex_distances(points, TriangleMesh{}), std::invalid_argument);
+}
+
 TEST(MeasureDistance, IdenticalMeshesAreAtZero) {
   const TriangleMesh mesh = sphere(1, 4);
   const MeshDistance d = compare_meshes(mesh, mesh, {.samples = 20000});
