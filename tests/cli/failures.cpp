@@ -246,9 +246,24 @@ TEST(CliCannotWrite, StandardOutputIsFull) {
   expect_failure(folder, {"--version"}, 4, "standard output", setup);
 }
 
-TEST(CliDevice, CudaIsNotInThisBuild) {
+TEST(CliDevice, WithoutOneARunByCudaEndsWithItsOwnCode) {
   const files::Folder folder;
+  if (run(folder.path(), mesh(kSmall, {"--device", "cuda"})).code == 0) {
+    GTEST_SKIP() << "there is a CUDA device";
+  }
   expect_failure(folder, mesh(kSmall, {"--device", "cuda"}), 6, "CUDA");
+}
+
+TEST(CliDevice, WhatTakesProcessorsIsRefused) {
+  const files::Folder folder;
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--triangles", "9"}, {"--checkpoint", "run"}, {"--schedule", "queue"}}) {
+    std::vector<std::string> arguments = mesh(kSmall, {"--device", "cuda"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = run(folder.path(), arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_NE(result.err.find("which takes processors"), std::string::npos) << result.err;
+  }
 }
 
 // Sends the signal once the output has been begun.
