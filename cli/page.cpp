@@ -63,8 +63,8 @@ Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& re
         "Counts, checks and distances are those of the mesh.");
   }
   if (!full_note.empty()) notes.push_back(full_note);
-  const Json& digest = report["digest"];
-  if (digest.is_string() && digest != digest_text(check.digest)) {
+  const auto digest = report.find("digest");
+  if (digest != report.end() && digest->is_string() && *digest != digest_text(check.digest)) {
     notes.push_back("The mesh in the file has another digest than the run reported: it was rounded, or changed since.");
   }
   return notes;

@@ -69,7 +69,7 @@ class HostDevice {
 
   template <class T>
   void clear(Buffer<T>& values) {
-    std::memset(static_cast<void*>(values.data()), 0, values.size() * sizeof(T));
+    if (values.size() > 0) std::memset(static_cast<void*>(values.data()), 0, values.size() * sizeof(T));
   }
 
   // To and from the memory of the host, and within the device. What is read is there afterwards; what is written may be
