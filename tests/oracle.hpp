@@ -50,6 +50,20 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t
   return decider.counts();
 }
 
+// A sweep of the complete surface by the reference.
+inline SurfaceRun reference_run(const SurfaceCase& surface) {
+  const Executor executor(1);
+  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
+  DecisionCounts counts;
+  SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
+                         [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
+  run.report.collapses = counts.collapses;
+  run.report.postponed = counts.postponed;
+  run.report.rekeyed = counts.rekeyed;
+  run.report.specks = counts.specks;
+  return run;
+}
+
 // Keys as the safe rule compares them; unknown keys come before all others.
 using Key = std::pair<CostBits, std::uint64_t>;
 

@@ -18,18 +18,6 @@ SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
   return surface;
 }
 
-SurfaceRun oracle(const SurfaceCase& surface) {
-  const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
-  DecisionCounts counts;
-  SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
-                         [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
-  run.report.collapses = counts.collapses;
-  run.report.postponed = counts.postponed;
-  run.report.rekeyed = counts.rekeyed;
-  return run;
-}
-
 class Conformance : public ::testing::TestWithParam<std::tuple<std::string, bool, bool>> {
  protected:
   SurfaceCase surface() const {
@@ -43,7 +31,7 @@ TEST_P(Conformance, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
       SurfaceCase surface = this->surface();
       surface.quality = quality;
       surface.error = error;
-      const SurfaceRun expected = oracle(surface);
+      const SurfaceRun expected = reference_run(surface);
       if (error > 0.1) {
         ASSERT_LT(expected.report.triangles, expected.report.triangles_extracted);
       }
@@ -75,7 +63,7 @@ TEST_P(Conformance, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
     surface.volume.dims = {16, 14, 15};
     surface.quality = quality;
     surface.error = 0.3;
-    const SurfaceRun expected = oracle(surface);
+    const SurfaceRun expected = reference_run(surface);
     for (const std::int64_t slab : {std::int64_t{4}, kWholeVolume}) {
       std::mt19937 random(static_cast<unsigned>(slab));
       const Executor executor(1);

@@ -17,16 +17,6 @@ SurfaceCase make_case(const std::string& kind, bool closed) {
   return surface;
 }
 
-SurfaceRun oracle(const SurfaceCase& surface) {
-  const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
-  DecisionCounts counts;
-  SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
-                         [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
-  run.report.specks = counts.specks;
-  return run;
-}
-
 class Specks : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
  protected:
   SurfaceCase surface(double error) const {
@@ -39,7 +29,7 @@ class Specks : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
 TEST_P(Specks, AreTheSameInEveryScheduleAndSlab) {
   for (const double error : {0.5, 1.5}) {
     SurfaceCase surface = this->surface(error);
-    const SurfaceRun expected = oracle(surface);
+    const SurfaceRun expected = reference_run(surface);
     if (error > 1) {
       EXPECT_GT(expected.report.specks, 0u);
     }
