@@ -12,7 +12,7 @@ import os
 import sys
 import tempfile
 
-from oracle import SKIP, Oracle
+from oracle import SKIP, Oracle, ply_vertices
 
 try:
     import numpy as np
@@ -32,17 +32,6 @@ def read(path):
     reader.SetFileName(path)
     reader.Update()
     return reader.GetOutput()
-
-
-def coloured_vertices(path):
-    """Positions and qualities, which VTK does not read."""
-    with open(path, "rb") as file:
-        count = 0
-        while (line := file.readline().strip()) != b"end_header":
-            if line.startswith(b"element vertex"):
-                count = int(line.split()[2])
-        rows = np.frombuffer(file.read(16 * count), "<f4").reshape(-1, 4)
-        return rows[:, :3], rows[:, 3]
 
 
 def points_on(data, random):
@@ -96,9 +85,10 @@ def main():
                 oracle.expect(counts.sum() == SAMPLES, f"{kind} {way}: {counts.sum()} samples in the histogram")
                 differ = np.abs(counts - expected).sum() / SAMPLES
                 oracle.expect(differ < 0.03, f"{kind} {way}: {differ:.3f} of the samples in other bins")
-            vertices, quality = coloured_vertices(coloured)
+            rows = ply_vertices(coloured, 4)  # VTK reads no quality
+            vertices, quality = rows[:, :3], rows[:, 3]
             oracle.expect(np.array_equal(vertices, vtk_to_numpy(read(small).GetPoints().GetData())), f"{kind} vertices")
-            far = np.abs(quality - distances(vertices.astype(float), read(full))).max()
+            far = np.abs(quality - distances(vertices, read(full))).max()
             oracle.expect(far < 1e-5, f"{kind}: a vertex is {far} from where VTK finds it")
     oracle.finish()
 

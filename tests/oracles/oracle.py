@@ -82,11 +82,11 @@ def ras(affine):
     return np.diag([-1, -1, 1, 1]) @ affine
 
 
-def ply_vertices(path):
-    """The vertices of a binary little-endian PLY file with nothing but positions."""
+def ply_vertices(path, properties=3):
+    """The vertices of a binary little-endian PLY file, of so many floats each: positions, and what follows them."""
     with open(path, "rb") as file:
         count = 0
         while (line := file.readline().strip()) != b"end_header":
             if line.startswith(b"element vertex"):
                 count = int(line.split()[2])
-        return np.frombuffer(file.read(12 * count), "<f4").reshape(-1, 3).astype(float)
+        return np.frombuffer(file.read(4 * properties * count), "<f4").reshape(-1, properties).astype(float)
