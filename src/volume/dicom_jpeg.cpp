@@ -47,7 +47,8 @@ bool decodes(gdcm::JPEGCodec& codec, const gdcm::DataElement& packed, gdcm::Data
   }
 }
 
-// A decoder that ran out of data waits for more, and would never be freed: this ends it.
+// A decoder that has come to the end of its data without the mark that ends an image waits for more, and would never be
+// freed: this ends it.
 void end_decoding(gdcm::JPEGCodec& codec) {
   constexpr std::array<std::byte, 2> kEndOfImage{std::byte{0xff}, std::byte{0xd9}};
   gdcm::DataElement ignored;
@@ -73,7 +74,7 @@ std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std:
   gdcm::DataElement unpacked;
   const bool decoded = decodes(codec, pixel_data(packed), unpacked);
   const gdcm::ByteValue* value = decoded ? unpacked.GetByteValue() : nullptr;
-  if (value == nullptr || value->GetLength() != bytes) end_decoding(codec);
+  end_decoding(codec);
   if (value == nullptr) bad_input(slice.path, "decodable DICOM samples", "damaged data");
   if (value->GetLength() != bytes) {
     bad_input(slice.path, std::to_string(bytes) + " bytes of samples once unpacked",
