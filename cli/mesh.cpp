@@ -11,6 +11,7 @@
 
 #include "evidence.hpp"
 #include "isoweave/error.hpp"
+#include "lods.hpp"
 #include "memory_sink.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
@@ -34,6 +35,7 @@ Examples:
   isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
   isoweave mesh --resume gyroid.run
   isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
+  isoweave mesh brain.nii.gz -o brain.ply --iso 40 --lods 0.1vox,0.3vox,1vox
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
 
 Without --error, --triangles and --ratio the error is 0.2vox. The result does not depend on --threads, --schedule and
@@ -75,6 +77,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"error", arguments.stop.error},
           {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
           {"specks", arguments.stop.specks},
+          {"lods", arguments.stop.lods},
           {"quality", arguments.quality},
           {"slab", arguments.slab},
           {"inside", arguments.inside},
@@ -94,7 +97,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
-  arguments.stop = {task.at("error"), task.at("triangles"), "", task.at("specks")};
+  arguments.stop = {task.at("error"), task.at("triangles"), "", task.at("specks"), task.at("lods")};
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
@@ -105,13 +108,17 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.every.empty()) arguments.every = task.at("every");
 }
 
+[[noreturn]] void refuse_state(const Checkpoint& checkpoint) {
+  throw BadInput(checkpoint.path + ": expected a state saved by this isoweave mesh, found another");
+}
+
 // The arguments of a run that goes on: the task as it was, and how to run as it is said now.
 MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint) {
   MeshArguments arguments = now;
   try {
     set_task(arguments, now, Json::parse(checkpoint.note));
   } catch (const Json::exception&) {
-    throw BadInput(checkpoint.path + ": expected a state saved by this isoweave mesh, found another");
+    refuse_state(checkpoint);
   }
   arguments.checkpoint = now.resume;
   return arguments;
@@ -143,9 +150,16 @@ void make_checkpoint_folder(const std::string& folder) {
     throw CannotWrite(
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
-  // Without a state there is nothing to go on with: a run that ended before its first one.
+}
+
+// Makes the folder of the parts of a mesh. Without a state there is nothing to go on with: what is there is of a run
+// that ended before its first one.
+void make_part_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
   for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part"})
-    std::filesystem::remove(path / part, error);
+    std::filesystem::remove(std::filesystem::path(folder) / part, error);
 }
 
 // A whole volume is one layer thicker than its slices when it is closed.
@@ -187,18 +201,19 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
   return *iso;
 }
 
-std::vector<std::string> comments(const MeshArguments& arguments, const MeshOptions& options) {
+std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
           fmt::format("iso {} inside {} {} {} quality {}", options.iso, arguments.inside,
-                      options.closed ? "closed" : "open", stop_text(arguments.stop, kUsualError, options.triangles),
+                      options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
                       arguments.quality)};
 }
 
-// How the mesh is to be written.
-MeshFileOptions file_options(const MeshArguments& arguments, const MeshOptions& options, const Geometry& geometry) {
+// How the mesh of a level is to be written.
+MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
+                             const Geometry& geometry) {
   MeshFileOptions file;
   file.normals = options.normals;
-  file.comments = comments(arguments, options);
+  file.comments = comments(arguments, stop, options);
   file.unit = geometry.unit;
   file.space = space_text(geometry, options.space);
   return mesh_file_options(arguments.output, std::move(file));
@@ -234,6 +249,7 @@ Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& opt
 
 Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
                  const MeshOptions& options, const MeshFileOptions& file, const std::optional<Forecast>& forecast) {
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   Json input = volume_json(info, arguments.input.path);
   add_range(input, report.min, report.max, report.nan);
   Json json = run_json(report, std::move(input));
@@ -246,7 +262,8 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["closed"] = options.closed;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
-  json["output"] = arguments.output.name();
+  json["output"] = outputs.back().name();
+  if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["space"] = space_text(info.geometry, options.space);
   return json;
 }
@@ -257,10 +274,20 @@ void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::u
                                std::ceil(static_cast<double>(page_memory(triangles)) * 1e-6), arguments.memory));
 }
 
+// What the finest level will take in its file; refuses what its format cannot hold.
+void check_finest(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                  const RunControl& control) {
+  if (options.levels.empty()) return;
+  MeshOptions finest = options;
+  finest.error = options.levels.front();
+  finest.levels.clear();
+  output_bytes(forecast_mesh(*open_input(arguments.input), finest, control), arguments, file);
+}
+
 // The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
 PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
                            const RunControl& control) {
-  PageContents contents{read_mesh(arguments.output.path), std::nullopt, ""};
+  PageContents contents{read_mesh(level_outputs(arguments.output, arguments.stop).back().path), std::nullopt, ""};
   if (report.collapses == 0) {
     contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
   } else if (report.triangles_extracted > kMostFullTriangles) {
@@ -269,6 +296,7 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
     MeshOptions full = options;
     full.error = {0, false};
     full.triangles = 0;
+    full.levels.clear();
     full.normals = false;
     MemorySink sink;
     mesh_volume(*open_input(arguments.input), sink, full, control);
@@ -284,11 +312,15 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   parse_slab(arguments.slab, 1);
   check_page(arguments.page, arguments.output);
-  check_different({arguments.input.path, arguments.output.path, run.report, arguments.page.path});
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
+  for (const OutputOptions& output : outputs) {
+    check_different({arguments.input.path, output.path, run.report, arguments.page.path});
+  }
 
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
   options.error = stop_error(arguments.stop, kUsualError, info.geometry.unit);
+  options.levels = finer_levels(arguments.stop, info.geometry.unit);
   options.slab = parse_slab(arguments.slab, info.dims[2]);
 
   if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
@@ -296,16 +328,19 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
   if (arguments.iso == "auto") {
-    open_output(arguments.output,
+    open_output(outputs.back(),
                 mesh_file_options(arguments.output, {}));  // finds out now what would stop the run after the first pass
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
   }
   options.triangles =
       stop_triangles(arguments.stop, [&] { return count_triangles(*open_input(arguments.input), options, control); });
-  MeshFileOptions file = file_options(arguments, options, info.geometry);
+  const MeshFileOptions file = file_options(arguments, arguments.stop, options, info.geometry);
   std::optional<Forecast> forecast;
-  if (resume == nullptr) forecast = checked_forecast(arguments, options, file, control);
+  if (resume == nullptr) {
+    forecast = checked_forecast(arguments, options, file, control);
+    check_finest(arguments, options, file, control);
+  }
   if (forecast) check_page_memory(arguments, control.memory, forecast->triangles);
   if (arguments.dry_run) {
     const std::uint64_t bytes = output_bytes(*forecast, arguments, file);
@@ -321,30 +356,41 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     control.checkpoint.note = task_json(arguments, options).dump();
   }
   control.resume = resume;
-  file.parts = arguments.checkpoint;
-  if (resume != nullptr) file.mark = resume->mark;
-  const std::unique_ptr<MeshSink> sink = open_output(arguments.output, file);
+  const std::vector<std::string> folders = level_folders(arguments.checkpoint, outputs.size());
+  if (resume != nullptr && resume->marks.size() != outputs.size()) refuse_state(*resume);
+  const LevelSinks sinks(outputs, [&](std::size_t level) {
+    MeshFileOptions level_file = file_options(arguments, stop_levels(arguments.stop)[level], options, info.geometry);
+    level_file.parts = folders[level];
+    if (resume != nullptr) {
+      level_file.mark = resume->marks[level];
+    } else if (!level_file.parts.empty()) {
+      make_part_folder(level_file.parts);
+    }
+    return level_file;
+  });
   if (!run.quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const MeshReport report = mesh_volume(*volume, *sink, options, control);
+  const MeshReport report = mesh_volume(*volume, sinks.pointers(), options, control);
+  remove_level_folders(folders);
   printer.finish();
   Json json = report_json(report, info, arguments, options, file, forecast);
-  json["notes"] = sink->notes();
+  json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl& quiet) {
     check_page_memory(arguments, control.memory, report.triangles);
     return page_contents(arguments, options, report, quiet);
   });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
-  print_notes(*sink);
+  print_notes(sinks.last());
+  print_levels(report, outputs);
   if (options.triangles > 0)
     print_note(fmt::format("error reached: {:.4g}{}{}", report.error, info.geometry.unit.empty() ? "" : " ",
                            info.geometry.unit));
   const auto slices = static_cast<double>(info.dims[2]);
-  print_summary(report, arguments.output.name(), static_cast<double>(info.slice_samples()) * slices,
+  print_summary(report, outputs.back().name(), static_cast<double>(info.slice_samples()) * slices,
                 forecast ? &*forecast : nullptr);
 }
 

@@ -290,7 +290,7 @@ void refuse_unavailable(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     if (argument == "--") return;
     const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--max-distance", "--lods"}) {
+    for (const std::string_view option : {"--max-distance"}) {
       if (name == option) not_available(option);
     }
   }

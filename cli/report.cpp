@@ -50,40 +50,45 @@ void add_range(Json& input, double min, double max, std::uint64_t nan) {
   input["nan"] = nan;
 }
 
+Json surface_json(const SurfaceReport& surface) {
+  return {{"error", number_or_null(surface.error)},
+          {"triangles", surface.triangles},
+          {"vertices", surface.vertices},
+          {"open_edges", surface.open_edges},
+          {"nonmanifold_edges", surface.nonmanifold_edges},
+          {"nonmanifold_vertices", surface.nonmanifold_vertices},
+          {"components", surface.components},
+          {"euler", surface.euler},
+          {"digest", digest_text(surface.digest)}};
+}
+
 Json run_json(const MeshReport& report, Json input) {
-  return {{"version", ISOWEAVE_VERSION},
-          {"backend", report.device == Device::kCuda ? "cuda" : "cpu"},
-          {"threads", report.threads},
-          {"slab", report.slab},
-          {"schedule", schedule_name(report.schedule)},
-          {"input", std::move(input)},
-          {"error", number_or_null(report.error)},
-          {"cells_crossed", report.cells_crossed},
-          {"triangles_extracted", report.triangles_extracted},
-          {"vertices_extracted", report.vertices_extracted},
-          {"collapses", report.collapses},
-          {"postponed", report.postponed},
-          {"rekeyed", report.rekeyed},
-          {"specks", report.specks},
-          {"rounds", report.rounds},
-          {"triangles", report.triangles},
-          {"vertices", report.vertices},
-          {"open_edges", report.open_edges},
-          {"nonmanifold_edges", report.nonmanifold_edges},
-          {"nonmanifold_vertices", report.nonmanifold_vertices},
-          {"components", report.components},
-          {"euler", report.euler},
-          {"locked_vertices", report.locked_vertices},
-          {"digest", digest_text(report.digest)},
-          {"seconds",
-           {{"read", report.seconds_read},
-            {"extract", report.seconds_extract},
-            {"simplify", report.seconds_simplify},
-            {"write", report.seconds_write},
-            {"total", report.seconds_total}}},
-          {"memory", {{"peak_bytes", report.peak_bytes}, {"predicted_bytes", nullptr}}},
-          {"sweep", sweep_json(report.sweep)},
-          {"warnings", report.warnings}};
+  Json json = {{"version", ISOWEAVE_VERSION},
+               {"backend", report.device == Device::kCuda ? "cuda" : "cpu"},
+               {"threads", report.threads},
+               {"slab", report.slab},
+               {"schedule", schedule_name(report.schedule)},
+               {"input", std::move(input)},
+               {"cells_crossed", report.cells_crossed},
+               {"triangles_extracted", report.triangles_extracted},
+               {"vertices_extracted", report.vertices_extracted},
+               {"collapses", report.collapses},
+               {"postponed", report.postponed},
+               {"rekeyed", report.rekeyed},
+               {"specks", report.specks},
+               {"rounds", report.rounds},
+               {"locked_vertices", report.locked_vertices},
+               {"seconds",
+                {{"read", report.seconds_read},
+                 {"extract", report.seconds_extract},
+                 {"simplify", report.seconds_simplify},
+                 {"write", report.seconds_write},
+                 {"total", report.seconds_total}}},
+               {"memory", {{"peak_bytes", report.peak_bytes}, {"predicted_bytes", nullptr}}},
+               {"sweep", sweep_json(report.sweep)},
+               {"warnings", report.warnings}};
+  json.update(surface_json(report));
+  return json;
 }
 
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
@@ -138,6 +143,13 @@ std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges
   if (nonmanifold_edges == 0 && nonmanifold_vertices == 0) return text + ", manifold";
   return text + fmt::format(", not manifold ({} edges, {} vertices)", grouped(nonmanifold_edges),
                             grouped(nonmanifold_vertices));
+}
+
+void print_surface(const SurfaceReport& surface, const std::string& output) {
+  print_note(fmt::format("{}: {} triangles, {} vertices, {}, digest {}", output, grouped(surface.triangles),
+                         grouped(surface.vertices),
+                         state_text(surface.open_edges, surface.nonmanifold_edges, surface.nonmanifold_vertices),
+                         digest_text(surface.digest)));
 }
 
 void print_summary(const MeshReport& report, const std::string& output, double voxels, const Forecast* forecast) {

@@ -24,6 +24,9 @@ Json volume_json(const VolumeInfo& info, const std::string& path);
 // Adds min, max and nan; null where there is no value at all.
 void add_range(Json& input, double min, double max, std::uint64_t nan);
 
+// A surface as it was written.
+Json surface_json(const SurfaceReport& surface);
+
 // What every run reports; `input` is the first part that differs between runs on volumes and on meshes.
 Json run_json(const MeshReport& report, Json input);
 
@@ -45,7 +48,10 @@ void write_report(AtomicFile& file, const Json& json);
 // "closed, manifold" or what is not so.
 std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices);
 
-// A few lines on standard error about a run that is done.
+// A line on standard error about a surface that has been written.
+void print_surface(const SurfaceReport& surface, const std::string& output);
+
+// A few lines about a run that is done.
 void print_summary(const MeshReport& report, const std::string& output, double voxels,
                    const Forecast* forecast = nullptr);
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "evidence.hpp"
+#include "lods.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -37,8 +38,17 @@ Json report_json(const MeshReport& report, const TriangleMesh& mesh, const Simpl
                                 {"triangles", mesh.triangles.size()},
                                 {"vertices", mesh.vertices.size()}});
   json["quality"] = arguments.quality;
-  json["output"] = arguments.output.name();
+  json["output"] = level_outputs(arguments.output, arguments.stop).back().name();
   return json;
+}
+
+// How the mesh of a level is to be written.
+MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles) {
+  MeshFileOptions file;
+  file.comments = {"isoweave " ISOWEAVE_VERSION,
+                   fmt::format("simplified, {} quality {}",
+                               stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality)};
+  return mesh_file_options(arguments.output, std::move(file));
 }
 
 // The mesh as it is in the file, beside the one that was given.
@@ -57,35 +67,39 @@ void run_simplify(const SimplifyArguments& arguments) {
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
-  if (arguments.stop.error.empty() && !arguments.stop.has_number()) throw CLI::RequiredError("--error");
+  if (arguments.stop.error.empty() && !arguments.stop.has_number() && !arguments.stop.has_levels()) {
+    throw CLI::RequiredError("--error");
+  }
   SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
+  options.levels = finer_levels(arguments.stop, "");
   options.drop_specks = drops_specks(arguments.stop);
   check_page(arguments.page, arguments.output);
-  check_different({arguments.input, arguments.output.path, run.report, arguments.page.path});
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
+  for (const OutputOptions& output : outputs) {
+    check_different({arguments.input, output.path, run.report, arguments.page.path});
+  }
 
   exit_on_signal();
   TriangleMesh mesh = read_mesh(arguments.input);
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
-  MeshFileOptions file;
-  file.comments = {
-      "isoweave " ISOWEAVE_VERSION,
-      fmt::format("simplified, {} quality {}", stop_text(arguments.stop, "", options.triangles), arguments.quality)};
-  const std::unique_ptr<MeshSink> sink = open_output(arguments.output, mesh_file_options(arguments.output, file));
+  const LevelSinks sinks(outputs, [&](std::size_t level) { return file_options(arguments, level, options.triangles); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const MeshReport report = simplify_mesh(mesh, *sink, options, control);
+  const MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
   printer.finish();
   Json json = report_json(report, mesh, arguments);
-  json["notes"] = sink->notes();
+  if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
+  json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control,
-                 [&](const RunControl&) { return page_contents(arguments.output.path, std::move(mesh)); });
+                 [&](const RunControl&) { return page_contents(outputs.back().path, std::move(mesh)); });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
-  print_notes(*sink);
+  print_notes(sinks.last());
+  print_levels(report, outputs);
   if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g}", report.error));
-  print_summary(report, arguments.output.name(), 0);
+  print_summary(report, outputs.back().name(), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "options.hpp"
 
@@ -17,14 +18,26 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
       verb.add_option("--triangles", stop.triangles, "Stop at this number of triangles, if the error does not before");
   verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
       ->excludes(triangles);
+  verb.add_option("--lods", stop.lods,
+                  "Several errors E1,E2,... from one sweep: -o a.ply makes a_lod0.ply, the finest, a_lod1.ply, ...")
+      ->excludes("--error", "--triangles", "--ratio", "--to-stdout");
   verb.add_option("--specks", stop.specks,
                   "keep, or drop: a closed component that has shrunk to a tetrahedron within the error vanishes")
       ->capture_default_str();
 }
 
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
+  if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, unit);
   if (stop.error.empty() && stop.has_number()) return {std::numeric_limits<double>::infinity(), false};
   return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
+}
+
+std::vector<StopOptions> stop_levels(const StopOptions& stop) {
+  if (!stop.has_levels()) return {stop};
+  std::vector<StopOptions> levels;
+  std::istringstream errors(stop.lods + ",");
+  for (std::string error; std::getline(errors, error, ',');) levels.push_back({error, "", "", stop.specks, ""});
+  return levels;
 }
 
 bool drops_specks(const StopOptions& stop) {

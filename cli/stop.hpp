@@ -1,10 +1,11 @@
-// When simplification stops: at an error, or at a number of triangles.
+// When simplification stops: at an error, at several, or at a number of triangles.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "isoweave/pipeline.hpp"
 
@@ -13,14 +14,19 @@ namespace isoweave::cli {
 struct StopOptions {
   std::string error, triangles, ratio;  // as given; empty: not
   std::string specks = "keep";
+  std::string lods;  // errors with commas between them
 
   bool has_number() const { return !triangles.empty() || !ratio.empty(); }
+  bool has_levels() const { return !lods.empty(); }
 };
 
 void add_stop_options(CLI::App& verb, StopOptions& stop);
 
 // `usual` is the error where nothing is given. Where only a number of triangles is, the error is infinite.
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
+
+// The meshes that are asked for, one for each level of detail, finest first: how each would be asked for alone.
+std::vector<StopOptions> stop_levels(const StopOptions& stop);
 
 bool drops_specks(const StopOptions& stop);
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,7 +61,7 @@ struct CheckpointOptions {
 struct Checkpoint {
   std::string path;  // of its file
   std::string note;
-  std::string mark;  // of the sink
+  std::vector<std::string> marks;  // of the sinks
   std::int64_t layer = 0, layers = 0;
 };
 
@@ -94,6 +95,9 @@ struct MeshOptions {
   // A closed component that has shrunk to a tetrahedron goes when half its longest edge is no longer than the error.
   // Else every component stays, and topology with it.
   bool drop_specks = false;
+  // Errors of finer meshes that come out of the same sweep, ascending, all below `error`; each is the mesh of a run
+  // with that error. Not with a number of triangles.
+  std::vector<Length> levels{};
   std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
   bool normals = false;   // from gradients, unit length, outwards
   OutputSpace space = OutputSpace::kAsVolume;
@@ -107,25 +111,32 @@ struct SlabRecord {
   std::uint64_t bytes = 0;                // held by the slab and the zone
 };
 
-struct MeshReport {
+// A surface as it was written.
+struct SurfaceReport {
+  double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
+  std::uint64_t triangles = 0, vertices = 0;
+  // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
+  // construction and is not looked at.
+  std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
+  std::int64_t euler = 0;
+  std::uint64_t digest = 0;
+};
+
+// Of the run, and of the mesh with the largest error.
+struct MeshReport : SurfaceReport {
   int threads = 0;
   std::int64_t slab = 0;
   Schedule schedule = Schedule::kQueue;
   Device device = Device::kCpu;
   double min = 0, max = 0;  // values read; min > max when all were NaN
   std::uint64_t nan = 0;    // samples
-  double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
-  std::uint64_t specks = 0;                   // components dropped
-  std::uint64_t triangles = 0, vertices = 0;  // written
-  // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
-  // construction and is not looked at.
-  std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
-  std::int64_t euler = 0;
-  std::uint64_t digest = 0;
+  std::uint64_t specks = 0;           // components dropped
+  std::vector<SurfaceReport> levels;  // finer meshes, as MeshOptions::levels
   std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
   std::int64_t resumed_at = 0;        // layers that an earlier process has done
+  // Finer levels are handed to their sinks while simplifying.
   double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
   std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
   std::vector<SlabRecord> sweep;
@@ -141,14 +152,19 @@ struct MeshReport {
 // saved by another version, for another volume or with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
+// The same with levels: a sink for each, in their order, and the last one for the mesh with the largest error.
+MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
+                       const RunControl& control = {});
+
 // Triangles of the full surface, in a pass over the volume that keeps nothing. Throws what mesh_volume throws.
 std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 struct SimplifyOptions {
   Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
   Quality quality = Quality::kNormal;
-  std::uint64_t triangles = 0;  // as in MeshOptions
-  bool drop_specks = false;     // as in MeshOptions
+  std::uint64_t triangles = 0;   // as in MeshOptions
+  bool drop_specks = false;      // as in MeshOptions
+  std::vector<Length> levels{};  // as in MeshOptions
 };
 
 // What a run will take, from a sample of the volume.
@@ -169,6 +185,10 @@ Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const Ru
 // Simplifies a mesh with the same rules. Vertices on non-manifold or badly oriented edges, and vertices whose triangles
 // form more than one fan, are locked: they stay where they are. Normals of the input are not kept.
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
+                         const RunControl& control = {});
+
+// The same with levels, as mesh_volume.
+MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
                          const RunControl& control = {});
 
 }  // namespace isoweave

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +16,9 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 3\n";  // the number changes with the fields
+constexpr std::string_view kFormat = "isoweave state 4\n";  // the number changes with the fields
+
+constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
 
 struct Header {
   std::uint64_t number = 0;
@@ -28,7 +31,10 @@ struct Header {
     archive.list(identity.volume);
     archive.list(identity.options);
     archive.list(checkpoint.note);
-    archive.list(checkpoint.mark);
+    std::uint64_t marks = checkpoint.marks.size();
+    archive.value(marks);
+    checkpoint.marks.resize(std::min<std::uint64_t>(marks, kMostMarks));
+    for (std::string& mark : checkpoint.marks) archive.list(mark);
     archive.value(checkpoint.layer);
     archive.value(checkpoint.layers);
   }
@@ -76,6 +82,14 @@ std::string numbers_text(std::span<const double> numbers) {
   return text.str();
 }
 
+std::string levels_text(std::span<const Length> levels) {
+  std::string text;
+  for (const Length& level : levels) {
+    text += ", level" + numbers_text(std::array{level.value}) + (level.voxels ? " voxels" : "");
+  }
+  return text;
+}
+
 // What was chosen of the file that was opened, and size and time of change of that file or of the one that describes a
 // folder.
 std::string file_text(const VolumeInfo& volume) {
@@ -105,8 +119,8 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   text.str("");
   text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")
        << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
-       << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << ", quality "
-       << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
+       << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << levels_text(options.levels)
+       << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
        << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
   identity.options = text.str();
   return identity;

@@ -11,20 +11,21 @@ constexpr std::int64_t kBlock = 4096;
 
 void FinalOutput::take(Simplifier& simplifier) {
   Zone& zone = simplifier.zone();
-  const std::vector<Index> triangles = simplifier.final_triangles();
+  const std::vector<Index> triangles = simplifier.final_triangles(level_);
   number_vertices(zone, triangles);
-  const auto vertex = [&](std::size_t n, std::size_t c) -> const Vertex& {
-    return zone.vertices[zone.triangles[triangles[n]].sides[c].vertex];
-  };
+  const auto vertex = [&](std::size_t n, std::size_t c) { return zone.triangles[triangles[n]].sides[c].vertex; };
   output_.add_triangles(
-      triangles.size(), [&](std::size_t n, std::size_t c) { return vertex(n, c).output; },
+      triangles.size(), [&](std::size_t n, std::size_t c) { return number(zone, vertex(n, c)); },
       [&](std::size_t n, std::size_t c) {
-        const Vertex& v = vertex(n, c);
-        return OutputCorner{v.output, v.component, v.position};
+        const Index v = vertex(n, c);
+        return OutputCorner{number(zone, v), component(zone, v), zone.vertices[v].position};
       });
-  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
-                     [&](std::int64_t n) { close_sides(zone, triangles[static_cast<std::size_t>(n)]); });
-  simplifier.drop(triangles);
+  const bool last = simplifier.is_last(level_);
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t n) {
+    const Index t = triangles[static_cast<std::size_t>(n)];
+    last ? close_sides(zone, t) : keep(zone, t);
+  });
+  if (last) simplifier.drop(triangles);
   if (output_.components().labels() > zone.vertices.size()) forget_components(zone);
 }
 
@@ -33,7 +34,7 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
   marks_.assign(zone.vertices.size(), 0);
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t n) {
     for (const HalfEdge& side : zone.triangles[triangles[static_cast<std::size_t>(n)]].sides) {
-      if (zone.vertices[side.vertex].output != kNotWritten) continue;
+      if (number(zone, side.vertex) != kNotWritten) continue;
       std::atomic_ref(marks_[side.vertex]).store(1, std::memory_order_relaxed);
     }
   });
@@ -51,10 +52,18 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
       [&](std::size_t n) { return zone.vertices[new_vertices_[n]].position; },
       [&](std::size_t n) { return zone.normals[new_vertices_[n]]; });
   executor_.for_each(static_cast<std::int64_t>(new_vertices_.size()), kBlock, [&](std::int64_t n) {
-    Vertex& vertex = zone.vertices[new_vertices_[static_cast<std::size_t>(n)]];
-    vertex.output = first + static_cast<std::uint64_t>(n);
-    vertex.component = label + static_cast<std::uint32_t>(n);
+    const Index v = new_vertices_[static_cast<std::size_t>(n)];
+    number(zone, v) = first + static_cast<std::uint64_t>(n);
+    component(zone, v) = label + static_cast<std::uint32_t>(n);
   });
+}
+
+// The triangle stays for coarser levels.
+void FinalOutput::keep(Zone& zone, Index triangle) {
+  ++zone.triangles[triangle].levels;
+  for (const HalfEdge& side : zone.triangles[triangle].sides) {
+    if (side.twin == kNone) open_edges_.fetch_add(1, std::memory_order_relaxed);
+  }
 }
 
 // Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
@@ -68,8 +77,8 @@ void FinalOutput::close_sides(Zone& zone, Index triangle) {
 
 void FinalOutput::forget_components(Zone& zone) {
   std::vector<std::uint32_t*> labels;
-  for (Vertex& vertex : zone.vertices) {
-    if (vertex.output != kNotWritten) labels.push_back(&vertex.component);
+  for (Index v = 0; v < zone.vertices.size(); ++v) {
+    if (number(zone, v) != kNotWritten) labels.push_back(&component(zone, v));
   }
   output_.components().compact(labels);
 }

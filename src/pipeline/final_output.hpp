@@ -12,14 +12,16 @@ namespace isoweave {
 
 class FinalOutput {
  public:
-  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true)
-      : output_(world, sink, executor, measure), executor_(executor) {}
+  // level: of the simplifier, by default the only one.
+  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true, std::size_t level = 0)
+      : output_(world, sink, executor, measure), executor_(executor), level_(level) {}
 
-  // Takes all final triangles out of the simplifier's zone, each vertex written once, and compacts the zone.
+  // Writes the triangles that have become final in the level, each vertex once. Those of the last level leave the
+  // simplifier's zone, which is compacted.
   void take(Simplifier& simplifier);
 
   // Fills in what has been written so far: counts, Euler number, components, digest.
-  void report(MeshReport& report) const { output_.report(open_edges_, report); }
+  void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
 
   // Returns when the sink has everything. Throws what it threw.
   void wait() { output_.wait(); }
@@ -33,12 +35,22 @@ class FinalOutput {
   }
 
  private:
+  // Where the zone keeps what this level's output has to know of a vertex.
+  std::uint64_t& number(Zone& zone, Index v) const {
+    return level_ < zone.levels.size() ? zone.levels[level_][v].output : zone.vertices[v].output;
+  }
+  std::uint32_t& component(Zone& zone, Index v) const {
+    return level_ < zone.levels.size() ? zone.levels[level_][v].component : zone.vertices[v].component;
+  }
+
   void number_vertices(Zone& zone, const std::vector<Index>& triangles);
+  void keep(Zone& zone, Index triangle);
   void close_sides(Zone& zone, Index triangle);
   void forget_components(Zone& zone);
 
   SurfaceOutput output_;
   const Executor& executor_;
+  std::size_t level_;
   std::vector<std::uint8_t> marks_;  // per vertex of the zone: is written with this slab
   std::vector<Index> new_vertices_;
   std::atomic<std::uint64_t> open_edges_{0};

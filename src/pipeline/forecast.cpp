@@ -206,6 +206,7 @@ class Forecaster {
     MeshOptions options = options_;
     options.closed = false;
     options.normals = false;
+    options.levels.clear();
     options.space = OutputSpace::kIndex;
     options.error = {error, false};
     options.slab = slab;
@@ -315,7 +316,8 @@ class Forecaster {
                             static_cast<std::uint64_t>(info_.slice_samples()),
                             Executor(control_.threads).threads(),
                             error_ > 0,
-                            options_.normals};
+                            options_.normals,
+                            options_.levels.size()};
     const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);

@@ -17,7 +17,7 @@ class FullOutput {
   // Writes a piece of a manifold surface.
   void take(const SurfacePiece& piece);
 
-  void report(MeshReport& report) const { output_.report(open_edges_, report); }
+  void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
 
   // Returns when the sink has everything. Throws what it threw.
   void wait() { output_.wait(); }

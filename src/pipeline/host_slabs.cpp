@@ -4,13 +4,15 @@
 
 namespace isoweave {
 
-HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, MeshSink& sink,
-                     const Executor& executor, const std::atomic<bool>* stop)
+HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world,
+                     std::span<MeshSink* const> sinks, const Executor& executor, const std::atomic<bool>* stop)
     : options_(options),
       extractor_(volume, options.extract, executor),
       simplifier_(options.simplify, executor, stop),
-      output_(world, sink, executor, options.measure),
-      full_output_(world, sink, executor, options.measure) {
+      full_output_(world, *sinks.back(), executor, options.measure) {
+  for (std::size_t level = 0; level < simplifier_.levels(); ++level) {
+    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, options.measure, level));
+  }
   if (options.triangles > 0) target_.emplace(simplifier_, executor, options.triangles);
 }
 
@@ -29,14 +31,18 @@ void HostSlabs::simplify(SlabRecord& record) {
   simplifier_.append(piece_);
   record.live_triangles = simplifier_.live_triangles();
   record.bytes += simplifier_.zone().bytes();
-  simplifier_.decide();
+  for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
+    simplifier_.decide(level);
+    outputs_[level]->take(simplifier_);
+  }
+  simplifier_.decide(simplifier_.levels() - 1);
   if (target_) layers_left() > 0 ? target_->thin_out() : target_->finish();
 }
 
 void HostSlabs::write(SlabRecord& record, MeshReport& report) {
   if (options_.simplifies) {
-    output_.take(simplifier_);
-    output_.report(report);
+    outputs_.back()->take(simplifier_);
+    outputs_.back()->report(report);
     record.undecided_triangles = simplifier_.live_triangles();
   } else {
     full_output_.take(piece_);
@@ -45,13 +51,17 @@ void HostSlabs::write(SlabRecord& record, MeshReport& report) {
 }
 
 void HostSlabs::wait_for_sink() {
-  output_.wait();
+  for (const auto& output : outputs_) output->wait();
   full_output_.wait();
 }
 
 void HostSlabs::finish(MeshReport& report) const {
   report.schedule = simplifier_.schedule();
   report_simplifier(simplifier_, report);
+  for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
+    outputs_[level]->report(report.levels[level]);
+    report_defects(simplifier_.defects(level), report.levels[level]);
+  }
   if (target_) report_target(*target_, options_.triangles, options_.voxel, report);
 }
 

@@ -1,7 +1,10 @@
 // Slabs on processors.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "extract/marching_cubes.hpp"
 #include "pipeline/final_output.hpp"
@@ -22,8 +25,8 @@ class HostSlabs final : public SlabEngine {
     bool measure = true;
   };
 
-  // stop: set, and simplify() throws Interrupted, if it is not null.
-  HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, MeshSink& sink,
+  // A sink for each level of options.simplify. stop: set, and simplify() throws Interrupted, if it is not null.
+  HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, std::span<MeshSink* const> sinks,
             const Executor& executor, const std::atomic<bool>* stop);
 
   std::int64_t layers_left() const override { return extractor_.layers_left(); }
@@ -45,7 +48,7 @@ class HostSlabs final : public SlabEngine {
   void exchange_with(Archive& archive) {
     extractor_.exchange(archive);
     simplifier_.exchange(archive);
-    output_.exchange(archive);
+    for (const auto& output : outputs_) output->exchange(archive);
     full_output_.exchange(archive);
   }
 
@@ -53,7 +56,7 @@ class HostSlabs final : public SlabEngine {
   MarchingCubes extractor_;
   Simplifier simplifier_;
   std::optional<CountTarget> target_;
-  FinalOutput output_;
+  std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
   FullOutput full_output_;
   SurfacePiece piece_;
 };

@@ -27,7 +27,8 @@ class NoSink final : public MeshSink {
 
 class VolumeSweep {
  public:
-  VolumeSweep(SliceSource& source, MeshSink& sink, const MeshOptions& options, const RunControl& control)
+  VolumeSweep(SliceSource& source, std::span<MeshSink* const> sinks, const MeshOptions& options,
+              const RunControl& control)
       : volume_(checked(source.info())),
         options_(options),
         control_(control),
@@ -35,8 +36,9 @@ class VolumeSweep {
         voxel_(mean_voxel(volume_.geometry)),
         world_(volume_.geometry, options.space),
         simplifies_(options.error.value > 0 || !has_cells()),
-        engine_(make_engine(sink)),
-        sink_(sink),
+        level_errors_(level_errors(options.levels, error(), voxel_, options.triangles)),
+        sinks_(sinks.begin(), sinks.end()),
+        engine_(make_engine()),
         layers_(engine_->layers_left()) {
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
@@ -56,7 +58,7 @@ class VolumeSweep {
     check_unchanged();
     Stopwatch finishing;
     engine_->wait_for_sink();
-    sink_.finish();
+    for (MeshSink* sink : sinks_) sink->finish();
     if (saves()) folder_->clear();
     finishing.lap(report_.seconds_write);
     total.lap(report_.seconds_total);
@@ -81,23 +83,24 @@ class VolumeSweep {
     return {{lattice.row(), lattice.plane()}, a0, retire_cost(error(), a0, options_.triangles), options_.drop_specks};
   }
 
-  std::unique_ptr<SlabEngine> make_engine(MeshSink& sink) const {
+  std::unique_ptr<SlabEngine> make_engine() const {
+    check_sinks(sinks_.size(), level_errors_.size());
     const IsoRule rule = stored_rule(volume_, options_);
     if (control_.device == Device::kCuda) {
       check_device_options();
       return std::make_unique<DeviceSlabs>(
           make_cuda_engine({volume_, rule, options_.normals, zone_options(), options_.quality}), options_.normals,
-          world_, sink, executor_, control_.measure);
+          world_, *sinks_.back(), executor_, control_.measure);
     }
     HostSlabs::Options host;
     host.extract = {rule, options_.normals};
-    host.simplify = {zone_options(), options_.quality, control_.schedule};
+    host.simplify = {zone_options(), options_.quality, control_.schedule, level_costs(level_errors_, voxel_ * voxel_)};
     host.simplifies = simplifies_;
     host.triangles = options_.triangles;
     host.voxel = voxel_;
     host.measure = control_.measure;
     // A zone that has been left in the middle cannot be saved.
-    return std::make_unique<HostSlabs>(volume_, host, world_, sink, executor_, saves() ? nullptr : control_.stop);
+    return std::make_unique<HostSlabs>(volume_, host, world_, sinks_, executor_, saves() ? nullptr : control_.stop);
   }
 
   // What there is on processors only.
@@ -106,6 +109,7 @@ class VolumeSweep {
       throw std::invalid_argument("a CUDA device: expected a run without " + what + ", which takes processors");
     };
     if (options_.triangles > 0) refuse("a number of triangles to stop at");
+    if (!options_.levels.empty()) refuse("levels");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
       refuse("a schedule other than rounds");
@@ -117,6 +121,8 @@ class VolumeSweep {
     report_.slab = options_.slab;
     report_.device = control_.device == Device::kCuda ? Device::kCuda : Device::kCpu;
     report_.error = error();
+    report_.levels.resize(level_errors_.size());
+    for (std::size_t n = 0; n < level_errors_.size(); ++n) report_.levels[n].error = level_errors_[n];
     const bool turned = options_.space == OutputSpace::kLps || options_.space == OutputSpace::kRas;
     if (turned && volume_.geometry.space == Space::kUnknown) {
       report_.warnings.push_back(volume_.path + ": the file does not say which space it is in; coordinates are kept");
@@ -152,7 +158,8 @@ class VolumeSweep {
   void fit_into_cap(SlabPlan& plan, double per_layer) {
     const MemoryModel model{
         resident_,           volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
-        executor_.threads(), simplifies_,           options_.normals};
+        executor_.threads(), simplifies_,           options_.normals,
+        level_errors_.size()};
     const auto undecided = static_cast<double>(engine_->held_triangles());
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
@@ -284,7 +291,7 @@ class VolumeSweep {
     if (checkpoint.layer == saved_layer_) return;
     checkpoint.note = control_.checkpoint.note;
     engine_->wait_for_sink();
-    checkpoint.mark = sink_.mark();
+    for (MeshSink* sink : sinks_) checkpoint.marks.push_back(sink->mark());
     const std::unique_ptr<StateWriter> writer = folder_->begin_state(checkpoint, identity_);
     exchange(*writer);
     const std::optional<std::uint32_t> crc = crc_of_next_slice();
@@ -346,8 +353,9 @@ class VolumeSweep {
   double voxel_;  // mean side of a voxel
   World world_;
   bool simplifies_;
+  const std::vector<double> level_errors_;
+  const std::vector<MeshSink*> sinks_;
   std::unique_ptr<SlabEngine> engine_;
-  MeshSink& sink_;
   std::optional<SliceWindow> window_;
   SlabPlan plan_;  // of the slices that have been read; no layers: of none
   SampleRange range_;
@@ -370,6 +378,7 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
   MeshOptions full = options;
   full.error = {0, false};
   full.triangles = 0;
+  full.levels.clear();
   full.normals = false;
   RunControl counting = control;
   counting.measure = false;
@@ -380,7 +389,13 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
 }
 
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control) {
-  return VolumeSweep(volume, sink, options, control).run();
+  MeshSink* const sinks[] = {&sink};
+  return mesh_volume(volume, sinks, options, control);
+}
+
+MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
+                       const RunControl& control) {
+  return VolumeSweep(volume, sinks, options, control).run();
 }
 
 }  // namespace isoweave

@@ -1,6 +1,7 @@
 // The same simplifier on a mesh that is there as a whole.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -38,13 +39,40 @@ class Recorder : public MeshSink {
   TriangleMesh mesh_;
 };
 
-void report_check(const MeshCheck& check, MeshReport& report) {
+void report_check(const MeshCheck& check, SurfaceReport& report) {
   report.open_edges = check.open_edges;
   report.nonmanifold_edges = check.nonmanifold_edges;
   report.nonmanifold_vertices = check.nonmanifold_vertices;
   report.components = check.components;
   report.euler = check.euler;
 }
+
+// The mesh of one level on its way out. A linked surface is measured as it leaves; around locked vertices only a look
+// at the whole tells.
+class LevelOutput {
+ public:
+  LevelOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure, std::size_t level,
+              bool has_locked)
+      : level_(level),
+        has_locked_(has_locked),
+        recorder_(sink),
+        output_(world, has_locked ? recorder_ : sink, executor, measure, level) {}
+
+  void take(Simplifier& simplifier) { output_.take(simplifier); }
+
+  void report(const Simplifier& simplifier, SurfaceReport& report) {
+    output_.wait();
+    output_.report(report);
+    report_defects(simplifier.defects(level_), report);
+    if (has_locked_) report_check(check_mesh(recorder_.mesh()), report);
+  }
+
+ private:
+  std::size_t level_;
+  bool has_locked_;
+  Recorder recorder_;
+  FinalOutput output_;
+};
 
 std::uint64_t count_locked(const Zone& zone) {
   return static_cast<std::uint64_t>(std::count(zone.states.begin(), zone.states.end(), VertexState::kLocked));
@@ -54,6 +82,13 @@ std::uint64_t count_locked(const Zone& zone) {
 
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control) {
+  MeshSink* const sinks[] = {&sink};
+  return simplify_mesh(mesh, sinks, options, control);
+}
+
+MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
+                         const RunControl& control) {
+  check_sinks(sinks.size(), options.levels.size());
   if (control.device == Device::kCuda) {
     throw std::invalid_argument("a CUDA device: expected a volume, found a mesh, which takes processors");
   }
@@ -65,11 +100,13 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   const double a0 = mean_area > 0 ? 2 * mean_area : 1;
   report.threads = executor.threads();
   report.error = options.error.value * (options.error.voxels ? std::sqrt(a0) : 1);
+  const std::vector<double> errors = level_errors(options.levels, report.error, std::sqrt(a0), options.triangles);
   SimplifierOptions simplifier_options;
   simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0, options.triangles),
                              options.drop_specks};
   simplifier_options.quality = options.quality;
   simplifier_options.schedule = control.schedule;
+  simplifier_options.finer = level_costs(errors, a0);
   Simplifier simplifier(simplifier_options, executor, control.stop);
   report.schedule = simplifier.schedule();
 
@@ -91,21 +128,26 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
     report.warnings.push_back(std::to_string(report.locked_vertices) +
                               " vertices are not on an oriented manifold and stay where they are");
   }
-  simplifier.decide();
-  if (target) target->finish();
-  clock.lap(report.seconds_simplify);
-
-  // A linked surface is measured as it leaves; around locked vertices only a look at the whole tells.
   const World world;
-  Recorder recorder(sink);
-  FinalOutput output(world, report.locked_vertices > 0 ? recorder : sink, executor, control.measure);
-  output.take(simplifier);
-  output.wait();
+  std::vector<std::unique_ptr<LevelOutput>> outputs;
+  for (std::size_t level = 0; level < sinks.size(); ++level) {
+    outputs.push_back(std::make_unique<LevelOutput>(world, *sinks[level], executor, control.measure, level,
+                                                    report.locked_vertices > 0));
+    simplifier.decide(level);
+    if (target) target->finish();
+    clock.lap(report.seconds_simplify);
+    outputs.back()->take(simplifier);
+    clock.lap(report.seconds_write);
+  }
   report_simplifier(simplifier, report);
-  output.report(report);
+  report.levels.resize(errors.size());
+  for (std::size_t level = 0; level < errors.size(); ++level) {
+    report.levels[level].error = errors[level];
+    outputs[level]->report(simplifier, report.levels[level]);
+  }
+  outputs.back()->report(simplifier, report);
   if (target) report_target(*target, options.triangles, std::sqrt(a0), report);
-  if (report.locked_vertices > 0) report_check(check_mesh(recorder.mesh()), report);
-  sink.finish();
+  for (MeshSink* sink : sinks) sink->finish();
   clock.lap(report.seconds_write);
   total.lap(report.seconds_total);
   report.peak_bytes = peak_process_bytes();

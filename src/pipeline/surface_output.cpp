@@ -2,7 +2,7 @@
 
 namespace isoweave {
 
-void SurfaceOutput::report(std::uint64_t open_edges, MeshReport& report) const {
+void SurfaceOutput::report(std::uint64_t open_edges, SurfaceReport& report) const {
   report.vertices = vertices_;
   report.triangles = triangles_;
   report.open_edges = open_edges;

@@ -76,7 +76,7 @@ class SurfaceOutput {
   void wait() { sink_.wait(); }
 
   // Fills in counts, Euler number, components and digest of what has been written.
-  void report(std::uint64_t open_edges, MeshReport& report) const;
+  void report(std::uint64_t open_edges, SurfaceReport& report) const;
 
   template <class Archive>
   void exchange(Archive& archive) {

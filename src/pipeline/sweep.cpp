@@ -80,8 +80,40 @@ void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
   report.rekeyed = counts.rekeyed;
   report.specks = counts.specks;
   report.rounds = simplifier.rounds();
-  report.nonmanifold_edges = simplifier.defects().nonmanifold_edges;
-  report.nonmanifold_vertices = simplifier.defects().nonmanifold_vertices;
+  report_defects(simplifier.defects(), report);
+}
+
+void report_defects(const SurfaceDefects& defects, SurfaceReport& report) {
+  report.nonmanifold_edges = defects.nonmanifold_edges;
+  report.nonmanifold_vertices = defects.nonmanifold_vertices;
+}
+
+std::vector<double> level_errors(std::span<const Length> levels, double error, double voxel, std::uint64_t triangles) {
+  std::vector<double> errors;
+  if (!levels.empty() && triangles > 0) {
+    throw std::invalid_argument("levels: expected errors alone, found a number of triangles as well");
+  }
+  for (const Length& level : levels) {
+    const double length = level.value * (level.voxels ? voxel : 1);
+    if (!(length >= 0 && length < error && (errors.empty() || length > errors.back()))) {
+      throw std::invalid_argument("levels: expected ascending errors of 0 or more and below " + std::to_string(error) +
+                                  ", found " + std::to_string(length));
+    }
+    errors.push_back(length);
+  }
+  return errors;
+}
+
+void check_sinks(std::size_t sinks, std::size_t levels) {
+  if (sinks == levels + 1) return;
+  throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +
+                              std::to_string(sinks));
+}
+
+std::vector<CostBits> level_costs(std::span<const double> errors, double a0) {
+  std::vector<CostBits> costs;
+  for (const double error : errors) costs.push_back(retire_cost(error, a0));
+  return costs;
 }
 
 }  // namespace isoweave

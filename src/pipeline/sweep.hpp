@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
@@ -51,5 +53,16 @@ void report_target(const CountTarget& target, std::uint64_t asked, double unit, 
 
 // Copies the simplifier's counters.
 void report_simplifier(const Simplifier& simplifier, MeshReport& report);
+void report_defects(const SurfaceDefects& defects, SurfaceReport& report);
+
+// The errors of finer levels as lengths. Throws std::invalid_argument when they do not ascend up to `error`, or beside
+// a number of triangles.
+std::vector<double> level_errors(std::span<const Length> levels, double error, double voxel, std::uint64_t triangles);
+
+// Their costs, in units of a0.
+std::vector<CostBits> level_costs(std::span<const double> errors, double a0);
+
+// Throws std::invalid_argument unless there is a sink for each level and one more.
+void check_sinks(std::size_t sinks, std::size_t levels);
 
 }  // namespace isoweave

@@ -1,6 +1,7 @@
 #include "simplify/simplifier.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
@@ -28,16 +29,23 @@ std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, Quality quali
 }  // namespace
 
 Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop)
-    : zone_(options.zone),
+    : zone_(options.zone, options.finer.size()),
       executor_(executor),
       stop_(stop),
       schedule_(options.schedule == Schedule::kAutomatic ? Schedule::kLocal : options.schedule),
       quality_(options.quality),
-      driver_(make_driver(schedule_, zone_, options.quality, executor)) {}
+      finer_(options.finer),
+      driver_(make_driver(schedule_, zone_, options.quality, executor)),
+      defects_(levels()) {}
 
 void Simplifier::decide() {
   driver_->run(stop_);
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
+}
+
+void Simplifier::decide(std::size_t level) {
+  if (levels() > 1) zone_.set_limit(is_last(level) ? zone_.options.retire : finer_[level]);
+  decide();
 }
 
 CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
@@ -49,8 +57,8 @@ CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
   return queue.last_cost();
 }
 
-std::vector<Index> Simplifier::final_triangles() {
-  const std::vector<Index> vertices = name_final_vertices();
+std::vector<Index> Simplifier::final_triangles(std::size_t level) {
+  const std::vector<Index> vertices = name_final_vertices(level);
   std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
   std::vector<Index> triangles;
   collect(
@@ -64,31 +72,37 @@ std::vector<Index> Simplifier::final_triangles() {
             if (undecided_[side.vertex]) continue;
             std::atomic_ref(corners[side.vertex]).fetch_add(1, std::memory_order_relaxed);
           }
-          if (undecided == 0) list.push_back(t);
+          if (undecided == 0 && zone_.triangles[t].levels == level) list.push_back(t);
         }
       },
       triangles);
-  inspect(vertices, corners);
+  defects_[level] += inspect(vertices, corners);
   return triangles;
 }
 
-// Vertices that have become final; those of them whose star can be walked.
-std::vector<Index> Simplifier::name_final_vertices() {
+// Vertices that have become final in a level; those of them whose star can be walked.
+std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
+  const CostBits within = is_last(level) ? zone_.options.retire : finer_[level];
   undecided_.resize(zone_.vertices.size());
   std::vector<Index> walkable;
   collect(
       executor_, static_cast<std::int64_t>(zone_.vertices.size()), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
-          VertexState& state = zone_.states[v];
-          undecided_[v] = state == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= zone_.options.retire;
-          if (undecided_[v] || state == VertexState::kFinal) continue;
-          if (zone_.walkable(v)) list.push_back(v);
-          state = VertexState::kFinal;
+          undecided_[v] = zone_.states[v] == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= within;
+          if (undecided_[v]) continue;
+          const bool has_fan = zone_.walkable(v);
+          if (make_final(v, level) && has_fan) list.push_back(v);
         }
       },
       walkable);
   return walkable;
+}
+
+// Tells whether it was not final before.
+bool Simplifier::make_final(Index v, std::size_t level) {
+  if (is_last(level)) return std::exchange(zone_.states[v], VertexState::kFinal) != VertexState::kFinal;
+  return !std::exchange(zone_.levels[level][v].final, true);
 }
 
 void Simplifier::drop(const std::vector<Index>& triangles) {
@@ -100,7 +114,8 @@ void Simplifier::drop(const std::vector<Index>& triangles) {
 }
 
 // The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must differ.
-void Simplifier::inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) {
+SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,
+                                   const std::vector<std::uint32_t>& corners) const {
   std::atomic<std::uint64_t> bad_vertices{0};
   std::atomic<std::uint64_t> bad_edges{0};
   executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
@@ -114,8 +129,7 @@ void Simplifier::inspect(const std::vector<Index>& vertices, const std::vector<s
       }
     }
   });
-  defects_.nonmanifold_vertices += bad_vertices;
-  defects_.nonmanifold_edges += bad_edges;
+  return {bad_edges, bad_vertices};
 }
 
 // Walks around v over at most `most` + 1 faces, and tells how many there are.

@@ -17,6 +17,8 @@ struct SimplifierOptions {
   ZoneOptions zone;
   Quality quality = Quality::kNormal;
   Schedule schedule = Schedule::kAutomatic;
+  // Costs at which finer meshes are taken out, ascending, all below what retires an edge.
+  std::vector<CostBits> finer{};
 };
 
 class Simplifier {
@@ -31,16 +33,24 @@ class Simplifier {
     appended_ += piece.triangles.size();
   }
 
+  // The meshes that come out: those of the finer levels, and the last one.
+  std::size_t levels() const { return finer_.size() + 1; }
+  bool is_last(std::size_t level) const { return level == finer_.size(); }
+
   // Decides every edge that can be decided with what has been appended. Throws Interrupted.
   void decide();
+
+  // The same up to the cost of a level. After an append the levels come one after the other, each before the next one
+  // changes what is final in it.
+  void decide(std::size_t level);
 
   // For a complete surface: decides in the order of the keys until no more than `triangles` of the surface are left, or
   // no edge is. Returns the cost of the last edge decided, kUnknownCost if there was none. Throws Interrupted.
   CostBits decide_in_order(std::uint64_t triangles);
 
-  // Triangles all of whose vertices are final, in memory order. Marks vertices final. The caller hands them to drop()
-  // once it has no more use for them.
-  std::vector<Index> final_triangles();
+  // Triangles of a level all of whose vertices are final there and that have not been named before, in memory order.
+  // Marks vertices final. The caller hands those of the last level to drop() once it has no more use for them.
+  std::vector<Index> final_triangles(std::size_t level);
   void drop(const std::vector<Index>& triangles);
 
   // Of the surface so far: held, and handed out.
@@ -56,7 +66,8 @@ class Simplifier {
   }
   Schedule schedule() const { return schedule_; }  // never automatic
   std::uint64_t rounds() const { return rounds_before_ + driver_->rounds(); }
-  const SurfaceDefects& defects() const { return defects_; }
+  const SurfaceDefects& defects(std::size_t level) const { return defects_[level]; }
+  const SurfaceDefects& defects() const { return defects_.back(); }
 
   // The state between two slabs.
   template <class Archive>
@@ -67,7 +78,7 @@ class Simplifier {
     archive.value(passed);
     archive.value(appended_);
     archive.value(dropped_);
-    archive.value(defects_);
+    for (SurfaceDefects& defects : defects_) archive.value(defects);
     zone_.exchange(archive);
     if constexpr (Archive::kReads) {
       counts_before_ = counted;
@@ -76,8 +87,9 @@ class Simplifier {
   }
 
  private:
-  std::vector<Index> name_final_vertices();
-  void inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners);
+  std::vector<Index> name_final_vertices(std::size_t level);
+  bool make_final(Index v, std::size_t level);
+  SurfaceDefects inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) const;
   std::uint32_t list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const;
 
   Zone zone_;
@@ -85,12 +97,13 @@ class Simplifier {
   const std::atomic<bool>* stop_;
   Schedule schedule_;
   Quality quality_;
+  std::vector<CostBits> finer_;
   std::unique_ptr<Driver> driver_;
   std::vector<std::uint8_t> undecided_;  // per vertex
   std::uint64_t appended_ = 0;           // triangles
   std::uint64_t dropped_ = 0;
-  SurfaceDefects defects_;
-  DecisionCounts counts_before_;  // by the process that saved the state
+  std::vector<SurfaceDefects> defects_;  // per level
+  DecisionCounts counts_before_;         // by the process that saved the state
   std::uint64_t rounds_before_ = 0;
 };
 

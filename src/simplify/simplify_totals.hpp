@@ -27,6 +27,11 @@ struct DecisionCounts {
 struct SurfaceDefects {
   std::uint64_t nonmanifold_edges = 0;
   std::uint64_t nonmanifold_vertices = 0;
+
+  void operator+=(const SurfaceDefects& other) {
+    nonmanifold_edges += other.nonmanifold_edges;
+    nonmanifold_vertices += other.nonmanifold_vertices;
+  }
 };
 
 }  // namespace isoweave

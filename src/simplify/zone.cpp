@@ -80,7 +80,7 @@ void Zone::forget_turns() {
   turns_forgotten_ = true;
 }
 
-void Zone::raise_limit(CostBits new_limit) {
+void Zone::set_limit(CostBits new_limit) {
   limit = new_limit;
   forget_turns();
   turns_forgotten_ = false;
@@ -117,6 +117,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   state_array_.resize(end);
   turn_key_array_.resize(end);
   turn_array_.resize(end);
+  for (Array<LevelVertex>& level : levels) level.resize(end);
   normal_array_.insert(normal_array_.end(), piece.normals.begin(), piece.normals.end());
   show_arrays();
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
@@ -128,6 +129,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
     states[first + from] = VertexState::kIncomplete;
     turn_keys[first + from] = 0;
     turns[first + from] = Turn();
+    for (Array<LevelVertex>& level : levels) level[first + from] = LevelVertex();
   });
 }
 
@@ -354,6 +356,7 @@ void Zone::compact(const Executor& executor) {
     for (Index* v : {&turn.first_waiter, &turn.next_waiter, &turn.waits_for}) move_vertex(*v);
   });
   new_vertex.apply(state_array_);
+  for (Array<LevelVertex>& level : levels) new_vertex.apply(level);
   if (!normal_array_.empty()) new_vertex.apply(normal_array_);
   show_arrays();
   for (Index& v : front_) move_vertex(v);
@@ -362,7 +365,9 @@ void Zone::compact(const Executor& executor) {
 }
 
 std::uint64_t Zone::bytes() const {
-  return vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
+  std::uint64_t level_bytes = 0;
+  for (const Array<LevelVertex>& level : levels) level_bytes += level.capacity() * sizeof(LevelVertex);
+  return level_bytes + vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
          triangle_array_.capacity() * sizeof(Triangle) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);

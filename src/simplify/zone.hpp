@@ -29,12 +29,20 @@ struct SettledVertices {
   }
 };
 
+// What a vertex is to the mesh of a level before the last one.
+struct LevelVertex {
+  std::uint64_t output = kNotWritten;  // number in the output
+  Index component = 0;                 // of the written surface, once written
+  bool final = false;                  // no edge has a key within the level's error
+};
+
 struct EdgeSide;
 
 // Owns what its view shows.
 class Zone : public ZoneView {
  public:
-  explicit Zone(const ZoneOptions& zone_options) {
+  // finer_levels: meshes with smaller errors that come out of the zone as well.
+  explicit Zone(const ZoneOptions& zone_options, std::size_t finer_levels = 0) : levels(finer_levels) {
     options = zone_options;
     limit = zone_options.retire;
   }
@@ -44,11 +52,12 @@ class Zone : public ZoneView {
   // To be copied: what a pass needs of the zone.
   const ZoneView& view() const { return *this; }
 
-  SettledVertices settled;  // with the last piece
+  SettledVertices settled;                 // with the last piece
+  std::vector<Array<LevelVertex>> levels;  // before the last one; each parallel to vertices
 
-  // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide. All
-  // vertices count as settled afterwards. At most what retires an edge.
-  void raise_limit(CostBits limit);
+  // Edges with a higher cost wait: what is decided is what a run with that error would decide. All vertices count as
+  // settled afterwards. At most what retires an edge; below what it was only for what is appended from now on.
+  void set_limit(CostBits limit);
 
   // Nothing more is to be decided: all edges are retired.
   void retire_all() { options.retire = limit = kUnknownCost; }
@@ -70,6 +79,7 @@ class Zone : public ZoneView {
     archive.list(state_array_);
     archive.list(normal_array_);
     archive.list(triangle_array_);
+    for (Array<LevelVertex>& level : levels) archive.list(level);
     archive.list(front_);
     archive.list(unkeyed_edges_);
     archive.value(limit);

@@ -67,6 +67,7 @@ struct HalfEdge {
 struct alignas(64) Triangle {
   std::array<HalfEdge, 3> sides;
   std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
+  std::uint32_t levels = 0;                // meshes of finer levels that have it
 };
 
 static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);

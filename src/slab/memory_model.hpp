@@ -15,6 +15,7 @@ struct MemoryModel {
   int threads = 1;
   bool simplifies = true;
   bool normals = false;
+  std::uint64_t levels = 0;  // finer ones
 
   // What does not grow.
   double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
@@ -45,7 +46,7 @@ struct MemoryModel {
   double per_new() const { return (simplifies ? 65 : 115) + (normals ? 12 : 0); }
 
   // In the zone, with half a vertex each.
-  double per_held() const { return simplifies ? 160 + (normals ? 6 : 0) : 0; }
+  double per_held() const { return simplifies ? 160 + (normals ? 6 : 0) + 10 * static_cast<double>(levels) : 0; }
 };
 
 }  // namespace isoweave

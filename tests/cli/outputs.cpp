@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -138,6 +139,61 @@ TEST(CliOutputs, PackedMeshesNeedMemoryThatIsForeseen) {
     return Json::parse(files::read_bytes(folder / "r.json"))["forecast"]["peak_bytes"].get<std::uint64_t>();
   };
   EXPECT_GT(forecast({"-o", "a.glb", "--compress"}), forecast({"-o", "a.glb"}) + 10'000'000);
+}
+
+Json report_of(const files::Folder& folder, const std::vector<std::string>& arguments) {
+  const Result result = run(folder.path(), arguments);
+  EXPECT_EQ(result.code, 0) << result.err;
+  return Json::parse(files::read_bytes(folder / "r.json"));
+}
+
+TEST(CliLevels, AreFilesLikeThoseOfRunsWithTheirErrors) {
+  const files::Folder folder;
+  const std::vector<std::string> errors{"0", "0.1vox", "0.5"};
+  const Json levels = report_of(folder, mesh({"-o", "a.ply", "--lods", "0,0.1vox,0.5", "--report", "r.json"}));
+  ASSERT_EQ(levels.at("levels").size(), 2U);
+  EXPECT_EQ(levels.at("output"), "a_lod2.ply");
+  for (std::size_t n = 0; n < errors.size(); ++n) {
+    const std::string name = "a_lod" + std::to_string(n) + ".ply";
+    const Json direct = report_of(folder, mesh({"-o", "b.ply", "--error", errors[n], "--report", "r.json"}));
+    const Json& level = n < 2 ? levels.at("levels").at(n) : levels;
+    EXPECT_EQ(level.at("output"), name);
+    for (const char* key : {"error", "triangles", "vertices", "components", "euler", "open_edges", "digest"}) {
+      EXPECT_EQ(level.at(key), direct.at(key)) << name << ' ' << key;
+    }
+    EXPECT_EQ(Json::parse(run(folder.path(), {"check", name, "--json"}).out).at("digest"), direct.at("digest"));
+    // Nothing tells the file from that of a run of its own but the order of triangles and vertices.
+    EXPECT_EQ(files::read_bytes(folder / name).substr(0, 150), files::read_bytes(folder / "b.ply").substr(0, 150));
+  }
+  EXPECT_EQ(listing(folder), (std::vector<std::string>{"a_lod0.ply", "a_lod1.ply", "a_lod2.ply", "b.ply", "r.json"}));
+}
+
+TEST(CliLevels, ComeFromMeshesTooAndCanBeResumed) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"})).code, 0);
+  const Json levels =
+      report_of(folder, {"simplify", "full.ply", "-o", "s.obj", "--lods", "0.1,0.5", "--report", "r.json"});
+  const Json direct =
+      report_of(folder, {"simplify", "full.ply", "-o", "d.obj", "--error", "0.1", "--report", "r.json"});
+  EXPECT_EQ(levels.at("levels").at(0).at("digest"), direct.at("digest"));
+  EXPECT_EQ(levels.at("output"), "s_lod1.obj");
+  const Json whole = report_of(folder, mesh({"-o", "a.stl", "--lods", "0.1,0.5", "--report", "r.json"}));
+  const Json kept = report_of(folder, mesh({"-o", "c.stl", "--lods", "0.1,0.5", "--report", "r.json", "--checkpoint",
+                                            "run", "--every", "1layers", "--slab", "4"}));
+  EXPECT_EQ(kept.at("levels").at(0).at("digest"), whole.at("levels").at(0).at("digest"));
+  EXPECT_EQ(kept.at("digest"), whole.at("digest"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
+}
+
+TEST(CliLevels, WrongUseIsRefused) {
+  const files::Folder folder;
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.2,0.1"}), 2, "expected ascending errors");
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,,0.3"}), 2, "--lods: expected a length");
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,wide"}), 2, "'wide'");
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,0.2", "--error", "0.3"}), 2, "excludes");
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,0.2", "--triangles", "300"}), 2, "excludes");
+  expect_failure(folder, mesh({"--to-stdout", "ply", "--lods", "0.1,0.2"}), 2, "excludes");
+  expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,0.2", "--report", "a_lod0.ply"}), 2, "a_lod0.ply");
 }
 
 TEST(CliOutputs, AFolderIsNotWrittenOver) {

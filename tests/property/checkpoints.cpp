@@ -64,7 +64,8 @@ class InterruptedRun {
     Checkpoint checkpoint;
     if (resume) checkpoint = read_checkpoint(state_folder());
     if (resume) control.resume = &checkpoint;
-    const auto sink = open_mesh_file(mesh_path(), {options_.normals, {"a test"}, state_folder(), checkpoint.mark});
+    const std::string mark = resume ? checkpoint.marks.at(0) : "";
+    const auto sink = open_mesh_file(mesh_path(), {options_.normals, {"a test"}, state_folder(), mark});
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
   }
 
@@ -146,6 +147,55 @@ class FailingVolume final : public SliceSource {
   std::int64_t bad_slice_;
 };
 
+TEST(Checkpoints, LevelsGoOnToTheSameMeshes) {
+  const SurfaceCase surface{{"noise", {24, 24, 40}, SampleType::kUint8}, true, 0.6};
+  MeshOptions options = mesh_options(surface);
+  options.levels = {{0.1, true}, {0.3, true}};
+  std::vector<testing::MemorySink> whole_sinks(3);
+  MeshSink* const pointers[] = {&whole_sinks[0], &whole_sinks[1], &whole_sinks[2]};
+  const MeshReport whole = mesh_volume(*generate_volume(surface.volume), pointers, options);
+
+  const files::Folder folder;
+  options.slab = 5;
+  MeshReport resumed;
+  int interruptions = 0;
+  for (bool done = false; !done;) {
+    std::atomic<bool> stop = false;
+    RunControl control;
+    control.stop = &stop;
+    control.progress = [&](const Progress&) { stop = true; };
+    control.checkpoint.folder = folder.path();
+    Checkpoint checkpoint;
+    if (interruptions > 0) checkpoint = read_checkpoint(folder.path());
+    if (interruptions > 0) control.resume = &checkpoint;
+    std::vector<std::unique_ptr<MeshSink>> sinks;
+    std::vector<MeshSink*> opened;
+    for (std::size_t level = 0; level < 3; ++level) {
+      const std::string parts = folder / ("parts" + std::to_string(level));
+      std::filesystem::create_directory(parts);
+      const std::string mark = interruptions > 0 ? checkpoint.marks.at(level) : "";
+      sinks.push_back(open_mesh_file(folder / (std::to_string(level) + ".ply"), {false, {}, parts, mark}));
+      opened.push_back(sinks.back().get());
+    }
+    try {
+      resumed = mesh_volume(*generate_volume(surface.volume), opened, options, control);
+      done = true;
+    } catch (const Interrupted&) {
+      ++interruptions;
+    }
+  }
+  EXPECT_GE(interruptions, 5);
+  expect_same_result(resumed, whole);
+  for (std::size_t level = 0; level < 3; ++level) {
+    const TriangleMesh mesh = read_mesh(folder / (std::to_string(level) + ".ply"));
+    EXPECT_EQ(check_mesh(mesh).digest, check_mesh(whole_sinks[level].mesh).digest) << level;
+    if (level < 2) {
+      EXPECT_EQ(resumed.levels[level].digest, whole.levels[level].digest);
+      EXPECT_EQ(resumed.levels[level].components, whole.levels[level].components);
+    }
+  }
+}
+
 TEST(Checkpoints, AVolumeThatFailsInTheMiddleCanBeResumed) {
   const SurfaceCase surface{{"noise", {24, 24, 40}, SampleType::kUint8}, true, 0.3};
   MeshOptions options = mesh_options(surface);
@@ -167,7 +217,7 @@ TEST(Checkpoints, AVolumeThatFailsInTheMiddleCanBeResumed) {
     EXPECT_LE(checkpoint.layer, bad_slice + 1);
     EXPECT_GT(checkpoint.layer, bad_slice - 8) << "as far as the slices before the bad one go";
     control.resume = &checkpoint;
-    const auto sink = open_mesh_file(folder / "a.stl", {false, {}, folder.path(), checkpoint.mark});
+    const auto sink = open_mesh_file(folder / "a.stl", {false, {}, folder.path(), checkpoint.marks.at(0)});
     const MeshReport resumed = mesh_volume(*generate_volume(surface.volume), *sink, options, control);
     expect_same_result(resumed, whole);
     EXPECT_EQ(resumed.resumed_at, checkpoint.layer);
@@ -202,7 +252,7 @@ class SavedState : public ::testing::Test {
     const Checkpoint checkpoint = read_checkpoint(folder_.path());
     RunControl control = saving();
     control.resume = &checkpoint;
-    const auto sink = open_mesh_file(folder_ / "a.obj", {false, {}, folder_.path(), checkpoint.mark});
+    const auto sink = open_mesh_file(folder_ / "a.obj", {false, {}, folder_.path(), checkpoint.marks.at(0)});
     return mesh_volume(volume, *sink, options, control);
   }
 
@@ -278,7 +328,7 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 3\n"));
+  writer.list(std::string("isoweave state 4\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -292,7 +342,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 3\n"));
+  writer.list(std::string("isoweave state 4\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");

@@ -1,0 +1,72 @@
+#include "lods.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "options.hpp"
+#include "output.hpp"
+
+namespace isoweave::cli {
+
+std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit) {
+  std::vector<Length> levels;
+  if (!stop.has_levels()) return levels;
+  for (const StopOptions& level : stop_levels(stop)) levels.push_back(parse_error_length("--lods", level.error, unit));
+  levels.pop_back();
+  return levels;
+}
+
+std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop) {
+  if (!stop.has_levels()) return {output};
+  const std::filesystem::path path(output.path);
+  std::vector<OutputOptions> outputs;
+  for (std::size_t level = 0; level < stop_levels(stop).size(); ++level) {
+    outputs.push_back(output);
+    outputs.back().path =
+        (path.parent_path() / fmt::format("{}_lod{}{}", path.stem().string(), level, path.extension().string()))
+            .string();
+  }
+  return outputs;
+}
+
+std::vector<std::string> level_folders(const std::string& folder, std::size_t levels) {
+  if (levels == 1 || folder.empty()) return std::vector<std::string>(levels, folder);
+  std::vector<std::string> folders;
+  for (std::size_t level = 0; level < levels; ++level) {
+    folders.push_back((std::filesystem::path(folder) / fmt::format("lod{}", level)).string());
+  }
+  return folders;
+}
+
+void remove_level_folders(const std::vector<std::string>& folders) {
+  std::error_code ignored;
+  for (const std::string& folder : folders) {
+    if (folders.size() > 1) std::filesystem::remove(folder, ignored);
+  }
+}
+
+LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
+                       const std::function<MeshFileOptions(std::size_t)>& options) {
+  for (std::size_t level = 0; level < outputs.size(); ++level) {
+    sinks_.push_back(open_output(outputs[level], options(level)));
+    pointers_.push_back(sinks_.back().get());
+  }
+}
+
+Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
+  Json levels = Json::array();
+  for (std::size_t level = 0; level < report.levels.size(); ++level) {
+    Json json = surface_json(report.levels[level]);
+    json["output"] = outputs[level].name();
+    levels.push_back(std::move(json));
+  }
+  return levels;
+}
+
+void print_levels(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
+  for (std::size_t level = 0; level < report.levels.size(); ++level) {
+    print_surface(report.levels[level], outputs[level].name());
+  }
+}
+
+}  // namespace isoweave::cli
