@@ -48,7 +48,6 @@ int run(const std::vector<std::string>& arguments) {
   add_view_verb(app);
   add_generate_verb(app);
   try {
-    refuse_unavailable(arguments);
     check_verb(app, arguments);
     // CLI11 takes them from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

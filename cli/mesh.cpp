@@ -78,6 +78,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
           {"specks", arguments.stop.specks},
           {"lods", arguments.stop.lods},
+          {"max_distance", arguments.stop.max_distance},
           {"quality", arguments.quality},
           {"slab", arguments.slab},
           {"inside", arguments.inside},
@@ -97,7 +98,8 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
-  arguments.stop = {task.at("error"), task.at("triangles"), "", task.at("specks"), task.at("lods")};
+  arguments.stop = {task.at("error"),  task.at("triangles"), "",
+                    task.at("specks"), task.at("lods"),      task.at("max_distance")};
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
@@ -320,6 +322,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
   options.error = stop_error(arguments.stop, kUsualError, info.geometry.unit);
+  options.max_distance = stop_distance(arguments.stop, info.geometry.unit);
   options.levels = finer_levels(arguments.stop, info.geometry.unit);
   options.slab = parse_slab(arguments.slab, info.dims[2]);
 

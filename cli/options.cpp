@@ -286,14 +286,4 @@ void not_available(std::string_view what) {
   throw std::invalid_argument(fmt::format("{} is not available in version {}", what, full.substr(0, full.rfind('.'))));
 }
 
-void refuse_unavailable(const std::vector<std::string>& arguments) {
-  for (const std::string& argument : arguments) {
-    if (argument == "--") return;
-    const std::string name = argument.substr(0, argument.find('='));
-    for (const std::string_view option : {"--max-distance"}) {
-      if (name == option) not_available(option);
-    }
-  }
-}
-
 }  // namespace isoweave::cli

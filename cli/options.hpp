@@ -76,9 +76,7 @@ ProgressMode progress_mode(const std::string& progress, bool quiet);
 // Refuses to write over what is read, and two outputs to one file.
 void check_different(std::initializer_list<std::string_view> paths);
 
+// Refuses what the documents promise for later versions.
 [[noreturn]] void not_available(std::string_view what);
-
-// Refuses, with a line that says so, the options and verbs that the documents promise for later versions.
-void refuse_unavailable(const std::vector<std::string>& arguments);
 
 }  // namespace isoweave::cli

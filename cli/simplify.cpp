@@ -71,6 +71,7 @@ void run_simplify(const SimplifyArguments& arguments) {
     throw CLI::RequiredError("--error");
   }
   SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
+  options.max_distance = stop_distance(arguments.stop, "");
   options.levels = finer_levels(arguments.stop, "");
   options.drop_specks = drops_specks(arguments.stop);
   check_page(arguments.page, arguments.output);

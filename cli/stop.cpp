@@ -21,6 +21,8 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option("--lods", stop.lods,
                   "Several errors E1,E2,... from one sweep: -o a.ply makes a_lod0.ply, the finest, a_lod1.ply, ...")
       ->excludes("--error", "--triangles", "--ratio", "--to-stdout");
+  verb.add_option("--max-distance", stop.max_distance,
+                  "Guarantee: no point of the result is farther than this length from the full surface");
   verb.add_option("--specks", stop.specks,
                   "keep, or drop: a closed component that has shrunk to a tetrahedron within the error vanishes")
       ->capture_default_str();
@@ -28,6 +30,7 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
 
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
   if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, unit);
+  if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, unit);
   if (stop.error.empty() && stop.has_number()) return {std::numeric_limits<double>::infinity(), false};
   return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
 }
@@ -36,12 +39,20 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
   if (!stop.has_levels()) return {stop};
   std::vector<StopOptions> levels;
   std::istringstream errors(stop.lods + ",");
-  for (std::string error; std::getline(errors, error, ',');) levels.push_back({error, "", "", stop.specks, ""});
+  for (std::string error; std::getline(errors, error, ',');)
+    levels.push_back({error, "", "", stop.specks, "", stop.max_distance});
   return levels;
 }
 
 bool drops_specks(const StopOptions& stop) {
   return parse_choice<bool>("--specks", stop.specks, {{"keep", false}, {"drop", true}});
+}
+
+Length stop_distance(const StopOptions& stop, std::string_view unit) {
+  if (stop.max_distance.empty()) return {};
+  const Length distance = parse_error_length("--max-distance", stop.max_distance, unit);
+  if (!(distance.value > 0)) wrong_value("--max-distance", "a length above 0", stop.max_distance);
+  return distance;
 }
 
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
@@ -53,9 +64,11 @@ std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::u
 }
 
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {
-  const std::string specks = drops_specks(stop) ? " specks drop" : "";
-  if (!stop.has_number()) return "error " + (stop.error.empty() ? usual : stop.error) + specks;
-  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles) + specks;
+  const std::string more = (stop.max_distance.empty() ? "" : " distance within " + stop.max_distance) +
+                           (drops_specks(stop) ? " specks drop" : "");
+  const std::string& otherwise = stop.max_distance.empty() ? usual : stop.max_distance;
+  if (!stop.has_number()) return "error " + (stop.error.empty() ? otherwise : stop.error) + more;
+  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles) + more;
 }
 
 }  // namespace isoweave::cli

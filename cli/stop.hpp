@@ -14,7 +14,8 @@ namespace isoweave::cli {
 struct StopOptions {
   std::string error, triangles, ratio;  // as given; empty: not
   std::string specks = "keep";
-  std::string lods;  // errors with commas between them
+  std::string lods;          // errors with commas between them
+  std::string max_distance;  // empty: none
 
   bool has_number() const { return !triangles.empty() || !ratio.empty(); }
   bool has_levels() const { return !lods.empty(); }
@@ -22,13 +23,17 @@ struct StopOptions {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop);
 
-// `usual` is the error where nothing is given. Where only a number of triangles is, the error is infinite.
+// `usual` is the error where nothing is given. Where only a guaranteed distance is, that is the error; where only a
+// number of triangles is, the error is infinite.
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
 
 // The meshes that are asked for, one for each level of detail, finest first: how each would be asked for alone.
 std::vector<StopOptions> stop_levels(const StopOptions& stop);
 
 bool drops_specks(const StopOptions& stop);
+
+// 0: no guarantee is asked for.
+Length stop_distance(const StopOptions& stop, std::string_view unit);
 
 // 0: no number is asked for. count() tells the triangles of the full surface, for a ratio.
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);

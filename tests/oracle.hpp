@@ -79,6 +79,9 @@ inline std::vector<Index> safe_edges(const Zone& zone) {
     const Key key = zone.cost(h) == kUnknownCost ? Key{0, 0} : Key{zone.cost(h), zone.tie(h)};
     for (const Index v : {zone.origin(h), zone.destination(h)}) m1[v] = std::min(m1[v], key);
   }
+  for (Index v = 0; v < zone.vertices.size(); ++v) {
+    if (zone.states[v] == VertexState::kDeferred) m1[v] = {0, 0};
+  }
   std::vector<Key> m2 = m1;
   for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
     if ((h & 3) == 3) continue;

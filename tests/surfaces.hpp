@@ -66,6 +66,7 @@ struct SurfaceCase {
   double error = 0.2;  // mean voxels
   Quality quality = Quality::kNormal;
   bool drop_specks = false;
+  double max_distance = 0;  // mean voxels
 
   IsoRule rule() const { return {suggested_iso(volume.kind, volume.type), true, closed}; }
   double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
@@ -73,7 +74,9 @@ struct SurfaceCase {
   ZoneOptions zone() const {
     const Lattice lattice{volume.dims};
     const double a0 = voxel() * voxel();
-    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error * voxel(), a0), drop_specks};
+    const auto& [x, y, z] = volume.spacing;
+    return {{lattice.row(), lattice.plane()}, a0,       retire_cost(error * voxel(), a0), drop_specks,
+            max_distance * voxel(),           {x, y, z}};
   }
 };
 

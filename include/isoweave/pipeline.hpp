@@ -88,6 +88,9 @@ struct MeshOptions {
   bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
   bool closed = true;        // caps at the volume's border; else the surface ends there
   Length error{0.2, true};   // root of the largest quadric error of a collapse; 0: no simplification
+  // No point of the result is farther than this from the extracted surface; 0: no such guarantee. The other way round
+  // nothing is promised. Costs time, and memory for the extracted surface around what is undecided.
+  Length max_distance{};
   // Stop at the first collapse that leaves no more triangles than this, if the error does not stop it before; 0: no
   // such number. The error may be infinite then. Up to three times as many triangles are held.
   std::uint64_t triangles = 0;
@@ -165,6 +168,7 @@ struct SimplifyOptions {
   std::uint64_t triangles = 0;   // as in MeshOptions
   bool drop_specks = false;      // as in MeshOptions
   std::vector<Length> levels{};  // as in MeshOptions
+  Length max_distance{};         // as in MeshOptions: from the mesh that is given
 };
 
 // What a run will take, from a sample of the volume.

@@ -116,6 +116,7 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
   next_layer_ += static_cast<std::int64_t>(count);
   std::swap(slices_.front(), slices_[count]);
   list_front(piece);
+  if (layers_left() > 0) piece.complete_below = static_cast<double>(next_layer_) * spacing_[2];
   return static_cast<std::int64_t>(count);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "isoweave/mesh.hpp"
@@ -15,11 +16,12 @@ namespace isoweave {
 // the order in which quadrics are summed. Indices are 32 bit: a piece holds fewer than 2^32 vertices.
 struct SurfacePiece {
   std::uint32_t inherited = 0;
-  Array<Vec3> positions;                          // of new vertices, physical lengths
-  Array<std::uint64_t> ids;                       // of new vertices, unique in the whole surface
-  Array<Point> normals;                           // of new vertices, unit or zero, outwards; or none
-  Array<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
-  std::vector<std::uint32_t> incomplete;          // vertices that later pieces give more triangles
+  Array<Vec3> positions;                                            // of new vertices, physical lengths
+  Array<std::uint64_t> ids;                                         // of new vertices, unique in the whole surface
+  Array<Point> normals;                                             // of new vertices, unit or zero, outwards; or none
+  Array<std::array<std::uint32_t, 3>> triangles;                    // counter-clockwise seen from outside
+  std::vector<std::uint32_t> incomplete;                            // vertices that later pieces give more triangles
+  double complete_below = std::numeric_limits<double>::infinity();  // z: no later piece has a point below it
   bool manifold = true;  // a promise; without it vertices where the surface is not an oriented manifold are locked
   std::uint64_t cells_crossed = 0;
   std::uint64_t open_edges = 0;  // of the whole surface, among the new vertices: one for each on a border
@@ -33,6 +35,7 @@ struct SurfacePiece {
     normals.resize(0);
     triangles.resize(0);
     incomplete.clear();
+    complete_below = std::numeric_limits<double>::infinity();
     manifold = true;
   }
 };

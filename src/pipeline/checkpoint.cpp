@@ -122,6 +122,10 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
        << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << levels_text(options.levels)
        << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
        << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
+  if (options.max_distance.value > 0) {
+    text << ", distance" << numbers_text(std::array{options.max_distance.value})
+         << (options.max_distance.voxels ? " voxels" : "");
+  }
   identity.options = text.str();
   return identity;
 }

@@ -317,7 +317,8 @@ class Forecaster {
                             Executor(control_.threads).threads(),
                             error_ > 0,
                             options_.normals,
-                            options_.levels.size()};
+                            options_.levels.size(),
+                            options_.max_distance.value > 0};
     const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);

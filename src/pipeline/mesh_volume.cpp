@@ -80,7 +80,12 @@ class VolumeSweep {
   ZoneOptions zone_options() const {
     const Lattice lattice{volume_.dims};
     const double a0 = voxel_ * voxel_;
-    return {{lattice.row(), lattice.plane()}, a0, retire_cost(error(), a0, options_.triangles), options_.drop_specks};
+    return {{lattice.row(), lattice.plane()},
+            a0,
+            retire_cost(error(), a0, options_.triangles),
+            options_.drop_specks,
+            most_distance(options_.max_distance, voxel_),
+            {volume_.geometry.spacing[0], volume_.geometry.spacing[1], volume_.geometry.spacing[2]}};
   }
 
   std::unique_ptr<SlabEngine> make_engine() const {
@@ -110,6 +115,7 @@ class VolumeSweep {
     };
     if (options_.triangles > 0) refuse("a number of triangles to stop at");
     if (!options_.levels.empty()) refuse("levels");
+    if (options_.max_distance.value > 0) refuse("a guaranteed distance");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
       refuse("a schedule other than rounds");
@@ -159,7 +165,7 @@ class VolumeSweep {
     const MemoryModel model{
         resident_,           volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
         executor_.threads(), simplifies_,           options_.normals,
-        level_errors_.size()};
+        level_errors_.size(), options_.max_distance.value > 0};
     const auto undecided = static_cast<double>(engine_->held_triangles());
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {

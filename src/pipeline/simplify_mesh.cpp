@@ -102,8 +102,13 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> si
   report.error = options.error.value * (options.error.voxels ? std::sqrt(a0) : 1);
   const std::vector<double> errors = level_errors(options.levels, report.error, std::sqrt(a0), options.triangles);
   SimplifierOptions simplifier_options;
-  simplifier_options.zone = {EdgeNumbering{}, a0, retire_cost(report.error, a0, options.triangles),
-                             options.drop_specks};
+  const double side = std::sqrt(a0);
+  simplifier_options.zone = {EdgeNumbering{},
+                             a0,
+                             retire_cost(report.error, a0, options.triangles),
+                             options.drop_specks,
+                             most_distance(options.max_distance, side),
+                             {side, side, side}};
   simplifier_options.quality = options.quality;
   simplifier_options.schedule = control.schedule;
   simplifier_options.finer = level_costs(errors, a0);

@@ -104,6 +104,12 @@ std::vector<double> level_errors(std::span<const Length> levels, double error, d
   return errors;
 }
 
+double most_distance(const Length& length, double voxel) {
+  const double distance = length.value * (length.voxels ? voxel : 1);
+  if (distance >= 0 && std::isfinite(distance)) return distance;
+  throw std::invalid_argument("max distance: expected a length of 0 or more, found " + std::to_string(distance));
+}
+
 void check_sinks(std::size_t sinks, std::size_t levels) {
   if (sinks == levels + 1) return;
   throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +

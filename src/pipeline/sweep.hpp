@@ -55,6 +55,9 @@ void report_target(const CountTarget& target, std::uint64_t asked, double unit, 
 void report_simplifier(const Simplifier& simplifier, MeshReport& report);
 void report_defects(const SurfaceDefects& defects, SurfaceReport& report);
 
+// The distance that is guaranteed, as a length; 0: none. Throws std::invalid_argument for a negative or infinite one.
+double most_distance(const Length& length, double voxel);
+
 // The errors of finer levels as lengths. Throws std::invalid_argument when they do not ascend up to `error`, or beside
 // a number of triangles.
 std::vector<double> level_errors(std::span<const Length> levels, double error, double voxel, std::uint64_t triangles);

@@ -7,6 +7,7 @@
 #include "isoweave/simplify_options.hpp"
 #include "parallel/atomics.hpp"
 #include "simplify/kernels.hpp"
+#include "simplify/reach.hpp"
 #include "simplify/simplify_totals.hpp"
 #include "simplify/star.hpp"
 
@@ -62,6 +63,9 @@ class BasicDecider {
   }  // second()'s vertex is gone then, and first()'s has the merged star
   ISOWEAVE_HD const Star& merged() const { return merged_; }
 
+  // Nothing has been decided: what decides it has not been extracted yet. Both ends are deferred.
+  ISOWEAVE_HD bool deferred() const { return deferred_; }
+
   // The edge's whole component was a tetrahedron and has gone: first()'s vertex and its three neighbours.
   ISOWEAVE_HD bool vanished() const { return vanished_; }
   ISOWEAVE_HD const DecisionCounts& counts() const { return counts_; }
@@ -99,7 +103,9 @@ class BasicDecider {
   ISOWEAVE_HD bool topology_allows();
   ISOWEAVE_HD bool keeps_sides(Vec3 x) const;
   ISOWEAVE_HD Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
-  ISOWEAVE_HD bool place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  ISOWEAVE_HD Reach reach(Vec3 x) const;
+  ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  ISOWEAVE_HD void defer();
   ISOWEAVE_HD void raise_key(CostBits cost);
   ISOWEAVE_HD void collapse(Vec3 x);
   ISOWEAVE_HD void join_rings();
@@ -119,13 +125,14 @@ class BasicDecider {
   int changed_count_ = 0;
   bool collapsed_ = false;
   bool vanished_ = false;
+  bool deferred_ = false;
   DecisionCounts counts_;
 };
 
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   changed_count_ = 0;
-  collapsed_ = vanished_ = false;
+  collapsed_ = vanished_ = deferred_ = false;
   const CostBits key = zone_.cost(edge_);
   if (zone_.options.drop_specks && is_tetrahedron()) return decide_tetrahedron(key);
   if (u_.overflow || v_.overflow || !topology_allows()) {
@@ -162,7 +169,9 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   }
   drop_shared_faces(u_, v_.vertex, u_fan_);
   Vec3 x;
-  if (!place(full, best, limit, x)) {
+  const Reach placed = place(full, best, limit, x);
+  if (placed == Reach::kUnknown) return defer();
+  if (placed == Reach::kBeyond) {
     ++counts_.postponed;
     raise_key(postponed_cost(key));
     return;
@@ -242,24 +251,49 @@ ISOWEAVE_HD Vec3 BasicDecider<Arithmetic>::best_place(const Quadric& full, Vec3 
   return strength > 0 ? best + ((offset - dot(gradient, best)) / strength) * response : best;
 }
 
-// The first position that keeps every face on its side: the best one, then the two ends and the midpoint, cheapest
-// first, as long as they cost no more than the limit.
+// Whether the faces around the merged vertex stay within the distance that is allowed.
 template <class Arithmetic>
-ISOWEAVE_HD bool BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
+ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const {
+#ifndef __CUDA_ARCH__
+  if (zone_.extracted != nullptr) return reach_of_collapse(zone_, u_, v_, zone_.vertices[u_.vertex].position + x);
+#endif
+  return Reach::kWithin;
+}
+
+// The first position that keeps every face on its side and within reach: the best one, then the two ends and the
+// midpoint, cheapest first, as long as they cost no more than the limit.
+template <class Arithmetic>
+ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
   x = best;
-  if (keeps_sides(x)) return true;
+  if (keeps_sides(x)) {
+    const Reach found = reach(x);
+    if (found != Reach::kBeyond) return found;
+  }
   const Vec3 places[3] = {Vec3{}, edge_vector_, 0.5 * edge_vector_};
   CostBits costs[3];
   for (int n = 0; n < 3; ++n) costs[n] = to_cost(evaluate(q, places[n]));
   for (int tried = 0; tried < 3; ++tried) {
     int cheapest = 0;
     for (int n = 1; n < 3; ++n) cheapest = costs[n] < costs[cheapest] ? n : cheapest;
-    if (costs[cheapest] > limit) return false;
+    if (costs[cheapest] > limit) return Reach::kBeyond;
     x = places[cheapest];
-    if (keeps_sides(x)) return true;
+    if (keeps_sides(x)) {
+      const Reach found = reach(x);
+      if (found != Reach::kBeyond) return found;
+    }
     costs[cheapest] = kTried;
   }
-  return false;
+  return Reach::kBeyond;
+}
+
+// Blocks the edge and all that conflict with it.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::defer() {
+  deferred_ = true;
+  for (const Index end : {u_.vertex, v_.vertex}) {
+    zone_.states[end] = VertexState::kDeferred;
+    publish(zone_.turn_keys[end], kUnknownTurn);
+  }
 }
 
 template <class Arithmetic>

@@ -155,6 +155,7 @@ class LocalMinima::Worker {
   void settle() {
     const Star& first = decider_.first();
     const Star& second = decider_.second();
+    if (decider_.deferred()) return;  // whoever waits for these vertices goes on to
     if (decider_.vanished()) {
       end_turns(first.vertex);
       for (std::size_t n = 0; n < 3; ++n) end_turns(first.neighbour[n]);

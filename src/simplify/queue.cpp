@@ -47,6 +47,11 @@ void Queue::decide_group() {
       continue;
     }
     decider_.decide();
+    if (decider_.deferred()) {
+      flags_[zone_.origin(h)] = 1;
+      flags_[zone_.destination(h)] = 1;
+      continue;
+    }
     last_cost_ = cost;
     if (removed() >= most_removed_) return;
     for (int n = 0; n < decider_.changed_count(); ++n) {

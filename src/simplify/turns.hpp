@@ -8,9 +8,6 @@
 
 namespace isoweave {
 
-inline constexpr Key kUnknownTurn = 0;  // comes before all others
-inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
-
 namespace turn_rules {
 
 // Offers every edge at v, once around.
@@ -72,7 +69,7 @@ ISOWEAVE_HD inline void renew_turn(const ZoneView& zone, const Star& star) {
 
 // The turn of a vertex in whatever state it is.
 ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
-  if (zone.states[v] == VertexState::kIncomplete) {
+  if (zone.states[v] == VertexState::kIncomplete || zone.states[v] == VertexState::kDeferred) {
     zone.turn_keys[v] = kUnknownTurn;
   } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
     zone.turn_keys[v] = kNoTurn;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "isoweave/error.hpp"
@@ -32,6 +33,15 @@ void sort_few(std::span<T> items, const Less& less) {
 
 }  // namespace
 
+Zone::Zone(const ZoneOptions& zone_options, std::size_t finer_levels) : levels(finer_levels) {
+  options = zone_options;
+  limit = zone_options.retire;
+  if (options.most_distance > 0) {
+    extracted_surface_ = std::make_unique<ExtractedSurface>(options.most_distance, options.cell);
+    extracted = extracted_surface_.get();
+  }
+}
+
 void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   const std::uint64_t triangle_total = triangles.size() + piece.triangles.size();
   if (triangle_total >= kWritten / 4) {
@@ -48,6 +58,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   list_settled(first_vertex + static_cast<Index>(piece.positions.size()));
   add_vertices(piece, executor);
   add_triangles(piece, executor);
+  if (extracted_surface_) know_more(piece, first_triangle, executor);
   const auto vertex_of = [&](Index n) {
     return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
   };
@@ -91,9 +102,14 @@ void Zone::set_limit(CostBits new_limit) {
   settled.first_new = settled.end = static_cast<Index>(vertices.size());
 }
 
-// The vertices that were incomplete, those beside them, and the new ones up to `end`.
+// The vertices that were incomplete, those beside them, those that were deferred, and the new ones up to `end`.
 void Zone::list_settled(Index end) {
   settled.old = front_;
+  for (Index v = 0; extracted_surface_ && v < vertices.size(); ++v) {
+    if (states[v] != VertexState::kDeferred) continue;
+    states[v] = VertexState::kComplete;
+    settled.old.push_back(v);
+  }
   for (const Index h : unkeyed_edges_) {
     settled.old.push_back(origin(h));
     settled.old.push_back(destination(h));
@@ -147,6 +163,25 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
       make_least(vertices[v].half_edge, half_edge(t, c));
     }
   });
+}
+
+// Shows the new triangles to the extracted surface, which forgets what lies too far below all that is held.
+void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vertex& vertex : vertices) {
+    if (exists(vertex.half_edge)) lowest = std::min(lowest, vertex.position.z);
+  }
+  extracted_surface_->forget_below(lowest);
+  Array<ExtractedSurface::Corners> corners;
+  corners.resize(piece.triangles.size());
+  executor.for_each(static_cast<std::int64_t>(corners.size()), kBlock, [&](std::int64_t n) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index v = triangles[first_triangle + static_cast<Index>(n)].sides[c].vertex;
+      const Vec3& p = vertices[v].position;
+      corners[static_cast<std::size_t>(n)][c] = {p.x, p.y, p.z};
+    }
+  });
+  extracted_surface_->append(corners, piece.complete_below);
 }
 
 // Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides of each
@@ -367,7 +402,8 @@ void Zone::compact(const Executor& executor) {
 std::uint64_t Zone::bytes() const {
   std::uint64_t level_bytes = 0;
   for (const Array<LevelVertex>& level : levels) level_bytes += level.capacity() * sizeof(LevelVertex);
-  return level_bytes + vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
+  return level_bytes + (extracted_surface_ ? extracted_surface_->bytes() : 0) +
+         vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
          triangle_array_.capacity() * sizeof(Triangle) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);

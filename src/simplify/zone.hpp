@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "extract/surface_piece.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
+#include "simplify/extracted_surface.hpp"
 #include "simplify/zone_view.hpp"
 
 namespace isoweave {
@@ -42,10 +44,7 @@ struct EdgeSide;
 class Zone : public ZoneView {
  public:
   // finer_levels: meshes with smaller errors that come out of the zone as well.
-  explicit Zone(const ZoneOptions& zone_options, std::size_t finer_levels = 0) : levels(finer_levels) {
-    options = zone_options;
-    limit = zone_options.retire;
-  }
+  explicit Zone(const ZoneOptions& zone_options, std::size_t finer_levels = 0);
   Zone(const Zone&) = delete;
   Zone& operator=(const Zone&) = delete;
 
@@ -80,6 +79,7 @@ class Zone : public ZoneView {
     archive.list(normal_array_);
     archive.list(triangle_array_);
     for (Array<LevelVertex>& level : levels) archive.list(level);
+    if (extracted_surface_) extracted_surface_->exchange(archive);
     archive.list(front_);
     archive.list(unkeyed_edges_);
     archive.value(limit);
@@ -96,6 +96,7 @@ class Zone : public ZoneView {
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void pair_sides(std::span<EdgeSide> sides);
+  void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void lock_split_vertices(const Executor& executor);
   std::uint32_t count_fan(Index v) const;
   std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
@@ -114,6 +115,7 @@ class Zone : public ZoneView {
   std::vector<Index> front_;          // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;  // an end incomplete
   bool turns_forgotten_ = false;
+  std::unique_ptr<ExtractedSurface> extracted_surface_;  // where distances are bounded
 };
 
 }  // namespace isoweave

@@ -33,8 +33,9 @@ ISOWEAVE_HD inline bool exists(Index h) { return h < kWritten; }
 enum class VertexState : std::uint8_t {
   kIncomplete,  // later pieces give it more triangles: no quadric yet, blocks everything near
   kComplete,
-  kFinal,   // all its edges are retired
-  kLocked,  // stays where it is; all its edges are retired from the start
+  kDeferred,  // complete; an edge of it cannot be decided before more of the surface is known: blocks as well
+  kFinal,     // all its edges are retired
+  kLocked,    // stays where it is; all its edges are retired from the start
 };
 
 inline constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
@@ -55,6 +56,9 @@ static_assert(sizeof(Vertex) == 128, "two cache lines");
 using Key = std::uint64_t;
 
 ISOWEAVE_HD inline Key make_key(CostBits cost, std::uint64_t tie) { return Key{cost} << 32 | tie >> 32; }
+inline constexpr Key kUnknownTurn = 0;  // comes before all others
+inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
+
 ISOWEAVE_HD inline CostBits cost_of(Key key) { return static_cast<CostBits>(key >> 32); }
 
 struct HalfEdge {
@@ -86,7 +90,11 @@ struct ZoneOptions {
   double a0 = 1;             // mean voxel face, length squared
   CostBits retire = 0;       // edges with a higher cost are retired
   bool drop_specks = false;  // a tetrahedron within its cost vanishes
+  double most_distance = 0;  // of any point from the extracted surface; 0: no such bound
+  Vec3 cell{};               // lengths of a box that holds a few triangles, where there is such a bound
 };
+
+class ExtractedSurface;
 
 struct ZoneView {
   std::span<Vertex> vertices;
@@ -97,6 +105,7 @@ struct ZoneView {
   std::span<Triangle> triangles;
   ZoneOptions options;
   CostBits limit = 0;  // edges with a higher cost wait until it is raised; at most options.retire
+  const ExtractedSurface* extracted = nullptr;  // where distances are bounded; on the host only
 
   ISOWEAVE_HD Index triangle_count() const { return static_cast<Index>(triangles.size()); }
 
@@ -117,7 +126,8 @@ struct ZoneView {
 
   // The star of v is one fan that can be walked around.
   ISOWEAVE_HD bool walkable(Index v) const {
-    return (states[v] == VertexState::kComplete || states[v] == VertexState::kFinal) && exists(vertices[v].half_edge);
+    const VertexState state = states[v];
+    return state != VertexState::kIncomplete && state != VertexState::kLocked && exists(vertices[v].half_edge);
   }
 
   // The half-edge that stands for its edge.

@@ -16,6 +16,7 @@ struct MemoryModel {
   bool simplifies = true;
   bool normals = false;
   std::uint64_t levels = 0;  // finer ones
+  bool bounded = false;      // distances: the extracted surface around the zone is held as well
 
   // What does not grow.
   double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
@@ -36,6 +37,7 @@ struct MemoryModel {
 
  private:
   static constexpr double kBuffers = 6e6;
+  static constexpr double kBounded = 240;  // two extracted triangles for each that is held
 
   double slices(double layers, double ring) const {
     constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
@@ -46,7 +48,9 @@ struct MemoryModel {
   double per_new() const { return (simplifies ? 65 : 115) + (normals ? 12 : 0); }
 
   // In the zone, with half a vertex each.
-  double per_held() const { return simplifies ? 160 + (normals ? 6 : 0) + 10 * static_cast<double>(levels) : 0; }
+  double per_held() const {
+    return simplifies ? 160 + (normals ? 6 : 0) + 10 * static_cast<double>(levels) + (bounded ? kBounded : 0) : 0;
+  }
 };
 
 }  // namespace isoweave

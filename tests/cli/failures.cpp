@@ -102,9 +102,6 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
 
 TEST(CliUsage, WhatIsPromisedForLaterIsRefusedNotIgnored) {
   const files::Folder folder;
-  const std::string option = "--max-distance";
-  expect_failure(folder, mesh(kSmall, {option, "1"}), 2, "isoweave: " + option + " is not available in version 0.");
-  expect_failure(folder, mesh(kSmall, {option + "=1"}), 2, option + " is not available");
   expect_failure(folder, mesh(kSmall, {"--normals", "quadric"}), 2, "--normals quadric is not available");
 }
 

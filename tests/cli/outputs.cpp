@@ -196,6 +196,31 @@ TEST(CliLevels, WrongUseIsRefused) {
   expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,0.2", "--report", "a_lod0.ply"}), 2, "a_lod0.ply");
 }
 
+TEST(CliDistance, IsGuaranteedAndIsTheErrorWhereNoneIsGiven) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"})).code, 0);
+  const Json bounded = report_of(folder, mesh({"-o", "a.ply", "--max-distance", "0.3vox", "--report", "r.json"}));
+  EXPECT_DOUBLE_EQ(bounded.at("error").get<double>(), 0.3);
+  const Json distance = Json::parse(run(folder.path(), {"compare", "a.ply", "full.ply", "--json"}).out);
+  EXPECT_LE(distance.at("a_to_b").at("max").get<double>(), 0.3 * (1 + 1e-5));
+  const Json free = report_of(folder, mesh({"-o", "b.ply", "--error", "0.3vox", "--report", "r.json"}));
+  EXPECT_NE(bounded.at("digest"), free.at("digest"));
+  const Json both = report_of(folder, mesh({"-o", "b.ply", "--max-distance", "0.3vox", "--error", "0.1vox", "--report",
+                                            "r.json", "--slab", "2", "--schedule", "rounds"}));
+  EXPECT_DOUBLE_EQ(both.at("error").get<double>(), 0.1);
+  const Json small =
+      report_of(folder, {"simplify", "full.ply", "-o", "s.ply", "--max-distance", "0.2", "--report", "r.json"});
+  EXPECT_LT(small.at("triangles"), free.at("triangles_extracted"));
+}
+
+TEST(CliDistance, WrongUseIsRefused) {
+  const files::Folder folder;
+  expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "0"}), 2, "--max-distance: expected a length above 0");
+  expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "-1"}), 2, "--max-distance");
+  expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "near"}), 2, "'near'");
+  expect_failure(folder, mesh({"-o", "a.ply", "--max-distance"}), 2, "--max-distance");
+}
+
 TEST(CliOutputs, AFolderIsNotWrittenOver) {
   const files::Folder folder;
   ASSERT_EQ(run(folder.path(), mesh({"-o", "a.precomputed"})).code, 0);

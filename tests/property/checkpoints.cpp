@@ -101,6 +101,7 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
       SurfaceCase surface{{GetParam(), {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, closed, error};
       MeshOptions options = mesh_options(surface);
       options.normals = error == 0;
+      options.max_distance = {closed ? 0.3 : 0, true};
       const MeshReport whole = run_whole(surface, options);
       InterruptedRun run(surface, options);
       const MeshReport resumed = run.finish_in_steps(1);

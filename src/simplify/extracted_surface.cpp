@@ -1,0 +1,269 @@
+#include "simplify/extracted_surface.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "simplify/rules.hpp"
+
+namespace isoweave {
+namespace {
+
+using measure::operator-;
+using measure::operator+;
+using measure::operator*;
+using measure::cross;
+using measure::dot;
+using measure::Vector;
+
+// Below this sine of an angle the normal of a triangle is rounding noise; its sides say where it is.
+constexpr double kLeastSine = 1e-12;
+constexpr double kMostCells = 64;     // of a triangle that is listed in its cells
+constexpr double kFinest = 1.0 / 16;  // of the distance
+constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
+
+Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+// Mesh files may be anywhere.
+std::int64_t cell_number(double cells) { return static_cast<std::int64_t>(std::floor(std::clamp(cells, -1e15, 1e15))); }
+
+// Puts the longest side first.
+void turn_longest_side_first(ExtractedSurface::Corners& t) {
+  std::array<double, 3> squared{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Vector side = t[(n + 1) % 3] - t[n];
+    squared[n] = dot(side, side);
+  }
+  const auto longest = std::max_element(squared.begin(), squared.end()) - squared.begin();
+  std::rotate(t.begin(), t.begin() + longest, t.end());
+}
+
+// Whether a triangle, seen from a point, comes within a distance, squared. Most often a corner does. Else the point may
+// lie above the triangle or beside a side of it; no quotient is needed to know.
+bool comes_within(double most, const ExtractedSurface::Corners& seen) {
+  const auto& [a, b, c] = seen;
+  if (dot(a, a) <= most || dot(b, b) <= most || dot(c, c) <= most) return true;
+  const Vector ab = b - a;
+  const Vector ac = c - a;
+  const Vector normal = cross(ab, ac);
+  const double squared = dot(normal, normal);
+  const double height = dot(a, normal);
+  const bool flat = squared > kLeastSine * kLeastSine * dot(ab, ab) * dot(ac, ac);
+  if (flat && height * height > most * squared) return false;
+  bool above = flat;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Vector& from = seen[n];
+    const Vector side = seen[(n + 1) % 3] - from;
+    if (flat && dot(normal, cross(from, side)) >= 0) continue;
+    above = false;
+    const double along = -dot(from, side);
+    const double length = dot(side, side);
+    if (along > 0 && along < length && dot(from, from) * length - along * along <= most * length) return true;
+  }
+  return above;
+}
+
+bool is_within(double most, const Vector& p, const ExtractedSurface::Corners& triangle) {
+  return comes_within(most, {triangle[0] - p, triangle[1] - p, triangle[2] - p});
+}
+
+}  // namespace
+
+ExtractedSurface::ExtractedSurface(double most, const Vec3& cell)
+    : most_(most), cell_{std::max(cell.x, most / 2), std::max(cell.y, most / 2), std::max(cell.z, most / 2)} {}
+
+ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners) {
+  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), 0};
+  for (const Vector& corner : corners) {
+    const Vector to = corner - part.centre;
+    part.radius = std::max(part.radius, dot(to, to));
+  }
+  part.radius = std::sqrt(part.radius);
+  return part;
+}
+
+ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p) const {
+  return {cell_number(p[0] / cell_[0]), cell_number(p[1] / cell_[1]), cell_number(p[2] / cell_[2])};
+}
+
+// Cells far apart may share a key: they are looked into together.
+std::uint64_t ExtractedSurface::key_of(const Cell& cell) {
+  constexpr std::uint64_t kMask = (1U << 21) - 1;
+  const auto part = [&](std::size_t n) { return static_cast<std::uint64_t>(cell[n]) & kMask; };
+  return part(2) << 42 | part(1) << 21 | part(0);
+}
+
+// Calls visit(cell) for the cells of a triangle's box, of which the upper borders are not a part; false when they are
+// too many.
+template <class Visit>
+bool ExtractedSurface::each_cell(const Corners& triangle, const Visit& visit) const {
+  Cell first{};
+  Cell last{};
+  double cells = 1;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto [low, high] = std::minmax({triangle[0][n], triangle[1][n], triangle[2][n]});
+    first[n] = cell_number(low / cell_[n]);
+    last[n] = std::max(first[n], -cell_number(-high / cell_[n]) - 1);
+    cells *= static_cast<double>(last[n] - first[n] + 1);
+  }
+  if (!(cells <= kMostCells)) return false;
+  Cell cell{};
+  for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
+      for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) visit(cell);
+    }
+  }
+  return true;
+}
+
+void ExtractedSurface::append(const Array<Corners>& triangles, double complete_below) {
+  complete_below_ = complete_below;
+  if (triangles.empty()) return;
+  Piece& piece = pieces_.emplace_back();
+  std::vector<Place> places;
+  std::vector<std::uint32_t> large;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    piece.top = std::max({piece.top, triangles[t][0][2], triangles[t][1][2], triangles[t][2][2]});
+    const bool listed = each_cell(triangles[t], [&](const Cell& cell) {
+      piece.first_layer = std::min(piece.first_layer, cell[2]);
+      piece.last_layer = std::max(piece.last_layer, cell[2]);
+      places.push_back({key_of(cell), t});
+    });
+    if (!listed) large.push_back(t);
+  }
+  make_slots(piece, places);
+  piece.triangles.resize(places.size() + large.size());
+  std::vector<std::uint32_t> filled(piece.slots.size(), 0);
+  for (const Place& place : places) {
+    const std::size_t at = slot_of(piece, place.key);
+    piece.triangles[piece.slots[at].first + filled[at]++] = triangles[place.triangle];
+  }
+  piece.listed = places.size();
+  for (std::size_t n = 0; n < large.size(); ++n) piece.triangles[piece.listed + n] = triangles[large[n]];
+}
+
+// A slot for each cell, with room for its triangles. The triangles of a cell come one after the other, as a rule.
+void ExtractedSurface::make_slots(Piece& piece, std::span<const Place> places) {
+  std::size_t cells = 1;
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    if (places[n].key != places[n - 1].key) ++cells;
+  }
+  piece.slots.assign(std::bit_ceil(2 * cells), {});
+  for (const Place& place : places) {
+    Slot& slot = piece.slots[slot_of(piece, place.key)];
+    slot.key = place.key;
+    ++slot.count;
+  }
+  std::uint32_t first = 0;
+  for (Slot& slot : piece.slots) slot.first = std::exchange(first, first + slot.count);
+}
+
+// The slot of a key, or the free one where it belongs.
+std::size_t ExtractedSurface::slot_of(const Piece& piece, std::uint64_t key) {
+  const std::size_t mask = piece.slots.size() - 1;
+  std::size_t at = static_cast<std::size_t>(mix_bits(key)) & mask;
+  while (piece.slots[at].count > 0 && piece.slots[at].key != key) at = (at + 1) & mask;
+  return at;
+}
+
+void ExtractedSurface::forget_below(double z) {
+  const double lowest = (layer_of(z) - kShift - 1) * cell_[2] - most_;  // a layer more than that of z, for rounding
+  std::erase_if(pieces_, [&](const Piece& piece) { return piece.top < lowest; });
+}
+
+std::uint64_t ExtractedSurface::bytes() const {
+  std::uint64_t sum = 0;
+  for (const Piece& piece : pieces_) {
+    sum += piece.triangles.capacity() * sizeof(Corners) + piece.slots.capacity() * sizeof(Slot);
+  }
+  return sum;
+}
+
+// What is within the distance of one of these triangles: all of the part, or its centre.
+ExtractedSurface::Found ExtractedSurface::find_among(const Part& part, std::span<const Corners> triangles) const {
+  const double most = most_ * most_;
+  Found found = Found::kNothing;
+  for (const Corners& triangle : triangles) {
+    const bool all = std::all_of(part.corners.begin(), part.corners.end(),
+                                 [&](const Vector& corner) { return is_within(most, corner, triangle); });
+    if (all) return Found::kAll;
+    if (found == Found::kNothing && is_within(most, part.centre, triangle)) found = Found::kCentre;
+  }
+  return found;
+}
+
+ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, const Cell& cell) const {
+  Found found = Found::kNothing;
+  const std::uint64_t key = key_of(cell);
+  for (const Piece& piece : pieces_) {
+    if (cell[2] < piece.first_layer || cell[2] > piece.last_layer) continue;
+    const Slot& slot = piece.slots[slot_of(piece, key)];
+    found = std::max(found, find_among(part, {piece.triangles.data() + slot.first, slot.count}));
+    if (found == Found::kAll) break;
+  }
+  return found;
+}
+
+// In the cells that are `ring` cells away from that of the centre.
+ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring) const {
+  // Squared distance along an axis to a cell.
+  const auto gap = [&](std::size_t n, std::int64_t number) {
+    const double low = static_cast<double>(number) * cell_[n];
+    const double outside = std::max({low - part.centre[n], 0.0, part.centre[n] - (low + cell_[n])});
+    return outside * outside;
+  };
+  Found found = Found::kNothing;
+  Cell cell{};
+  for (cell[2] = centre[2] - ring; cell[2] <= centre[2] + ring; ++cell[2]) {
+    for (cell[1] = centre[1] - ring; cell[1] <= centre[1] + ring; ++cell[1]) {
+      const bool side = std::max(std::abs(cell[2] - centre[2]), std::abs(cell[1] - centre[1])) == ring;
+      const std::int64_t step = side ? 1 : 2 * ring;
+      for (cell[0] = centre[0] - ring; cell[0] <= centre[0] + ring; cell[0] += step) {
+        if (gap(0, cell[0]) + gap(1, cell[1]) + gap(2, cell[2]) > most_ * most_) continue;
+        found = std::max(found, find_in_cell(part, cell));
+        if (found == Found::kAll) return found;
+      }
+    }
+  }
+  return found;
+}
+
+// Looks at the cells around the centre, ring by ring. Of a part that can be cut some more, rings behind the first one
+// that is near are left out: the surface farther away will do no better.
+ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
+  Found found = Found::kNothing;
+  for (const Piece& piece : pieces_) {
+    found = std::max(found,
+                     find_among(part, std::span(piece.triangles.data(), piece.triangles.size()).subspan(piece.listed)));
+  }
+  const Cell centre = cell_of(part.centre);
+  const double smallest = *std::min_element(cell_.begin(), cell_.end());
+  const auto rings = static_cast<std::int64_t>(std::ceil(most_ / smallest));
+  for (std::int64_t ring = 0; ring <= rings && found != Found::kAll; ++ring) {
+    if (found == Found::kCentre && part.radius > kSmall * most_) break;
+    found = std::max(found, find_in_ring(part, centre, ring));
+  }
+  return found;
+}
+
+Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  std::array<Corners, 128> parts;                 // cut in depth: one sibling waits for each cut
+  const double promising = most_ + cell_[0] / 2;  // larger parts are seldom near one triangle: they are cut at once
+  std::size_t open = 0;
+  parts[open++] = {vector_of(a), vector_of(b), vector_of(c)};
+  while (open > 0) {
+    Part part = part_of(parts[--open]);
+    const Found found = part.radius > promising ? Found::kCentre : find(part);
+    if (found == Found::kAll) continue;
+    if (part.centre[2] + most_ > complete_below_) return Reach::kUnknown;
+    if (found == Found::kNothing || part.radius <= kFinest * most_) return Reach::kBeyond;
+    if (open + 2 > parts.size()) return Reach::kBeyond;
+    turn_longest_side_first(part.corners);
+    const Vector middle = 0.5 * (part.corners[0] + part.corners[1]);
+    parts[open++] = {part.corners[0], middle, part.corners[2]};
+    parts[open++] = {middle, part.corners[1], part.corners[2]};
+  }
+  return Reach::kWithin;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,203 @@
+// Whether triangles stay within a distance of the extracted surface, against distances computed point by point.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "simplify/extracted_surface.hpp"
+
+namespace isoweave {
+namespace {
+
+using Corners = ExtractedSurface::Corners;
+using measure::operator+;
+using measure::operator*;
+using measure::Vector;
+
+constexpr double kAll = std::numeric_limits<double>::infinity();
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Vector point(double low, double high) { return {number(low, high), number(low, high), number(low, high)}; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+Array<Corners> array_of(const std::vector<Corners>& triangles) {
+  Array<Corners> array;
+  array.resize(triangles.size());
+  std::copy(triangles.begin(), triangles.end(), array.begin());
+  return array;
+}
+
+// A rough sheet over [0, 6] x [0, 6], with some degenerate triangles and a large one.
+std::vector<Corners> sheet(unsigned seed) {
+  Random random(seed);
+  std::vector<std::vector<double>> height(13, std::vector<double>(13));
+  for (auto& row : height) {
+    for (double& z : row) z = random.number(2.5, 3.5);
+  }
+  const auto at = [&](std::size_t i, std::size_t j) {
+    return Vector{0.5 * static_cast<double>(i), 0.5 * static_cast<double>(j), height[i][j]};
+  };
+  std::vector<Corners> triangles;
+  for (std::size_t i = 0; i < 12; ++i) {
+    for (std::size_t j = 0; j < 12; ++j) {
+      triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+      triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  triangles.push_back({Vector{1, 1, 5}, Vector{2, 2, 5}, Vector{3, 3, 5}});
+  triangles.push_back({Vector{4, 4, 5}, Vector{4, 4, 5}, Vector{4, 4, 5}});
+  triangles.push_back({Vector{-20, -20, 1}, Vector{40, -20, 1}, Vector{-20, 40, 1}});
+  return triangles;
+}
+
+double distance_to(const std::vector<Corners>& surface, const Vector& p) {
+  double least = kAll;
+  for (const Corners& triangle : surface) least = std::min(least, measure::squared_distance(p, triangle));
+  return std::sqrt(least);
+}
+
+// The largest distance over points of a triangle.
+double farthest(const std::vector<Corners>& surface, const Corners& t) {
+  constexpr int kSteps = 24;
+  double most = 0;
+  for (int u = 0; u <= kSteps; ++u) {
+    for (int v = 0; v + u <= kSteps; ++v) {
+      const double a = static_cast<double>(u) / kSteps;
+      const double b = static_cast<double>(v) / kSteps;
+      most = std::max(most, distance_to(surface, a * t[0] + b * t[1] + (1 - a - b) * t[2]));
+    }
+  }
+  return most;
+}
+
+Vec3 vec(const Vector& p) { return {p[0], p[1], p[2]}; }
+
+Reach reach(const ExtractedSurface& surface, const Corners& t) {
+  return surface.reach(vec(t[0]), vec(t[1]), vec(t[2]));
+}
+
+Corners random_triangle(Random& random) {
+  const Vector first = random.point(1, 5);
+  const double size = random.number(0.05, 2.5);
+  return {first, first + random.point(-size, size), first + random.point(-size, size)};
+}
+
+TEST(ExtractedSurface, SaysWhatDistancesSay) {
+  for (const double most : {0.1, 0.4, 1.0}) {
+    const std::vector<Corners> triangles = sheet(1);
+    ExtractedSurface surface(most, {0.5, 0.5, 0.7});
+    surface.append(array_of(triangles), kAll);
+    Random random(2);
+    int within = 0;
+    int beyond = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      const Corners triangle = random_triangle(random);
+      const double distance = farthest(triangles, triangle);
+      const Reach found = reach(surface, triangle);
+      ASSERT_NE(found, Reach::kUnknown);
+      if (found == Reach::kWithin) {
+        ++within;
+        EXPECT_LE(distance, most * (1 + 1e-9)) << "trial " << trial << ", within " << most;
+      } else {
+        ++beyond;
+        // The points tried are less than a 24th of a side apart.
+        EXPECT_GT(distance, most * 15 / 16 - 0.15) << "trial " << trial << ", within " << most;
+      }
+    }
+    EXPECT_GT(within, 0);
+    EXPECT_GT(beyond, 0);
+  }
+}
+
+// Flat surfaces at a distance that is known.
+TEST(ExtractedSurface, IsExactToASixteenth) {
+  std::vector<Corners> plane;
+  for (int i = -5; i < 15; ++i) {
+    for (int j = -5; j < 15; ++j) {
+      const double x = i;
+      const double y = j;
+      plane.push_back({Vector{x, y, 0}, Vector{x + 1, y, 0}, Vector{x, y + 1, 0}});
+      plane.push_back({Vector{x + 1, y, 0}, Vector{x + 1, y + 1, 0}, Vector{x, y + 1, 0}});
+    }
+  }
+  ExtractedSurface surface(1, {1, 1, 1});
+  surface.append(array_of(plane), kAll);
+  const auto at = [&](double z) { return reach(surface, {Vector{0.2, 0.3, z}, Vector{7.1, 0.4, z}, Vector{3, 8, z}}); };
+  EXPECT_EQ(at(0), Reach::kWithin);
+  EXPECT_EQ(at(0.93), Reach::kWithin);
+  EXPECT_EQ(at(-0.93), Reach::kWithin);
+  EXPECT_EQ(at(1.0001), Reach::kBeyond);
+  EXPECT_EQ(at(-1.0001), Reach::kBeyond);
+}
+
+// What is known of a part of the surface holds for all of it.
+TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
+  std::vector<Corners> triangles = sheet(3);
+  for (Corners& t : triangles) {
+    for (Vector& p : t) std::swap(p[1], p[2]);  // upright
+  }
+  std::sort(triangles.begin(), triangles.end(), [](const Corners& a, const Corners& b) {
+    return a[0][2] + a[1][2] + a[2][2] < b[0][2] + b[1][2] + b[2][2];
+  });
+  for (const double most : {0.2, 0.8}) {
+    ExtractedSurface whole(most, {0.5, 0.5, 0.5});
+    whole.append(array_of(triangles), kAll);
+    ExtractedSurface pieces(most, {0.5, 0.5, 0.5});
+    int unknown = 0;
+    for (std::size_t begin = 0; begin < triangles.size(); begin += 40) {
+      const std::size_t end = std::min(begin + 40, triangles.size());
+      double next = kAll;
+      for (std::size_t n = end; n < triangles.size(); ++n) {
+        for (const Vector& p : triangles[n]) next = std::min(next, p[2]);
+      }
+      pieces.append(array_of({triangles.begin() + static_cast<std::ptrdiff_t>(begin),
+                              triangles.begin() + static_cast<std::ptrdiff_t>(end)}),
+                    next);
+      Random random(4);
+      for (int trial = 0; trial < 300; ++trial) {
+        const Corners triangle = random_triangle(random);
+        const Reach found = reach(pieces, triangle);
+        if (found == Reach::kUnknown) {
+          ++unknown;
+        } else {
+          EXPECT_EQ(found, reach(whole, triangle)) << trial;
+        }
+      }
+    }
+    EXPECT_GT(unknown, 0);
+  }
+}
+
+TEST(ExtractedSurface, ForgetsOnlyWhatNobodyAsksAbout) {
+  constexpr double kMost = 0.3;
+  ExtractedSurface all(kMost, {0.5, 0.5, 0.5});
+  ExtractedSurface recent(kMost, {0.5, 0.5, 0.5});
+  for (int k = 0; k < 20; ++k) {
+    std::vector<Corners> layer = sheet(static_cast<unsigned>(k));
+    layer.resize(layer.size() - 3);
+    for (Corners& t : layer) {
+      for (Vector& p : t) p[2] += k - 2.5;
+    }
+    all.append(array_of(layer), k + 1);
+    recent.append(array_of(layer), k + 1);
+  }
+  const std::uint64_t before = recent.bytes();
+  recent.forget_below(10);
+  EXPECT_LT(recent.bytes(), before * 3 / 4);
+  Random random(6);
+  for (int trial = 0; trial < 300; ++trial) {
+    Corners triangle = random_triangle(random);
+    double low = kAll;
+    for (const Vector& p : triangle) low = std::min(low, p[2]);
+    for (Vector& p : triangle) p[2] += 10 - low;
+    EXPECT_EQ(reach(recent, triangle), reach(all, triangle));
+  }
+}
+
+}  // namespace
+}  // namespace isoweave
