@@ -1,4 +1,5 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
+#include <cmath>
 #include <memory>
 
 #include "isoweave/measure.hpp"
@@ -15,6 +16,15 @@ struct CheckArguments {
   std::string path;
   bool json = false;
 };
+
+std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
+
+// The share of the triangles that have one below 5 degrees.
+std::string sharp_text(const TriangleAngles& angles) {
+  if (angles.triangles == 0) return "none";
+  return fmt::format("in {:.3g} %",
+                     100 * static_cast<double>(angles.under_5_degrees) / static_cast<double>(angles.triangles));
+}
 
 std::string check_text(const MeshCheck& check, const std::string& path) {
   std::string text =
@@ -35,6 +45,9 @@ std::string check_text(const MeshCheck& check, const std::string& path) {
   line("Euler number", std::to_string(check.euler));
   line("area", fmt::format("{:.9g}", check.area));
   line("volume", fmt::format("{:.9g}", check.volume));
+  line("smallest angle", degrees_text(check.angles.smallest));
+  line("largest angle", degrees_text(check.angles.largest));
+  line("angles under 5 degrees", sharp_text(check.angles));
   line("digest", digest_text(check.digest));
   return text;
 }

@@ -1,13 +1,26 @@
 // Measures of finished meshes: invariants, digest, distance. They trust nothing but the triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 
 #include "isoweave/mesh.hpp"
 
 namespace isoweave {
+
+// Angles of triangles in degrees. A triangle without area has angles of 0 and 180.
+struct TriangleAngles {
+  std::uint64_t triangles = 0;                                 // of which the rest tells
+  double smallest = std::numeric_limits<double>::quiet_NaN();  // of all angles; not a number where there is no triangle
+  double largest = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t under_5_degrees = 0;  // triangles with an angle below 5 degrees
+
+  // Triangles by their smallest angle, in ten equal parts of [0, 60]; an angle between two parts is in the upper one.
+  std::array<std::uint64_t, 10> smallest_in_bins{};
+};
 
 // Degenerate triangles are counted as triangles and in the digest; everything else is about the others.
 struct MeshCheck {
@@ -24,10 +37,12 @@ struct MeshCheck {
   std::int64_t euler = 0;        // vertices - edges + triangles, without degenerate ones
   double area = 0;               // length squared
   double volume = 0;             // enclosed, signed: positive when triangles face outwards; meaningful when closed
+  TriangleAngles angles;
   std::uint64_t digest = 0;
 };
 
-// Counts by sorting edges: O(n log n) time, about 80 bytes per triangle. Same result on every machine.
+// Counts by sorting edges: O(n log n) time, about 80 bytes per triangle. Same result on every machine,
+// but for the last digits of the two angles in degrees.
 // Throws std::invalid_argument when a triangle refers to a vertex that the mesh does not have.
 MeshCheck check_mesh(const TriangleMesh& mesh);
 

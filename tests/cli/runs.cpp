@@ -117,7 +117,9 @@ TEST(CliReport, AgreesWithTheFileInEveryFormat) {
     succeed(folder, {"mesh", "generate:noise:32x32x32:float32", "-o", name, "--iso", "0.5", "--report", "r.json"});
     const Json report = json_file(folder / "r.json");
     const Json check = Json::parse(succeed(folder, {"check", name, "--json"}).out);
-    expect_keys(check, {"/misoriented_edges", "/degenerate_triangles", "/unused_vertices", "/area", "/volume"});
+    expect_keys(check, {"/misoriented_edges", "/degenerate_triangles", "/unused_vertices", "/area", "/volume",
+                        "/angles/smallest", "/angles/largest", "/angles/triangles_under_5",
+                        "/angles/smallest_histogram/triangles"});
     for (const std::string key : {"digest", "triangles", "vertices", "open_edges", "nonmanifold_edges",
                                   "nonmanifold_vertices", "components", "euler"}) {
       // A corner that two parts touch in is one vertex in a format without indices.
