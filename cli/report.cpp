@@ -122,6 +122,12 @@ Json check_json(const MeshCheck& check, const std::string& path) {
           {"digest", digest_text(check.digest)}};
 }
 
+Json self_intersections_json(const SelfIntersections& found) {
+  return {{"pairs", found.pairs()},   {"apart", found.apart},         {"at_vertex", found.at_vertex},
+          {"at_edge", found.at_edge}, {"triangles", found.triangles}, {"without_area", found.without_area},
+          {"first", found.first}};
+}
+
 Json distances_json(const MeshDistance& distance, double unit) {
   const auto one_way = [&](const OneWayDistance& way) {
     return distance_json(way.mean / unit, way.rms / unit, way.max / unit);

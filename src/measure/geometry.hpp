@@ -42,4 +42,15 @@ inline void require_indices_in_range(const TriangleMesh& mesh) {
   }
 }
 
+// What a TriangleTree can be made of, but for a mesh without triangles.
+inline void require_tree_possible(const TriangleMesh& mesh) {
+  if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
+  require_indices_in_range(mesh);
+  for (const Point& p : mesh.vertices) {
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
+      throw std::invalid_argument("a vertex has a coordinate that is not finite");
+    }
+  }
+}
+
 }  // namespace isoweave::measure
