@@ -118,7 +118,7 @@ std::vector<std::uint64_t> histogram_of(const std::vector<double>& distances, st
 
 void check_arguments(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw std::invalid_argument("expected a mesh with triangles, found none");
-  measure::require_tree_possible(mesh);
+  measure::require_finite_mesh(mesh);
 }
 
 }  // namespace

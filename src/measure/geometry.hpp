@@ -42,8 +42,8 @@ inline void require_indices_in_range(const TriangleMesh& mesh) {
   }
 }
 
-// What a TriangleTree can be made of, but for a mesh without triangles.
-inline void require_tree_possible(const TriangleMesh& mesh) {
+// Finite, and with numbers of triangles that fit into 32 bits.
+inline void require_finite_mesh(const TriangleMesh& mesh) {
   if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
   require_indices_in_range(mesh);
   for (const Point& p : mesh.vertices) {

@@ -123,7 +123,7 @@ class Counter {
 }  // namespace
 
 SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t listed, int threads) {
-  measure::require_tree_possible(mesh);
+  measure::require_finite_mesh(mesh);
   if (mesh.triangles.empty()) return {};
   return Counter(mesh, listed, Executor(threads)).run();
 }

@@ -38,7 +38,7 @@ TEST(CliHelp, SaysVersionAndVerbs) {
   EXPECT_EQ(succeed(folder, {"--version"}).out, "isoweave " ISOWEAVE_VERSION "\n");
   const Result help = succeed(folder, {"--help"});
   EXPECT_EQ(help.err, "");
-  for (const std::string verb : {"mesh", "simplify", "info", "check", "compare", "generate"}) {
+  for (const std::string verb : {"mesh", "simplify", "info", "check", "compare", "render", "generate"}) {
     EXPECT_NE(help.out.find("\n  " + verb), std::string::npos) << verb;
     EXPECT_NE(succeed(folder, {verb, "--help"}).out.find("--help"), std::string::npos) << verb;
   }
