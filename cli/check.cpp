@@ -1,4 +1,5 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
+#include <cmath>
 #include <memory>
 
 #include "isoweave/measure.hpp"
@@ -11,10 +12,21 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr std::size_t kListedPairs = 10;
+
 struct CheckArguments {
-  std::string path;
-  bool json = false;
+  std::string path, threads = "all";
+  bool self_intersections = false, json = false;
 };
+
+std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
+
+// The share of the triangles that have one below 5 degrees.
+std::string sharp_text(const TriangleAngles& angles) {
+  if (angles.triangles == 0) return "none";
+  return fmt::format("in {:.3g} %",
+                     100 * static_cast<double>(angles.under_5_degrees) / static_cast<double>(angles.triangles));
+}
 
 std::string check_text(const MeshCheck& check, const std::string& path) {
   std::string text =
@@ -35,14 +47,44 @@ std::string check_text(const MeshCheck& check, const std::string& path) {
   line("Euler number", std::to_string(check.euler));
   line("area", fmt::format("{:.9g}", check.area));
   line("volume", fmt::format("{:.9g}", check.volume));
+  line("smallest angle", degrees_text(check.angles.smallest));
+  line("largest angle", degrees_text(check.angles.largest));
+  line("angles under 5 degrees", sharp_text(check.angles));
   line("digest", digest_text(check.digest));
   return text;
 }
 
+std::string self_intersections_text(const SelfIntersections& found) {
+  std::string text;
+  const auto line = [&](std::string_view name, std::uint64_t count) {
+    text += fmt::format("{:<22}{:>18}\n", name, grouped(count));
+  };
+  line("self-intersections", found.pairs());
+  line("  no common vertex", found.apart);
+  line("  beyond a vertex", found.at_vertex);
+  line("  beyond an edge", found.at_edge);
+  line("triangles in them", found.triangles);
+  line("triangles without area", found.without_area);
+  if (found.first.empty()) return text;
+  text += found.pairs() > found.first.size() ? "first pairs of triangles, numbered from 0:\n"
+                                             : "pairs of triangles, numbered from 0:\n";
+  for (const auto& [a, b] : found.first) text += fmt::format("  {} {}\n", a, b);
+  return text;
+}
+
 void run_check(const CheckArguments& arguments) {
+  const int threads = parse_threads(arguments.threads);
   exit_on_signal();
-  const MeshCheck check = check_mesh(read_mesh(arguments.path));
-  print_out(arguments.json ? json_text(check_json(check, arguments.path)) : check_text(check, arguments.path));
+  const TriangleMesh mesh = read_mesh(arguments.path);
+  const MeshCheck check = check_mesh(mesh);
+  Json json = check_json(check, arguments.path);
+  std::string text = check_text(check, arguments.path);
+  if (arguments.self_intersections) {
+    const SelfIntersections found = count_self_intersections(mesh, kListedPairs, threads);
+    json["self_intersections"] = self_intersections_json(found);
+    text += self_intersections_text(found);
+  }
+  print_out(arguments.json ? json_text(json) : text);
 }
 
 }  // namespace
@@ -51,6 +93,9 @@ void add_check_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
   verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_flag("--self-intersections", arguments->self_intersections,
+                 "Count the pairs of triangles that meet beyond what they share, exactly");
+  verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_check(*arguments); });
 }

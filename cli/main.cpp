@@ -19,6 +19,7 @@ Examples:
   isoweave mesh foot_256x256x256_uint8.raw -o foot.stl --iso auto
   isoweave check bone.ply
   isoweave compare bone.ply reference.ply --voxel 0.5
+  isoweave render bone.ply -o bone.png
   isoweave view bone.ply
 
 Exit codes: 0 done, 2 usage, 3 bad input, 4 cannot write, 5 not enough memory, 6 device, 130 interrupted.
@@ -45,6 +46,7 @@ int run(const std::vector<std::string>& arguments) {
   add_info_verb(app);
   add_check_verb(app);
   add_compare_verb(app);
+  add_render_verb(app);
   add_view_verb(app);
   add_generate_verb(app);
   try {

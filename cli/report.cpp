@@ -24,6 +24,13 @@ Json sweep_json(const std::vector<SlabRecord>& sweep) {
 
 Json distance_json(double mean, double rms, double max) { return {{"mean", mean}, {"rms", rms}, {"max", max}}; }
 
+Json angles_json(const TriangleAngles& angles) {
+  return {{"smallest", number_or_null(angles.smallest)},
+          {"largest", number_or_null(angles.largest)},
+          {"triangles_under_5", angles.under_5_degrees},
+          {"smallest_histogram", {{"low", 0}, {"high", 60}, {"triangles", angles.smallest_in_bins}}}};
+}
+
 }  // namespace
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -116,7 +123,14 @@ Json check_json(const MeshCheck& check, const std::string& path) {
           {"euler", check.euler},
           {"area", number_or_null(check.area)},
           {"volume", number_or_null(check.volume)},
+          {"angles", angles_json(check.angles)},
           {"digest", digest_text(check.digest)}};
+}
+
+Json self_intersections_json(const SelfIntersections& found) {
+  return {{"pairs", found.pairs()},   {"apart", found.apart},         {"at_vertex", found.at_vertex},
+          {"at_edge", found.at_edge}, {"triangles", found.triangles}, {"without_area", found.without_area},
+          {"first", found.first}};
 }
 
 Json distances_json(const MeshDistance& distance, double unit) {

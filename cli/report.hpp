@@ -36,6 +36,8 @@ Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
 // What a mesh is, by its triangles alone.
 Json check_json(const MeshCheck& check, const std::string& path);
 
+Json self_intersections_json(const SelfIntersections& found);
+
 // Distances between two meshes A and B, in lengths of `unit`.
 Json distances_json(const MeshDistance& distance, double unit);
 

@@ -67,9 +67,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
-  if (arguments.stop.error.empty() && !arguments.stop.has_number() && !arguments.stop.has_levels()) {
-    throw CLI::RequiredError("--error");
-  }
+  if (!arguments.stop.given()) throw CLI::RequiredError("--error");
   SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
   options.max_distance = stop_distance(arguments.stop, "");
   options.levels = finer_levels(arguments.stop, "");

@@ -17,6 +17,8 @@ struct StopOptions {
   std::string lods;          // errors with commas between them
   std::string max_distance;  // empty: none
 
+  // Anything that says where to stop.
+  bool given() const { return !error.empty() || has_number() || has_levels() || !max_distance.empty(); }
   bool has_number() const { return !triangles.empty() || !ratio.empty(); }
   bool has_levels() const { return !lods.empty(); }
 };

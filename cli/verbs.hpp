@@ -10,6 +10,7 @@ void add_simplify_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);
 void add_check_verb(CLI::App& app);
 void add_compare_verb(CLI::App& app);
+void add_render_verb(CLI::App& app);
 void add_view_verb(CLI::App& app);
 void add_generate_verb(CLI::App& app);
 

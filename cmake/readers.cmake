@@ -1,6 +1,6 @@
 # Formats whose libraries may be missing. Each option is AUTO (take the format in if the library is there), ON (stop
-# without it) or OFF. What is left out is compiled as an error that says so (src/volume/not_built.cpp and
-# src/write/not_built.cpp).
+# without it) or OFF. What is left out is compiled as an error that says so (not_built.cpp in
+# src/volume, src/write and src/render).
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
@@ -22,14 +22,14 @@ macro(isoweave_reader name sources target package)
   if(NOT ISOWEAVE_HAS_${name})
     foreach(source ${sources})
       list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source}
-           ${PROJECT_SOURCE_DIR}/src/write/${source})
+           ${PROJECT_SOURCE_DIR}/src/write/${source} ${PROJECT_SOURCE_DIR}/src/render/${source})
     endforeach()
   endif()
 endmacro()
 
 # Messages of libtiff are taken per file since 4.5.
 isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIFF::TIFF TIFF 4.5)
-isoweave_reader(PNG png.cpp PNG::PNG PNG)
+isoweave_reader(PNG "png.cpp;write_png.cpp" PNG::PNG PNG)
 # Plain DICOM samples need no library.
 isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
 isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)

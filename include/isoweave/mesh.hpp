@@ -27,6 +27,10 @@ struct TriangleMesh {
 // kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always.
 TriangleMesh read_mesh(const std::string& path);
 
+// The same, and the property `quality` of the vertices of a PLY file, which write_ply_with_quality writes: a number for
+// each vertex, not finite where it is no float32. Files without it leave `quality` empty.
+TriangleMesh read_mesh_with_quality(const std::string& path, std::vector<float>& quality);
+
 // Where finished pieces of a mesh go. Not thread-safe. mesh_volume calls append() from a thread of its own while it
 // makes the next piece, unless it was given one thread only; finish() and mark() are called when no append() is
 // underway.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
+#include "measure/angles.hpp"
 #include "measure/geometry.hpp"
 
 namespace isoweave {
@@ -179,14 +180,17 @@ class Checker {
     if (mesh_.triangles.empty()) return;
     const measure::Vector apex = measure::corners_of(mesh_, 0)[0];
     double six_volumes = 0;
+    measure::AngleSurvey angles;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const measure::TriangleCorners c = measure::corners_of(mesh_, t);
       result_.area += measure::area_of(c);
       six_volumes += measure::dot(c[0] - apex, measure::cross(c[1] - apex, c[2] - apex));
       const Triangle& v = mesh_.triangles[t];
+      if (!is_degenerate(v)) angles.add(c);
       result_.digest += triangle_digest(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
     }
     result_.volume = six_volumes / 6;
+    result_.angles = angles.result();
   }
 
   const TriangleMesh& mesh_;

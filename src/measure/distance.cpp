@@ -118,13 +118,7 @@ std::vector<std::uint64_t> histogram_of(const std::vector<double>& distances, st
 
 void check_arguments(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw std::invalid_argument("expected a mesh with triangles, found none");
-  if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
-  measure::require_indices_in_range(mesh);
-  for (const Point& p : mesh.vertices) {
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
-      throw std::invalid_argument("a vertex has a coordinate that is not finite");
-    }
-  }
+  measure::require_finite_mesh(mesh);
 }
 
 }  // namespace

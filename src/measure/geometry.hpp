@@ -42,4 +42,15 @@ inline void require_indices_in_range(const TriangleMesh& mesh) {
   }
 }
 
+// Finite, and with numbers of triangles that fit into 32 bits.
+inline void require_finite_mesh(const TriangleMesh& mesh) {
+  if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
+  require_indices_in_range(mesh);
+  for (const Point& p : mesh.vertices) {
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
+      throw std::invalid_argument("a vertex has a coordinate that is not finite");
+    }
+  }
+}
+
 }  // namespace isoweave::measure

@@ -48,6 +48,11 @@ void TriangleTree::Box::add(const Point& p) {
   }
 }
 
+bool TriangleTree::Box::meets(const Box& other) const {
+  return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] && other.low[1] <= high[1] &&
+         low[2] <= other.high[2] && other.low[2] <= high[2];
+}
+
 double TriangleTree::Box::squared_distance_from(const Vector& p) const {
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -62,12 +67,21 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, const Executor& executor) :
   std::vector<Item> items = items_of(mesh, executor);
   for (std::size_t level = 0; level < depth_; ++level) split_level(items, level, executor);
   corners_.resize(count_);
-  executor.for_each(static_cast<std::int64_t>(count_), kGrain, [&](std::int64_t i) {
-    const auto& t = mesh.triangles[items[static_cast<std::size_t>(i)].triangle];
-    corners_[static_cast<std::size_t>(i)] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  numbers_.resize(count_);
+  executor.for_each(static_cast<std::int64_t>(count_), kGrain, [&](std::int64_t n) {
+    const auto i = static_cast<std::size_t>(n);
+    numbers_[i] = items[i].triangle;
+    const auto& t = mesh.triangles[numbers_[i]];
+    corners_[i] = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
   });
   boxes_.resize(std::size_t{2} << depth_);
   for (std::size_t level = depth_ + 1; level > 0; --level) bound_level(level - 1, executor);
+}
+
+TriangleTree::Box TriangleTree::box_of(const Corners& corners) {
+  Box box;
+  for (const Point& p : corners) box.add(p);
+  return box;
 }
 
 // The centre of each triangle's box; halves are added so that huge coordinates do not overflow.

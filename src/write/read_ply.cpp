@@ -47,7 +47,9 @@ std::string text_of(double value) {
 
 class PlyReader {
  public:
-  explicit PlyReader(MeshInput& input) : input_(input), header_(read_ply_header(input)) {}
+  // `quality`: where the numbers of that name go, or nowhere.
+  PlyReader(MeshInput& input, std::vector<float>* quality)
+      : input_(input), header_(read_ply_header(input)), quality_(quality) {}
 
   TriangleMesh read() {
     check_size();
@@ -143,7 +145,9 @@ class PlyReader {
     for (std::uint64_t vertex = 0; vertex < element.count; ++vertex) {
       std::array<float, 6> values{};
       for (std::size_t i = 0; i < slots.size(); ++i) {
-        if (slots[i] < 0) {
+        if (slots[i] == kQualitySlot) {
+          quality_->push_back(next_quality(element.properties[i]));
+        } else if (slots[i] < 0) {
           skip_value(element.properties[i]);
         } else {
           values[static_cast<std::size_t>(slots[i])] = next_coordinate(element.properties[i], vertex);
@@ -154,14 +158,15 @@ class PlyReader {
     }
   }
 
-  // Where each property belongs among x y z nx ny nz; -1 for all others.
+  // Where each property belongs among x y z nx ny nz, or that it is the quality asked for; -1 for all others.
   std::vector<int> coordinate_slots(const PlyElement& element) const {
     constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
     std::vector<int> slots;
     for (const PlyProperty& property : element.properties) {
       const auto found = std::find(kNames.begin(), kNames.begin() + (header_.has_normals ? 6 : 3), property.name);
       const bool used = found != kNames.begin() + (header_.has_normals ? 6 : 3);
-      slots.push_back(used ? static_cast<int>(found - kNames.begin()) : -1);
+      const bool is_quality = quality_ != nullptr && property.name == "quality" && !property.length_type;
+      slots.push_back(used ? static_cast<int>(found - kNames.begin()) : is_quality ? kQualitySlot : -1);
     }
     return slots;
   }
@@ -173,6 +178,12 @@ class PlyReader {
                   ", expected a finite float32");
     }
     return static_cast<float>(value);
+  }
+
+  float next_quality(const PlyProperty& property) {
+    const double value = next(property.type);
+    const bool fits = std::abs(value) <= double{std::numeric_limits<float>::max()};
+    return fits ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
   }
 
   void read_faces(const PlyElement& element) {
@@ -213,13 +224,16 @@ class PlyReader {
     }
   }
 
+  static constexpr int kQualitySlot = 6;
+
   MeshInput& input_;
   PlyHeader header_;
+  std::vector<float>* quality_;
   TriangleMesh mesh_;
 };
 
 }  // namespace
 
-TriangleMesh read_ply(MeshInput& input) { return PlyReader(input).read(); }
+TriangleMesh read_ply(MeshInput& input, std::vector<float>* quality) { return PlyReader(input, quality).read(); }
 
 }  // namespace isoweave::mesh_io

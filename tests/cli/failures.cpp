@@ -55,6 +55,7 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
       {{"mesh", kSmall, "--iso", "0"}, "--output"},
       {{"mesh", kSmall, "-o", "out.ply"}, "--iso"},
       {{"check", "a.ply", "b.ply"}, "b.ply"},
+      {{"check", "a.ply", "--self-intersections", "--threads", "0"}, "--threads"},
       {{"generate", "sphere", "-o", "s.nrrd"}, "--size"},
       {{"generate", "cow", "-o", "s.nrrd", "--size", "8"}, "cow"},
       {{"generate", "sphere", "-o", "s.nrrd", "--size", "8x8"}, "8x8"},

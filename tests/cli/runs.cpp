@@ -38,7 +38,7 @@ TEST(CliHelp, SaysVersionAndVerbs) {
   EXPECT_EQ(succeed(folder, {"--version"}).out, "isoweave " ISOWEAVE_VERSION "\n");
   const Result help = succeed(folder, {"--help"});
   EXPECT_EQ(help.err, "");
-  for (const std::string verb : {"mesh", "simplify", "info", "check", "compare", "generate"}) {
+  for (const std::string verb : {"mesh", "simplify", "info", "check", "compare", "render", "generate"}) {
     EXPECT_NE(help.out.find("\n  " + verb), std::string::npos) << verb;
     EXPECT_NE(succeed(folder, {verb, "--help"}).out.find("--help"), std::string::npos) << verb;
   }
@@ -117,7 +117,10 @@ TEST(CliReport, AgreesWithTheFileInEveryFormat) {
     succeed(folder, {"mesh", "generate:noise:32x32x32:float32", "-o", name, "--iso", "0.5", "--report", "r.json"});
     const Json report = json_file(folder / "r.json");
     const Json check = Json::parse(succeed(folder, {"check", name, "--json"}).out);
-    expect_keys(check, {"/misoriented_edges", "/degenerate_triangles", "/unused_vertices", "/area", "/volume"});
+    expect_keys(check, {"/misoriented_edges", "/degenerate_triangles", "/unused_vertices", "/area", "/volume",
+                        "/angles/smallest", "/angles/largest", "/angles/triangles_under_5",
+                        "/angles/smallest_histogram/triangles"});
+    EXPECT_FALSE(check.contains("self_intersections"));
     for (const std::string key : {"digest", "triangles", "vertices", "open_edges", "nonmanifold_edges",
                                   "nonmanifold_vertices", "components", "euler"}) {
       // A corner that two parts touch in is one vertex in a format without indices.
@@ -343,6 +346,41 @@ TEST(CliMesh, ARunToANumberOfTrianglesCanBeResumed) {
   const Result result = run(folder.path(), cut, std::move(setup));
   if (result.code == 130) succeed(folder, {"mesh", "--resume", "run", "--report", "out.json"});
   EXPECT_EQ(json_file(folder / "out.json").at("digest"), expected.at("digest"));
+}
+
+// Two triangles that cross, and one with an angle of 2 degrees that touches nothing.
+constexpr const char* kCrossing =
+    "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nv 9 9 0\nv 9 0 0\nv 9.3 0 0\n"
+    "f 1 2 3\nf 4 5 6\nf 7 8 9\n";
+
+TEST(CliCheck, SaysAnglesAndSelfIntersections) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.obj", kCrossing);
+  const std::string plain = succeed(folder, {"check", "a.obj"}).out;
+  EXPECT_NE(plain.find("largest angle"), std::string::npos) << plain;
+  EXPECT_NE(plain.find("in 33.3 %"), std::string::npos) << plain;
+  EXPECT_EQ(plain.find("self-intersections"), std::string::npos) << plain;
+  const std::string text = succeed(folder, {"check", "a.obj", "--self-intersections", "--threads", "2"}).out;
+  EXPECT_EQ(text.find(plain), 0U) << text;
+  EXPECT_NE(text.find("triangles in them                      2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("pairs of triangles, numbered from 0:\n  0 1\n"), std::string::npos) << text;
+}
+
+TEST(CliCheck, JsonHasThemToo) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.obj", kCrossing);
+  const Json check = Json::parse(succeed(folder, {"check", "a.obj", "--self-intersections", "--json"}).out);
+  EXPECT_EQ(check["angles"]["triangles_under_5"], 1);
+  EXPECT_NEAR(check["angles"]["smallest"].get<double>(), std::atan(0.3 / 9) * 180 / std::acos(-1), 1e-4);
+  EXPECT_EQ(check["angles"]["largest"], 90);
+  EXPECT_EQ(check["angles"]["smallest_histogram"]["triangles"].size(), 10U);
+  EXPECT_EQ(check["self_intersections"]["pairs"], 1);
+  EXPECT_EQ(check["self_intersections"]["apart"], 1);
+  EXPECT_EQ(check["self_intersections"]["first"], Json::parse("[[0, 1]]"));
+  files::write_bytes(folder / "empty.obj", "v 0 0 0\n");
+  const Json empty = Json::parse(succeed(folder, {"check", "empty.obj", "--self-intersections", "--json"}).out);
+  EXPECT_TRUE(empty["angles"]["smallest"].is_null());
+  EXPECT_EQ(empty["self_intersections"]["pairs"], 0);
 }
 
 }  // namespace

@@ -9,11 +9,16 @@ namespace {
 using namespace isoweave;
 
 void check_file(const std::string& path) {
-  const TriangleMesh mesh = read_mesh(path);
+  std::vector<float> quality;
+  const TriangleMesh mesh = read_mesh_with_quality(path, quality);
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
     fuzz::broken_promise("one normal per vertex, or none");
   }
+  if (!quality.empty() && quality.size() != mesh.vertices.size()) {
+    fuzz::broken_promise("one number per vertex, or none");
+  }
   check_mesh(mesh);
+  count_self_intersections(mesh, 10, 1);
 }
 
 }  // namespace

@@ -184,6 +184,56 @@ TEST(MeasureCheck, EmptyMesh) {
   EXPECT_EQ(check.digest, 0U);
 }
 
+// A triangle whose smallest angle lies at the origin.
+TriangleMesh triangle_with_angle(double degrees) {
+  const double angle = degrees * std::acos(-1.0) / 180;
+  return {{{0, 0, 0}, {1, 0, 0}, {static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle))}},
+          {{0, 1, 2}},
+          {}};
+}
+
+TEST(MeasureAngles, OfHalvedSquares) {
+  const TriangleAngles angles = check_mesh(meshes::grid(3)).angles;
+  EXPECT_EQ(angles.triangles, 18U);
+  EXPECT_DOUBLE_EQ(angles.smallest, 45);
+  EXPECT_DOUBLE_EQ(angles.largest, 90);
+  EXPECT_EQ(angles.under_5_degrees, 0U);
+  EXPECT_EQ(angles.smallest_in_bins, (std::array<std::uint64_t, 10>{0, 0, 0, 0, 0, 0, 0, 18, 0, 0}));
+}
+
+TEST(MeasureAngles, OnBothSidesOfEveryLimit) {
+  for (std::size_t bin = 0; bin < 10; ++bin) {
+    for (const double degrees : {6.0 * static_cast<double>(bin) + 0.001, 6.0 * static_cast<double>(bin) + 5.999}) {
+      const TriangleAngles angles = check_mesh(triangle_with_angle(degrees)).angles;
+      EXPECT_NEAR(angles.smallest, degrees, 1e-5);
+      EXPECT_NEAR(angles.largest, 90 - degrees / 2, 1e-3);
+      EXPECT_EQ(angles.smallest_in_bins[bin], 1U) << degrees;
+    }
+  }
+  EXPECT_EQ(check_mesh(triangle_with_angle(4.999)).angles.under_5_degrees, 1U);
+  EXPECT_EQ(check_mesh(triangle_with_angle(5.001)).angles.under_5_degrees, 0U);
+}
+
+TEST(MeasureAngles, WithoutAreaTheyAre0And180) {
+  for (const Point& third : {Point{2, 4, 6}, Point{1, 2, 3}}) {
+    const TriangleAngles angles = check_mesh({{{0, 0, 0}, {1, 2, 3}, third}, {{0, 1, 2}}, {}}).angles;
+    EXPECT_EQ(angles.smallest, 0);
+    EXPECT_EQ(angles.largest, 180);
+    EXPECT_EQ(angles.under_5_degrees, 1U);
+    EXPECT_EQ(angles.smallest_in_bins[0], 1U);
+  }
+}
+
+// A triangle with a repeated vertex has no angles.
+TEST(MeasureAngles, DegenerateTrianglesHaveNone) {
+  EXPECT_TRUE(std::isnan(check_mesh({}).angles.smallest));
+  TriangleMesh mesh = meshes::cube();
+  mesh.triangles.push_back({0, 0, 7});
+  const TriangleAngles angles = check_mesh(mesh).angles;
+  EXPECT_EQ(angles.triangles, 12U);
+  EXPECT_DOUBLE_EQ(angles.smallest, 45);
+}
+
 TEST(MeasureCheck, IndexOutOfRangeIsAnError) {
   TriangleMesh mesh = meshes::cube();
   mesh.triangles[3][1] = 8;

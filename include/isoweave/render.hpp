@@ -1,0 +1,65 @@
+// Pictures of meshes, by a rasteriser of our own: no display, no device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave {
+
+// sRGB, 8 bits each.
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+  bool operator==(const Colour&) const = default;
+};
+
+// Where the camera is, in degrees around the middle of the mesh. At 0, 0 it looks along +y with z up: in LPS
+// coordinates at the face of a patient who stands. Azimuth turns it to the side of +x, elevation up to +z.
+struct View {
+  double azimuth = 35;
+  double elevation = 20;  // -90 ... 90
+};
+
+enum class Shading : std::uint8_t { kSmooth, kFlat };
+
+struct RenderOptions {
+  int width = 1200, height = 900;  // pixels, 1 ... 16384
+  View view{};
+  std::optional<Colour> background = Colour{255, 255, 255};  // none: transparent
+  Colour colour{222, 205, 180};
+  Shading shading = Shading::kSmooth;  // by the mesh's normals, or means of the triangles' around a vertex
+  bool wireframe = false;              // edges drawn over the surface
+  int samples = 3;                     // along each side of a pixel, 1 ... 8
+  int threads = 0;                     // 0: all
+
+  // With `quality`: values at the ends of the colour map; none: the least and the largest there are.
+  std::optional<std::array<double, 2>> range{};
+};
+
+// Rows from the top, pixels from the left; alpha is not multiplied into the colours.
+struct Picture {
+  std::int64_t width = 0, height = 0;
+  std::vector<std::array<std::uint8_t, 4>> pixels;  // red, green, blue, alpha
+};
+
+// Draws a mesh in perspective, as large as fits into the frame. Every sample shows the nearest triangle, of equally
+// near ones the first; lights stand around the camera, both sides are lit, and places between near parts are darker
+// (ambient obscurance in screen space: McGuire and others 2011). `quality`: a number for each vertex, shown by the
+// colour map viridis (Smith, van der Walt 2015) in place of the colour; numbers that are not finite take the colour.
+//
+// Time grows with triangles and samples; memory: 8 bytes per sample, 4 per pixel and, for smooth shading, 36 per
+// vertex. The same picture for any number of threads. Throws std::invalid_argument for a mesh without triangles,
+// indices out of range, coordinates that are not finite, numbers that are not as many as the vertices, and options out
+// of range.
+Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options = {}, std::span<const float> quality = {});
+
+// Writes a picture as PNG of 8 bits, without alpha where all pixels are opaque. The file is complete or absent. Throws
+// CannotWrite, also in builds without libpng.
+void write_png(const std::string& path, const Picture& picture);
+
+}  // namespace isoweave

@@ -1,0 +1,24 @@
+// Angles of triangles, counted one triangle at a time.
+#pragma once
+
+#include <limits>
+
+#include "isoweave/measure.hpp"
+#include "measure/geometry.hpp"
+
+namespace isoweave::measure {
+
+// Angles are compared by their cotangents, which fall from 0 to 180 degrees and take sums, products, a root and a
+// quotient only: counts are the same on every machine. Degrees are left to the end.
+class AngleSurvey {
+ public:
+  void add(const TriangleCorners& triangle);
+  TriangleAngles result() const;
+
+ private:
+  TriangleAngles counts_;
+  double largest_cotangent_ = -std::numeric_limits<double>::infinity();
+  double least_cotangent_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace isoweave::measure

@@ -1,0 +1,18 @@
+// Pictures as PNG, through libpng.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "isoweave/render.hpp"
+
+namespace isoweave::render {
+
+// Throws CannotWrite, which names `path`, in builds without libpng: before a picture is made in vain.
+void require_png(const std::string& path);
+
+// The bytes of the file. `path` stands for it in messages.
+std::vector<std::byte> png_bytes(const Picture& picture, const std::string& path);
+
+}  // namespace isoweave::render

@@ -1,0 +1,17 @@
+#include <cstddef>
+#include <vector>
+
+#include "isoweave/render.hpp"
+#include "render/png.hpp"
+#include "write/atomic_file.hpp"
+
+namespace isoweave {
+
+void write_png(const std::string& path, const Picture& picture) {
+  const std::vector<std::byte> bytes = render::png_bytes(picture, path);
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+}  // namespace isoweave
