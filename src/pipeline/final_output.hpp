@@ -12,8 +12,9 @@ namespace isoweave {
 
 class FinalOutput {
  public:
-  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true)
-      : output_(world, sink, executor, measure), executor_(executor) {}
+  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true,
+              SweepObserver* observer = nullptr)
+      : output_(world, sink, executor, measure, observer), executor_(executor) {}
 
   // Takes all final triangles out of the simplifier's zone, each vertex written once, and compacts the zone.
   void take(Simplifier& simplifier);

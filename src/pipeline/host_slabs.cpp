@@ -1,16 +1,19 @@
 #include "pipeline/host_slabs.hpp"
 
 #include "pipeline/sweep.hpp"
+#include "pipeline/sweep_view.hpp"
 
 namespace isoweave {
 
 HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world, MeshSink& sink,
                      const Executor& executor, const std::atomic<bool>* stop)
     : options_(options),
+      world_(world),
+      executor_(executor),
       extractor_(volume, options.extract, executor),
       simplifier_(options.simplify, executor, stop),
-      output_(world, sink, executor, options.measure),
-      full_output_(world, sink, executor, options.measure) {
+      output_(world, sink, executor, options.measure, options.observer),
+      full_output_(world, sink, executor, options.measure, options.observer) {
   if (options.triangles > 0) target_.emplace(simplifier_, executor, options.triangles);
 }
 
@@ -42,6 +45,10 @@ void HostSlabs::write(SlabRecord& record, MeshReport& report) {
     full_output_.take(piece_);
     full_output_.report(report);
   }
+}
+
+void HostSlabs::view_undecided(const SweepObserver::Visitor& visitor) const {
+  if (options_.simplifies) view_zone(simplifier_.zone(), world_, executor_, visitor);
 }
 
 void HostSlabs::wait_for_sink() {

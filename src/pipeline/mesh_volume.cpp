@@ -96,6 +96,7 @@ class VolumeSweep {
     host.triangles = options_.triangles;
     host.voxel = voxel_;
     host.measure = control_.measure;
+    host.observer = control_.observer;
     // A zone that has been left in the middle cannot be saved.
     return std::make_unique<HostSlabs>(volume_, host, world_, sink, executor_, saves() ? nullptr : control_.stop);
   }
@@ -107,6 +108,7 @@ class VolumeSweep {
     };
     if (options_.triangles > 0) refuse("a number of triangles to stop at");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
+    if (control_.observer != nullptr) refuse("somebody who watches");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
       refuse("a schedule other than rounds");
     }
@@ -216,9 +218,16 @@ class VolumeSweep {
     clock_.lap(report_.seconds_write);
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
-    if (control_.progress) {
-      control_.progress({record.layer, layers_, voxels_, record.live_triangles, record.final_triangles, record.bytes});
-    }
+    tell(record);
+  }
+
+  void tell(const SlabRecord& record) {
+    const Progress progress{record.layer,           layers_,     voxels_, record.live_triangles,
+                            record.final_triangles, record.bytes};
+    if (control_.progress) control_.progress(progress);
+    if (control_.observer == nullptr) return;
+    control_.observer->end_slab(progress, record,
+                                [&](const SweepObserver::Visitor& visitor) { engine_->view_undecided(visitor); });
   }
 
   void plan_and_read() {
@@ -375,6 +384,7 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
   counting.measure = false;
   counting.checkpoint = {};
   counting.resume = nullptr;
+  counting.observer = nullptr;
   NoSink sink;
   return mesh_volume(volume, sink, full, counting).triangles;
 }
