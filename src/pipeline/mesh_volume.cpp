@@ -108,7 +108,7 @@ class VolumeSweep {
     };
     if (options_.triangles > 0) refuse("a number of triangles to stop at");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
-    if (control_.observer != nullptr) refuse("somebody who watches");
+    if (control_.observer != nullptr) refuse("an observer");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
       refuse("a schedule other than rounds");
     }
