@@ -167,18 +167,16 @@ class WatchServer::Http final : private httplib::Server {
     const std::string home = "/" + token_ + "/";
     if (!is_this_machine(request)) {
       response.status = 403;
-    } else if (!request.path.starts_with(home)) {
+    } else if (request.path != home && request.path != home + "news") {
       response.status = 404;
     } else if (request.method != "GET") {
       response.status = 405;
     } else if (request.path == home) {
       send(response, "text/html; charset=utf-8", page_);
-    } else if (request.path == home + "news") {
+    } else {
       const WatchQuery query{number_of<int>(request, "bits"), number_of<std::uint64_t>(request, "final"),
                              number_of<std::uint64_t>(request, "frame")};
       send(response, "application/octet-stream", std::make_shared<const std::string>(answer_(query)));
-    } else {
-      response.status = 404;
     }
   }
 

@@ -55,7 +55,7 @@ class CellTable {
 // triangles that have become edges or points go. Up to then triangles are as they came.
 class CoarseSurface {
  public:
-  // The finest cells: 512 along the longest side. Finer ones are more than there may be on all but the smallest surfaces.
+  // The finest cells: 512 along the longest side. All but small surfaces go through more of them than may be held.
   static constexpr int kFinestBits = 7;
 
   // Cells of 2^bits steps to begin with; 0: none.

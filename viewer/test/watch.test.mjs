@@ -23,8 +23,10 @@ const kPhone = { width: 390, height: 844, touch: true };
 const kShort = 'generate:gyroid:64x64x400:uint8';
 const kSlow = 'generate:gyroid:96x96x600:uint8'; // seconds
 const kLong = 'generate:gyroid:96x96x2000000:uint8';
+const kOpen = 'generate:gyroid:160x160x200:uint8'; // with --open most of it is final soon
 const kRough = 'generate:white:64x64x256:uint8'; // more triangles than are drawn
 
+rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 const sleep = (ms) => new Promise((done) => { setTimeout(done, ms); });
 
@@ -260,14 +262,14 @@ describe('looks', () => {
   test('screenshots', async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
-        await withWatched(kSlow, { ...screen, dark }, async (page) => {
+        await withWatched(kOpen, { ...screen, dark }, async (page) => {
           const name = (more) => join(folder, `watch-${device}-${dark ? 'dark' : 'light'}${more}.png`);
           assert.equal(await pressed(page, 'theme'), String(dark));
-          await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 2000)`);
+          await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 60000)`);
           await page.screenshot(name(''));
           await until(page, kComplete);
           await page.screenshot(name('-complete'));
-        });
+        }, { more: ['--open'] });
       }
     }
   });

@@ -97,7 +97,8 @@ function putTriangles({ frame, frame_layer: layer, final, undecided }) {
   have.frame = frame;
   if (!view) return;
   view.setLayer(layer);
-  byId('drawn').textContent = `Drawn: ${count(view.final.triangles)} final, ${count(view.undecided.triangles)} undecided`;
+  byId('drawn').textContent = layer === 0 ? '' :
+    `Drawn at layer ${count(layer)}: ${count(view.final.triangles)} final, ${count(view.undecided.triangles)} undecided`;
 }
 
 function take(news) {
