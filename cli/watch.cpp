@@ -82,8 +82,9 @@ class SweepWatch final : public Watch {
  public:
   SweepWatch(const WatchedRun& run, const World& world, int port)
       : feed_(grid_of(run.volume, world)),
-        server_(port, page_text(run_json(run, world, feed_.grid())),
-                [this](const WatchQuery& query) { return feed_.answer(query); }) {}
+        server_(
+            port, page_text(run_json(run, world, feed_.grid())), [this] { feed_.visit(); },
+            [this](const WatchQuery& query) { return feed_.answer(query); }) {}
 
   std::string url() const { return server_.url(); }
 
@@ -119,9 +120,9 @@ class SweepWatch final : public Watch {
  private:
   static constexpr Clock::duration kFrame = 100ms;  // no more frames than can be seen
   static constexpr int kPauses = 9;                 // so many times as long as a frame took: a tenth of the run
-  static constexpr Clock::duration kPresence = 3s;  // browsers let pages in the background ask once a second
+  static constexpr Clock::duration kPresence = 5s;  // browsers let pages in the background ask once a second
   static constexpr Clock::duration kQuiet = 400ms;
-  static constexpr Clock::duration kGrace = 3s;
+  static constexpr Clock::duration kGrace = 5s;
 
   // As coarse as last time, or once less: cells twice as wide leave a quarter of the triangles.
   void show(const SlabRecord& slab, const std::function<void(const Visitor&)>& visit_undecided) {
@@ -130,13 +131,13 @@ class SweepWatch final : public Watch {
       for (const TriangleCorners& triangle : block) surface.add(feed_.grid().place(triangle));
     });
     const bool sparse = 5 * surface.triangles().size() < kMostUndecidedDrawn;
-    bits_ = std::max(surface.bits() - (sparse ? 1 : 0), CoarseSurface::kFinestBits);
+    bits_ = std::max(surface.bits() - (sparse ? 1 : 0), 0);
     feed_.show(surface);
   }
 
   WatchFeed feed_;
   Clock::time_point next_frame_;
-  int bits_ = CoarseSurface::kFinestBits;
+  int bits_ = 0;
   WatchServer server_;  // ends before what it reads
 };
 

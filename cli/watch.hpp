@@ -41,7 +41,7 @@ class Watch : public SweepObserver {
   // The run is complete. Serving goes on until the end of this object.
   virtual void complete(const MeshReport& report) = 0;
 
-  // Returns when those who watch have got the result, when nobody does, after three seconds, or once `stop` is set.
+  // Returns when those who watch have got the result, when nobody does, after five seconds, or once `stop` is set.
   virtual void deliver(const std::atomic<bool>& stop) const = 0;
 };
 

@@ -98,6 +98,11 @@ void WatchFeed::complete(Json result) {
   result_ = std::move(result);
 }
 
+void WatchFeed::visit() {
+  const std::lock_guard lock(mutex_);
+  asked_ = Clock::now();
+}
+
 bool WatchFeed::asked_within(Clock::duration period) const {
   const std::lock_guard lock(mutex_);
   return asked_ && Clock::now() - *asked_ <= period;

@@ -59,6 +59,9 @@ class WatchFeed {
 
   const ViewGrid& grid() const { return grid_; }
 
+  // Somebody has got the page, and will ask.
+  void visit();
+
   // Somebody has asked in the last `period`.
   bool asked_within(Clock::duration period) const;
 

@@ -131,8 +131,10 @@ void send(httplib::Response& response, const char* type, std::shared_ptr<const s
 
 class WatchServer::Http final : private httplib::Server {
  public:
-  Http(int port, std::string page, Answer answer)
-      : page_(std::make_shared<const std::string>(std::move(page))), answer_(std::move(answer)) {
+  Http(int port, std::string page, Visited visited, Answer answer)
+      : page_(std::make_shared<const std::string>(std::move(page))),
+        visited_(std::move(visited)),
+        answer_(std::move(answer)) {
     // Without httplib's SO_REUSEPORT, by which two processes would share a port.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -172,6 +174,7 @@ class WatchServer::Http final : private httplib::Server {
     } else if (request.method != "GET") {
       response.status = 405;
     } else if (request.path == home) {
+      visited_();
       send(response, "text/html; charset=utf-8", page_);
     } else {
       const WatchQuery query{number_of<int>(request, "bits"), number_of<std::uint64_t>(request, "final"),
@@ -191,14 +194,15 @@ class WatchServer::Http final : private httplib::Server {
 
   const std::string token_ = random_token();
   const std::shared_ptr<const std::string> page_;
+  const Visited visited_;
   const Answer answer_;
   std::atomic<bool> over_ = false;
   int port_ = -1;
   std::thread listener_;
 };
 
-WatchServer::WatchServer(int port, std::string page, Answer answer)
-    : http_(std::make_unique<Http>(port, std::move(page), std::move(answer))) {}
+WatchServer::WatchServer(int port, std::string page, Visited visited, Answer answer)
+    : http_(std::make_unique<Http>(port, std::move(page), std::move(visited), std::move(answer))) {}
 
 WatchServer::~WatchServer() = default;
 

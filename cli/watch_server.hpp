@@ -20,10 +20,12 @@ class PortNotFree : public std::runtime_error {
 // those that take nothing for two, are closed. At most four are answered at a time and sixteen wait.
 class WatchServer {
  public:
+  using Visited = std::function<void()>;
   using Answer = std::function<std::string(const WatchQuery&)>;
 
-  // Port 0: any that is free. `answer` is called by any of its threads. Throws PortNotFree.
-  WatchServer(int port, std::string page, Answer answer);
+  // Port 0: any that is free. `visited`, when the page is sent, and `answer` are called by any of its threads. Throws
+  // PortNotFree.
+  WatchServer(int port, std::string page, Visited visited, Answer answer);
 
   // Cuts off whoever is being served.
   ~WatchServer();

@@ -1,6 +1,8 @@
 #include "watch_surface.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdlib>
 #include <utility>
 
 namespace isoweave::cli {
@@ -99,8 +101,20 @@ bool CoarseSurface::snap(GridTriangle& triangle) {
 // A surface has half as many vertices as triangles; noise may have more, which count as well.
 bool CoarseSurface::is_full() const { return triangles_.size() >= most_ || 3 * cells_.size() >= 2 * most_; }
 
+// Of the narrowest cells that are as wide as the mean of the first edges: in narrower ones next to nothing becomes one.
+int CoarseSurface::first_bits() const {
+  std::uint64_t sum = 0;
+  for (const GridTriangle& t : triangles_) {
+    int longest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) longest = std::max(longest, std::abs(t[axis] - t[3 + axis]));
+    sum += static_cast<std::uint64_t>(longest);
+  }
+  const std::uint64_t mean = sum / std::max<std::size_t>(triangles_.size(), 1);
+  return std::max(static_cast<int>(std::bit_width(mean)), 1);
+}
+
 void CoarseSurface::coarsen() {
-  bits_ = std::max(bits_ + 1, kFinestBits);
+  bits_ = bits_ == 0 ? first_bits() : bits_ + 1;
   cells_ = {};
   std::size_t kept = 0;
   std::size_t marked = 0;

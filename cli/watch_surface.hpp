@@ -51,13 +51,11 @@ class CellTable {
 };
 
 // A surface that stays below a number of triangles: each time there would be more, the vertices within a cell become
-// one, the cells being twice as wide as before (Rossignac and Borrel 1993, Multi-resolution 3D approximations), and
-// triangles that have become edges or points go. Up to then triangles are as they came.
+// one (Rossignac and Borrel 1993, Multi-resolution 3D approximations), and triangles that have become edges or points
+// go. The first cells are as wide as the edges are long, then twice as wide each time. Up to then triangles are as they
+// came.
 class CoarseSurface {
  public:
-  // The finest cells: 512 along the longest side. All but small surfaces go through more of them than may be held.
-  static constexpr int kFinestBits = 7;
-
   // Cells of 2^bits steps to begin with; 0: none.
   explicit CoarseSurface(std::size_t most_triangles, int bits = 0) : most_(most_triangles), bits_(bits) {}
 
@@ -73,6 +71,7 @@ class CoarseSurface {
  private:
   bool snap(GridTriangle& triangle);
   bool is_full() const;
+  int first_bits() const;
   void coarsen();
 
   std::size_t most_;

@@ -20,8 +20,7 @@ if (findChromium() === undefined) {
 const kDesktop = { width: 1320, height: 900 };
 const kSmall = { width: 720, height: 600 }; // for pictures, which processors draw here
 const kPhone = { width: 390, height: 844, touch: true };
-const kShort = 'generate:gyroid:64x64x400:uint8';
-const kSlow = 'generate:gyroid:96x96x600:uint8'; // seconds
+const kSlow = 'generate:gyroid:64x64x900:uint8'; // seconds, with one thread: the browser is faster
 const kLong = 'generate:gyroid:96x96x2000000:uint8';
 const kOpen = 'generate:gyroid:160x160x200:uint8'; // with --open most of it is final soon
 const kRough = 'generate:white:64x64x256:uint8'; // more triangles than are drawn
@@ -178,7 +177,7 @@ describe('a sweep', () => {
 
   test('is told by numbers where it cannot be drawn', async () => {
     const blind = await Browser.start(['--disable-3d-apis']);
-    const run = new Run(kShort);
+    const run = new Run(kSlow);
     try {
       const page = await blind.open(await run.address(), kSmall);
       await until(page, kComplete);
@@ -192,7 +191,7 @@ describe('a sweep', () => {
 });
 
 describe('the view', () => {
-  test('changes with its buttons and keys, and back', () => withWatched(kShort, kSmall, async (page) => {
+  test('changes with its buttons and keys, and back', () => withWatched(kSlow, kSmall, async (page) => {
     await until(page, kComplete);
     const first = await picture(page);
     for (const [id, key] of [['show-final', 'f'], ['edges', 'w'], ['front', 'p']]) {
@@ -210,7 +209,7 @@ describe('the view', () => {
       await page.press('0');
       assert.equal((await picture(page)).sum, first.sum, `${key} and reset`);
     }
-  }));
+  }, { more: ['--error', '1vox'] })); // few triangles: many pictures
 
   test('can leave out what is undecided', () => withWatched(kSlow, kSmall, async (page) => {
     await until(page, `window.isoweave.ready.then(({ view }) => view.undecided.triangles > 500)`);
@@ -221,7 +220,7 @@ describe('the view', () => {
 });
 
 describe('looks', () => {
-  test('every control has a name and is reached by Tab', () => withWatched(kShort, kDesktop, async (page) => {
+  test('every control has a name and is reached by Tab', () => withWatched(kSlow, kDesktop, async (page) => {
     await until(page, kComplete);
     const reached = [];
     for (let presses = 0; presses < 20; ++presses) {
@@ -238,7 +237,7 @@ describe('looks', () => {
     assert.deepEqual(reached, ['a', 'theme', 'view', 'show-final', 'show-undecided', 'edges', 'front', 'reset', 'summary', 'summary']);
   }));
 
-  test('numbers of the plots can be read', () => withWatched(kShort, kDesktop, async (page, run) => {
+  test('numbers of the plots can be read', () => withWatched(kSlow, kDesktop, async (page, run) => {
     await until(page, kComplete);
     await page.click('#plot-triangles summary');
     await until(page, `document.querySelectorAll('#plot-triangles .scroll td').length > 0`);
@@ -250,7 +249,7 @@ describe('looks', () => {
   }));
 
   for (const width of [320, 390, 768, 1320]) {
-    test(`nothing sticks out of ${width} pixels`, () => withWatched(kShort, { ...kPhone, width }, async (page) => {
+    test(`nothing sticks out of ${width} pixels`, () => withWatched(kSlow, { ...kPhone, width }, async (page) => {
       await until(page, kComplete);
       assert.equal(await page.evaluate('document.documentElement.scrollWidth'), width);
       const wide = await page.evaluate(`[...document.querySelectorAll('main *, header *')].filter((e) =>

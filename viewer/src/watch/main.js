@@ -51,8 +51,12 @@ function say(state, text) {
   line.textContent = text;
 }
 
-function sayState({ numbers, result }) {
-  if (result) {
+// False: there is more to be had.
+const hasAll = ({ final }) => have.final === final.held;
+
+function sayState(news) {
+  const { numbers, result } = news;
+  if (result && hasAll(news)) {
     byId('seconds').nextSibling.textContent = ' in all';
     say('complete', `Complete: ${count(result.triangles)} triangles, ${count(result.vertices)} vertices in ` +
       `${formatted(result.seconds, 'seconds')}; digest ${result.digest}`);
@@ -105,17 +109,14 @@ function take(news) {
   const layer = last?.numbers.layer;
   last = news;
   putNumbers(news.numbers);
-  sayState(news);
   putNotes(news);
   putTriangles(news);
+  sayState(news);
   if (news.numbers.layer !== layer) growPlots(news.plot, news.numbers.layers);
 }
 
-// False: there is more to be had.
-const hasAll = ({ final }) => have.final === final.held;
-
 function sayGone() {
-  if (last?.result) return;
+  if (byId('state').dataset.state === 'complete') return;
   say('gone', 'isoweave does not answer any more: its run has ended or was stopped. This is what had come until then.');
 }
 
