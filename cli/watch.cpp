@@ -5,8 +5,10 @@
 #include <array>
 #include <chrono>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <thread>
-#include <utility>
+#include <vector>
 
 #include "mesh_output.hpp"
 #include "options.hpp"
@@ -112,7 +114,8 @@ class SweepWatch final : public Watch {
     const Clock::time_point end = Clock::now() + kGrace;
     if (!feed_.asked_within(kPresence)) return;
     // Whoever has everything asks no more.
-    while (!stop && Clock::now() < end && (!feed_.is_delivered() || feed_.asked_within(kQuiet))) {
+    const auto all_have_it = [&] { return feed_.is_delivered() && !feed_.asked_within(kQuiet) && server_.is_idle(); };
+    while (!stop && Clock::now() < end && !all_have_it()) {
       std::this_thread::sleep_for(10ms);
     }
   }
@@ -151,9 +154,8 @@ std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& 
     auto started = std::make_unique<SweepWatch>(run, world, port);
     print_note("watch at " + started->url());
     return started;
-  } catch (const PortNotFree&) {
-    print_note(fmt::format("--watch={}: expected a port that is free, found it taken; the run goes on without a page",
-                           watch.port));
+  } catch (const std::runtime_error& error) {
+    print_note(fmt::format("--watch={}: {}; the run goes on without a page", watch.port, error.what()));
     return nullptr;
   }
 }

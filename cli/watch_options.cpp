@@ -1,5 +1,5 @@
 // What is asked of --watch, and what is refused before any work is done.
-#include <limits>
+#include <stdexcept>
 
 #include "options.hpp"
 #include "watch.hpp"

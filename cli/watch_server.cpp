@@ -14,6 +14,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <random>
+#include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -151,7 +152,7 @@ class WatchServer::Http final : private httplib::Server {
     });
     new_task_queue = [] { return new Connections; };
     port_ = port == 0 ? bind_to_any_port(kLoopback) : bind_to_port(kLoopback, port) ? port : -1;
-    if (port_ < 0) throw PortNotFree("port " + std::to_string(port));
+    if (port_ < 0) throw std::runtime_error("expected a port that is free, found it taken or not allowed");
     listener_ = std::thread([this] { listen_after_bind(); });
     while (!is_running()) std::this_thread::sleep_for(1ms);
   }
@@ -161,6 +162,8 @@ class WatchServer::Http final : private httplib::Server {
     stop();
     listener_.join();
   }
+
+  bool is_idle() const { return served_ == 0; }
 
   std::string url() const { return fmt::format("http://{}:{}/{}/", kLoopback, port_, token_); }
 
@@ -186,9 +189,11 @@ class WatchServer::Http final : private httplib::Server {
   bool process_and_close_socket(socket_t socket) override {
     Connection connection(static_cast<int>(socket), over_);
     bool closed = false;
+    ++served_;
     const bool served = process_request(connection, true, closed, nullptr);
     ::shutdown(static_cast<int>(socket), SHUT_RDWR);
     ::close(static_cast<int>(socket));
+    --served_;
     return served;
   }
 
@@ -197,6 +202,7 @@ class WatchServer::Http final : private httplib::Server {
   const Visited visited_;
   const Answer answer_;
   std::atomic<bool> over_ = false;
+  std::atomic<int> served_ = 0;  // connections
   int port_ = -1;
   std::thread listener_;
 };
@@ -205,6 +211,8 @@ WatchServer::WatchServer(int port, std::string page, Visited visited, Answer ans
     : http_(std::make_unique<Http>(port, std::move(page), std::move(visited), std::move(answer))) {}
 
 WatchServer::~WatchServer() = default;
+
+bool WatchServer::is_idle() const { return http_->is_idle(); }
 
 std::string WatchServer::url() const { return http_->url(); }
 

@@ -3,16 +3,11 @@
 
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "watch_feed.hpp"
 
 namespace isoweave::cli {
-
-class PortNotFree : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // On 127.0.0.1 only. What it shows may be a patient: an address holds 128 random bits, without which there is nothing
 // (404) for the other users and programs of the machine; a name that somebody has pointed to this machine is refused
@@ -24,7 +19,7 @@ class WatchServer {
   using Answer = std::function<std::string(const WatchQuery&)>;
 
   // Port 0: any that is free. `visited`, when the page is sent, and `answer` are called by any of its threads. Throws
-  // PortNotFree.
+  // std::runtime_error when the port cannot be had.
   WatchServer(int port, std::string page, Visited visited, Answer answer);
 
   // Cuts off whoever is being served.
@@ -33,6 +28,9 @@ class WatchServer {
   WatchServer& operator=(const WatchServer&) = delete;
 
   std::string url() const;
+
+  // Nobody is being served.
+  bool is_idle() const;
 
  private:
   class Http;

@@ -41,15 +41,12 @@ using program::Running;
 using Words = std::vector<std::string>;
 
 constexpr const char* kVolume = "generate:gyroid:64x64x160:uint8";
-constexpr const char* kEndless = "generate:gyroid:96x96x2000000:uint8";
 
 Words mesh(const Words& more, const std::string& volume = kVolume) {
   Words arguments{"mesh", volume, "--iso", "127.5", "-o", "out.ply", "--slab", "8", "--report", "out.json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
-
-Json report_of(const files::Folder& folder) { return Json::parse(files::read_bytes(folder / "out.json")); }
 
 void expect_refused(const Words& more, const std::string& says) {
   const files::Folder folder;
@@ -62,6 +59,10 @@ void expect_refused(const Words& more, const std::string& says) {
 TEST(CliWatch, BuildsWithoutItSaySo) { expect_refused({"--watch"}, "--watch: expected a build with the viewer"); }
 
 #else
+
+constexpr const char* kEndless = "generate:gyroid:96x96x2000000:uint8";
+
+Json report_of(const files::Folder& folder) { return Json::parse(files::read_bytes(folder / "out.json")); }
 
 // A connection to a port of this machine.
 class Connection {
