@@ -21,6 +21,7 @@
 #include "stop.hpp"
 #include "verbs.hpp"
 #include "volume/histogram.hpp"
+#include "watch.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -37,6 +38,7 @@ Examples:
   isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
   isoweave mesh brain.nii.gz -o brain.ply --iso 40 --lods 0.1vox,0.3vox,1vox
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
+  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --watch
 
 Without --error, --triangles and --ratio the error is 0.2vox. The result does not depend on --threads, --schedule and
 --slab.)";
@@ -49,6 +51,7 @@ struct MeshArguments {
   OutputOptions output;
   StopOptions stop;
   PageOptions page;
+  WatchOptions watch;
   std::string iso, quality = "normal", slab, inside = "above", normals = "none";
   std::string space, memory, checkpoint, every, resume;
   bool open = false, closed = false, dry_run = false;
@@ -239,9 +242,10 @@ Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& opt
                           const RunControl& control) {
   Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
   output_bytes(forecast, arguments, file);
-  const std::uint64_t writing = output_memory(arguments.output, forecast.vertices, forecast.triangles, file);
-  forecast.peak_bytes += writing;
-  forecast.least_bytes += writing;
+  const std::uint64_t beside =
+      output_memory(arguments.output, forecast.vertices, forecast.triangles, file) + watch_memory(arguments.watch);
+  forecast.peak_bytes += beside;
+  forecast.least_bytes += beside;
   if (control.memory > 0 && forecast.least_bytes > control.memory) {
     throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more, found {}", arguments.input.path,
                                  std::ceil(static_cast<double>(forecast.least_bytes) * 1e-6), arguments.memory));
@@ -286,6 +290,14 @@ void check_finest(const MeshArguments& arguments, const MeshOptions& options, co
   output_bytes(forecast_mesh(*open_input(arguments.input), finest, control), arguments, file);
 }
 
+// What of a cap is left for the run.
+std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t cap) {
+  const std::uint64_t held = watch_memory(arguments.watch);
+  if (held < cap) return cap - held;
+  throw OverMemory(fmt::format("{}: expected more than --memory {:.0f}M for --watch, found {}", arguments.input.path,
+                               static_cast<double>(held) * 1e-6, arguments.memory));
+}
+
 // The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
 PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
                            const RunControl& control) {
@@ -314,6 +326,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   parse_slab(arguments.slab, 1);
   check_page(arguments.page, arguments.output);
+  check_watch(arguments.watch, control.device);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({arguments.input.path, output.path, run.report, arguments.page.path});
@@ -359,6 +372,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     control.checkpoint.note = task_json(arguments, options).dump();
   }
   control.resume = resume;
+  if (control.memory > 0) control.memory = memory_beside_watch(arguments, control.memory);
   const std::vector<std::string> folders = level_folders(arguments.checkpoint, outputs.size());
   if (resume != nullptr && resume->marks.size() != outputs.size()) refuse_state(*resume);
   const LevelSinks sinks(outputs, [&](std::size_t level) {
@@ -374,10 +388,15 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (!run.quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
+  const std::unique_ptr<Watch> watch =
+      start_watch(arguments.watch,
+                  {info, options, arguments.input.path, outputs.back().name(), resume == nullptr ? 0 : resume->layer});
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
+  control.observer = watch.get();
   const MeshReport report = mesh_volume(*volume, sinks.pointers(), options, control);
   remove_level_folders(folders);
+  if (watch) watch->complete(report);
   printer.finish();
   Json json = report_json(report, info, arguments, options, file, forecast);
   json["notes"] = sinks.last().notes();
@@ -395,6 +414,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const auto slices = static_cast<double>(info.dims[2]);
   print_summary(report, outputs.back().name(), static_cast<double>(info.slice_samples()) * slices,
                 forecast ? &*forecast : nullptr);
+  if (watch) watch->deliver(*control.stop);
 }
 
 void run_mesh(MeshArguments arguments) {
@@ -414,9 +434,9 @@ void run_mesh(MeshArguments arguments) {
 
 // The task of a run that goes on is known; how it runs may be said anew.
 void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
-  constexpr std::array<std::string_view, 12> kRunning{"--help",     "--slab",     "--memory", "--every",
-                                                      "--threads",  "--device",   "--report", "--html",
-                                                      "--schedule", "--progress", "--quiet",  "--page-triangles"};
+  constexpr std::array<std::string_view, 13> kRunning{
+      "--help", "--slab",     "--memory",   "--every", "--threads",        "--device", "--report",
+      "--html", "--schedule", "--progress", "--quiet", "--page-triangles", "--watch"};
   for (CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
     if (option != &resume && std::ranges::find(kRunning, name) == kRunning.end()) resume.excludes(option);
@@ -450,6 +470,7 @@ void add_mesh_verb(CLI::App& app) {
       ->default_str("5min");
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);
+  add_watch_option(*verb, arguments->watch);
   CLI::Option* resume =
       verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
   exclude_task_options(*verb, *resume);

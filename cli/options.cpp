@@ -75,6 +75,12 @@ std::int64_t parse_count(std::string_view option, std::string_view text) {
   return *value;
 }
 
+int parse_port(std::string_view option, std::string_view text) {
+  const std::optional<std::uint16_t> port = to_number<std::uint16_t>(text);
+  if (!port) wrong_value(option, "a port from 1 to 65535, or 0 for any that is free", text);
+  return *port;
+}
+
 std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
   constexpr std::array<std::pair<std::string_view, double>, 9> kUnits{{{"", 1},
                                                                        {"K", 1e3},

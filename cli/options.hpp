@@ -27,6 +27,7 @@ namespace isoweave::cli {
 
 double parse_number(std::string_view option, std::string_view text);
 std::int64_t parse_count(std::string_view option, std::string_view text);                // at least 1
+int parse_port(std::string_view option, std::string_view text);                          // 0 to 65535
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);               // "800M", "2G", "1.5Gi"
 std::array<double, 3> parse_triple(std::string_view option, std::string_view text);      // "x,y,z"
 std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text);  // "N" or "WxHxD"

@@ -9,13 +9,12 @@
 #include "options.hpp"
 #include "output.hpp"
 #include "page_geometry.hpp"
+#include "page_script.hpp"
 #include "page_surfaces.hpp"
 #include "page_template.hpp"
 
 namespace isoweave::cli {
 namespace {
-
-constexpr std::string_view kMark = "%%data%%";
 
 Json bins_json(const PageErrors& errors) {
   const auto count = static_cast<double>(errors.counts.size());
@@ -70,27 +69,12 @@ Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& re
   return notes;
 }
 
-// Nothing in it can end the script element that it is put in.
-std::string script_text(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 void write_text(AtomicFile& file, std::string_view text) { file.write(std::as_bytes(std::span(text))); }
 
 void write_script(AtomicFile& file, std::string_view id, const Json& json) {
-  write_text(file, fmt::format("<script type=\"application/json\" id=\"{}\">", id));
+  write_text(file, script_start(id));
   write_text(file, script_text(json));
-  write_text(file, "</script>\n");
+  write_text(file, kScriptEnd);
 }
 
 }  // namespace
@@ -113,13 +97,13 @@ void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageCon
   json["notes"] = notes_json(shown, check, report, contents.full_note);
 
   const std::string_view html = page_template();
-  const std::size_t mark = html.find(kMark);
+  const std::size_t mark = html.find(kPageMark);
   write_text(file, html.substr(0, mark));
   write_script(file, "report", report);
   for (std::size_t i = 0; i < shown.surfaces.size(); ++i) {
     write_script(file, fmt::format("surface-{}", i), packed_surface(std::move(shown.surfaces[i])));
   }
-  write_text(file, html.substr(mark + kMark.size()));
+  write_text(file, html.substr(mark + kPageMark.size()));
   file.commit();
 }
 

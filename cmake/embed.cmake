@@ -1,4 +1,4 @@
-# A file as a source: cmake -DFROM=page.html -DTO=page_template.cpp -P embed.cmake
+# A page as a source: cmake -DFROM=page.html -DTO=page_template.cpp -DNAME=page_template -P embed.cmake
 file(READ ${FROM} bytes HEX)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
 # Lines of 32 bytes: compilers are slow on a single one.
@@ -15,7 +15,7 @@ ${bytes}
 
 }  // namespace
 
-std::string_view page_template() { return {reinterpret_cast<const char*>(kPage), sizeof(kPage)}; }
+std::string_view ${NAME}() { return {reinterpret_cast<const char*>(kPage), sizeof(kPage)}; }
 
 }  // namespace isoweave::cli
 ")

@@ -1,4 +1,4 @@
-# The page for the browser, bundled from viewer/ and put into the command line. ISOWEAVE_VIEWER is AUTO (take it in where
+# The pages for the browser, bundled from viewer/ and put into the command line. ISOWEAVE_VIEWER is AUTO (take it in where
 # node, npm, its packages and meshoptimizer can be had), ON (stop without it) or OFF. Without it `--html` and `view` are
 # errors that say so.
 set(ISOWEAVE_VIEWER AUTO CACHE STRING "The page for the browser, through node and npm: AUTO, ON or OFF")
@@ -53,17 +53,18 @@ function(isoweave_find_viewer problem)
   set(${problem} "${lack}" PARENT_SCOPE)
 endfunction()
 
-# The page as a source of `target`.
-function(isoweave_add_viewer target)
-  file(GLOB sources CONFIGURE_DEPENDS ${ISOWEAVE_VIEWER_SOURCES}/src/*)
-  set(page ${ISOWEAVE_VIEWER_BUILD}/page.html)
-  set(embedded ${ISOWEAVE_VIEWER_BUILD}/page_template.cpp)
+# One of the pages of build.mjs as a source of `target`, in which the function NAME returns it.
+function(isoweave_add_page target page_of name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${ISOWEAVE_VIEWER_SOURCES}/src/*)
+  set(page ${ISOWEAVE_VIEWER_BUILD}/${name}.html)
+  set(embedded ${ISOWEAVE_VIEWER_BUILD}/${name}.cpp)
   set(embed ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
   add_custom_command(OUTPUT ${page}
-    COMMAND ${ISOWEAVE_NODE} ${ISOWEAVE_VIEWER_SOURCES}/build.mjs ${page} ${ISOWEAVE_VIEWER_BUILD}/node_modules
+    COMMAND ${ISOWEAVE_NODE} ${ISOWEAVE_VIEWER_SOURCES}/build.mjs ${page_of} ${page} ${ISOWEAVE_VIEWER_BUILD}/node_modules
     DEPENDS ${sources} ${ISOWEAVE_VIEWER_SOURCES}/build.mjs ${ISOWEAVE_VIEWER_BUILD}/packages VERBATIM)
   add_custom_command(OUTPUT ${embedded}
-    COMMAND ${CMAKE_COMMAND} -DFROM=${page} -DTO=${embedded} -P ${embed} DEPENDS ${page} ${embed} VERBATIM)
+    COMMAND ${CMAKE_COMMAND} -DFROM=${page} -DTO=${embedded} -DNAME=${name} -P ${embed}
+    DEPENDS ${page} ${embed} VERBATIM)
   target_sources(${target} PRIVATE ${embedded})
 endfunction()
 

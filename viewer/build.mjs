@@ -1,5 +1,5 @@
-// Bundles the page into one HTML file: node build.mjs OUT.html [FOLDER OF node_modules]
-// The file has one mark, where isoweave puts the report and the mesh in.
+// Bundles a page into one HTML file: node build.mjs page|watch OUT.html [FOLDER OF node_modules]
+// The file has one mark, where isoweave puts its data in.
 import { createHash } from 'node:crypto';
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -7,8 +7,15 @@ import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const out = resolve(process.argv[2] ?? join(here, 'build/page.html'));
-const modules = resolve(process.argv[3] ?? join(here, 'node_modules'));
+const kPages = {
+  page: { template: 'page.html', style: 'style.css', code: 'main.js', uses: ['three', 'meshoptimizer', 'uplot'] },
+  watch: { template: 'watch/watch.html', style: 'watch/watch.css', code: 'watch/main.js', uses: ['three', 'uplot'] },
+};
+const [wanted, target, packages] = process.argv.slice(2);
+if (!(wanted in kPages)) throw new Error(`expected a page of ${Object.keys(kPages).join(', ')}, found '${wanted}'`);
+const source = kPages[wanted];
+const out = resolve(target ?? join(here, `build/${wanted}.html`));
+const modules = resolve(packages ?? join(here, 'node_modules'));
 const kLicences = { three: 'LICENSE', meshoptimizer: 'LICENSE.md', uplot: 'LICENSE' };
 const esbuild = createRequire(join(modules, 'any.js'))('esbuild');
 
@@ -34,21 +41,21 @@ function inline(script) {
 
 // The licences ask to be where the code is.
 async function licences() {
-  const texts = await Promise.all(Object.entries(kLicences).map(async ([name, file]) => {
+  const texts = await Promise.all(source.uses.map(async (name) => {
     const { version } = JSON.parse(await readFile(join(modules, name, 'package.json'), 'utf8'));
-    return `${name} ${version}\n${(await readFile(join(modules, name, file), 'utf8')).trim()}`;
+    return `${name} ${version}\n${(await readFile(join(modules, name, kLicences[name]), 'utf8')).trim()}`;
   }));
   return texts.join('\n\n').replaceAll('--', '- -');
 }
 
 const [template, style, code] = await Promise.all([
-  readFile(join(here, 'src/page.html'), 'utf8'), bundle('style.css'), bundle('main.js')]);
+  readFile(join(here, 'src', source.template), 'utf8'), bundle(source.style), bundle(source.code)]);
 const script = inline(code);
 const hash = createHash('sha256').update(script, 'utf8').digest('base64');
 const parts = { style, script, hash, licences: await licences() };
 // One pass, and a function: what is put in may contain marks and dollar signs.
 const page = template.replace(/%%(\w+)%%/g, (mark, name) => parts[name] ?? mark);
 
-if (page.split('%%data%%').length !== 2) throw new Error('src/page.html: expected the mark %%data%% once');
+if (page.split('%%data%%').length !== 2) throw new Error(`${source.template}: expected the mark %%data%% once`);
 await mkdir(dirname(out), { recursive: true });
 await writeFile(out, page);

@@ -5,6 +5,7 @@
 // surface, whatever the slab thickness, the number of threads and the schedule.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -68,12 +69,15 @@ struct Checkpoint {
 // The newest state in a folder that is whole. Throws BadInput when there is none.
 Checkpoint read_checkpoint(const std::string& folder);
 
+class SweepObserver;
+
 struct RunControl {
   int threads = 0;  // 0: one per processor
   Schedule schedule = Schedule::kAutomatic;
   Device device = Device::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
   std::function<void(const Progress&)> progress;  // called after every slab, in the calling thread
+  SweepObserver* observer = nullptr;              // mesh_volume only, and not on a device
   // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it,
   // unless MeshOptions name the slab. OverMemory is thrown when not even one layer more would fit.
   std::uint64_t memory = 0;
@@ -112,6 +116,29 @@ struct SlabRecord {
   std::uint64_t undecided_triangles = 0;  // held over to the next slab
   std::uint64_t final_triangles = 0;      // written so far
   std::uint64_t bytes = 0;                // held by the slab and the zone
+};
+
+// A triangle by its corners: coordinates of the output, counter-clockwise seen from outside.
+using TriangleCorners = std::array<Point, 3>;
+
+// Looks at the surface while it is swept. Called in the thread that called mesh_volume, between two slabs; what is
+// handed over is there during the call only. It changes nothing but the time of the run and 5 MB of memory. What it
+// throws ends the run, as what the sink throws does.
+class SweepObserver {
+ public:
+  using Visitor = std::function<void(std::span<const TriangleCorners>)>;
+
+  virtual ~SweepObserver() = default;
+
+  // Triangles that have become final, in the order of the output, in blocks. Each triangle of the mesh comes once, but
+  // those that were written before the run was resumed.
+  virtual void add_final(std::span<const TriangleCorners> triangles) = 0;
+
+  // After each slab. visit_undecided(visitor) hands over what is held and not final, in blocks and in no promised
+  // order: a pass over the zone, which is for the observer to ask for or not. Where nothing is simplified nothing is
+  // undecided.
+  virtual void end_slab(const Progress& progress, const SlabRecord& slab,
+                        const std::function<void(const Visitor&)>& visit_undecided) = 0;
 };
 
 // A surface as it was written.

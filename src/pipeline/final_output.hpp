@@ -13,8 +13,9 @@ namespace isoweave {
 class FinalOutput {
  public:
   // level: of the simplifier, by default the only one.
-  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true, std::size_t level = 0)
-      : output_(world, sink, executor, measure), executor_(executor), level_(level) {}
+  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true, std::size_t level = 0,
+              SweepObserver* observer = nullptr)
+      : output_(world, sink, executor, measure, observer), executor_(executor), level_(level) {}
 
   // Writes the triangles that have become final in the level, each vertex once. Those of the last level leave the
   // simplifier's zone, which is compacted.

@@ -11,8 +11,8 @@ namespace isoweave {
 
 class FullOutput {
  public:
-  FullOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure)
-      : output_(world, sink, executor, measure) {}
+  FullOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure, SweepObserver* observer)
+      : output_(world, sink, executor, measure, observer) {}
 
   // Writes a piece of a manifold surface.
   void take(const SurfacePiece& piece);

@@ -1,17 +1,21 @@
 #include "pipeline/host_slabs.hpp"
 
 #include "pipeline/sweep.hpp"
+#include "pipeline/sweep_view.hpp"
 
 namespace isoweave {
 
 HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world,
                      std::span<MeshSink* const> sinks, const Executor& executor, const std::atomic<bool>* stop)
     : options_(options),
+      world_(world),
+      executor_(executor),
       extractor_(volume, options.extract, executor),
       simplifier_(options.simplify, executor, stop),
-      full_output_(world, *sinks.back(), executor, options.measure) {
+      full_output_(world, *sinks.back(), executor, options.measure, options.observer) {
   for (std::size_t level = 0; level < simplifier_.levels(); ++level) {
-    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, options.measure, level));
+    SweepObserver* const observer = simplifier_.is_last(level) ? options.observer : nullptr;
+    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, options.measure, level, observer));
   }
   if (options.triangles > 0) target_.emplace(simplifier_, executor, options.triangles);
 }
@@ -48,6 +52,10 @@ void HostSlabs::write(SlabRecord& record, MeshReport& report) {
     full_output_.take(piece_);
     full_output_.report(report);
   }
+}
+
+void HostSlabs::view_undecided(const SweepObserver::Visitor& visitor) const {
+  if (options_.simplifies) view_zone(simplifier_.zone(), world_, executor_, visitor);
 }
 
 void HostSlabs::wait_for_sink() {

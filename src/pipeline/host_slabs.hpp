@@ -23,6 +23,7 @@ class HostSlabs final : public SlabEngine {
     std::uint64_t triangles = 0;  // to stop at; 0: no such number
     double voxel = 1;             // mean side
     bool measure = true;
+    SweepObserver* observer = nullptr;
   };
 
   // A sink for each level of options.simplify. stop: set, and simplify() throws Interrupted, if it is not null.
@@ -38,6 +39,7 @@ class HostSlabs final : public SlabEngine {
   void simplify(SlabRecord& record) override;
   void write(SlabRecord& record, MeshReport& report) override;
   std::uint64_t held_triangles() const override { return options_.simplifies ? simplifier_.live_triangles() : 0; }
+  void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sink() override;
   void finish(MeshReport& report) const override;
   void exchange(StateWriter& state) override { exchange_with(state); }
@@ -53,6 +55,8 @@ class HostSlabs final : public SlabEngine {
   }
 
   Options options_;
+  const World& world_;
+  const Executor& executor_;
   MarchingCubes extractor_;
   Simplifier simplifier_;
   std::optional<CountTarget> target_;

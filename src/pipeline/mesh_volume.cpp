@@ -104,6 +104,7 @@ class VolumeSweep {
     host.triangles = options_.triangles;
     host.voxel = voxel_;
     host.measure = control_.measure;
+    host.observer = control_.observer;
     // A zone that has been left in the middle cannot be saved.
     return std::make_unique<HostSlabs>(volume_, host, world_, sinks_, executor_, saves() ? nullptr : control_.stop);
   }
@@ -117,6 +118,7 @@ class VolumeSweep {
     if (!options_.levels.empty()) refuse("levels");
     if (options_.max_distance.value > 0) refuse("a guaranteed distance");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
+    if (control_.observer != nullptr) refuse("an observer");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
       refuse("a schedule other than rounds");
     }
@@ -162,10 +164,14 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{
-        resident_,           volume_.slice_bytes(), static_cast<std::uint64_t>(volume_.slice_samples()),
-        executor_.threads(), simplifies_,           options_.normals,
-        level_errors_.size(), options_.max_distance.value > 0};
+    const MemoryModel model{resident_,
+                            volume_.slice_bytes(),
+                            static_cast<std::uint64_t>(volume_.slice_samples()),
+                            executor_.threads(),
+                            simplifies_,
+                            options_.normals,
+                            level_errors_.size(),
+                            options_.max_distance.value > 0};
     const auto undecided = static_cast<double>(engine_->held_triangles());
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
@@ -229,9 +235,16 @@ class VolumeSweep {
     clock_.lap(report_.seconds_write);
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
-    if (control_.progress) {
-      control_.progress({record.layer, layers_, voxels_, record.live_triangles, record.final_triangles, record.bytes});
-    }
+    tell(record);
+  }
+
+  void tell(const SlabRecord& record) {
+    const Progress progress{record.layer,           layers_,     voxels_, record.live_triangles,
+                            record.final_triangles, record.bytes};
+    if (control_.progress) control_.progress(progress);
+    if (control_.observer == nullptr) return;
+    control_.observer->end_slab(progress, record,
+                                [&](const SweepObserver::Visitor& visitor) { engine_->view_undecided(visitor); });
   }
 
   void plan_and_read() {
@@ -390,6 +403,7 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
   counting.measure = false;
   counting.checkpoint = {};
   counting.resume = nullptr;
+  counting.observer = nullptr;
   NoSink sink;
   return mesh_volume(volume, sink, full, counting).triangles;
 }

@@ -11,6 +11,7 @@
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "pipeline/overlapped_sink.hpp"
+#include "pipeline/sweep_view.hpp"
 #include "pipeline/world.hpp"
 
 namespace isoweave {
@@ -24,9 +25,15 @@ struct OutputCorner {
 
 class SurfaceOutput {
  public:
-  // measure: digest and components. With several threads the sink gets a piece while the next one is made.
-  SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure)
-      : world_(world), executor_(executor), measure_(measure), sink_(sink, executor.threads() > 1) {}
+  // measure: digest and components. With several threads the sink gets a piece while the next one is made. observer:
+  // sees all triangles, if it is not null.
+  SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure,
+                SweepObserver* observer = nullptr)
+      : world_(world),
+        executor_(executor),
+        measure_(measure),
+        observer_(observer),
+        sink_(sink, executor.threads() > 1) {}
 
   std::uint64_t vertices() const { return vertices_; }
   ComponentCounter& components() { return components_; }
@@ -67,6 +74,11 @@ class SurfaceOutput {
       digest_.fetch_add(digest, std::memory_order_relaxed);
     });
     triangles_ += count;
+    if (observer_ != nullptr) {
+      view_triangles(
+          count, [&](std::size_t n, std::size_t c) { return corner(n, c).position; }, world_, executor_,
+          [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
+    }
     sink_.append({piece.points.data(), piece.points.size()}, {piece.normals.data(), piece.normals.size()},
                  {piece.triangles.data(), piece.triangles.size()});
     next_ ^= 1;
@@ -107,6 +119,7 @@ class SurfaceOutput {
   const World& world_;
   const Executor& executor_;
   bool measure_;
+  SweepObserver* observer_;
   ComponentCounter components_;
   std::array<Piece, 2> pieces_;  // one is made, the other one is with the sink
   std::size_t next_ = 0;

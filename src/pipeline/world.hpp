@@ -18,6 +18,11 @@ class World {
             static_cast<float>(dot(rows_[2], p) + origin_.z)};
   }
 
+  // Turned over where the world mirrors.
+  std::array<Point, 3> triangle(const std::array<Vec3, 3>& p) const {
+    return {point(p[0]), point(p[mirrors_ ? 2 : 1]), point(p[mirrors_ ? 1 : 2])};
+  }
+
   // Normals are covectors: they turn with the inverse transpose, here by its multiple, the cofactors.
   Point normal(Point n) const;
 

@@ -36,20 +36,15 @@ void become_program(const std::string& folder, char* const* arguments, const std
   ::_exit(99);
 }
 
-bool has_ended(pid_t child) {
-  siginfo_t info{};
-  return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
-}
-
-void send_when_ready(pid_t child, const Setup& setup) {
+void send_when_ready(const Running& program, const Setup& setup) {
   using namespace std::chrono_literals;
   const auto give_up = std::chrono::steady_clock::now() + 60s;
-  while (!setup.ready(child) && std::chrono::steady_clock::now() < give_up) {
-    if (has_ended(child)) return;
+  while (!setup.ready(program.process()) && std::chrono::steady_clock::now() < give_up) {
+    if (program.has_ended()) return;
     std::this_thread::sleep_for(5ms);
   }
   std::this_thread::sleep_for(50ms);
-  ::kill(child, setup.signal);
+  ::kill(program.process(), setup.signal);
 }
 
 }  // namespace
@@ -62,29 +57,54 @@ bool has_file_open_in(pid_t process, const files::Folder& folder) {
   return false;
 }
 
-Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup) {
-  const files::Folder streams;
-  const std::string out = setup.out_path.empty() ? streams / "out" : setup.out_path;
-  const std::string err = streams / "err";
+Running::Running(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup)
+    : out_path_(setup.out_path) {
+  const std::string out = out_path_.empty() ? streams_ / "out" : out_path_;
+  const std::string err = streams_ / "err";
   std::vector<std::string> texts{ISOWEAVE_BINARY};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
 
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("cannot start a process");
-  if (child == 0) become_program(folder, pointers.data(), out, err, setup);
-  if (setup.signal != 0) send_when_ready(child, setup);
-  int status = 0;
-  if (::waitpid(child, &status, 0) != child) throw std::runtime_error("cannot wait for a process");
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("cannot start a process");
+  if (process_ == 0) become_program(folder, pointers.data(), out, err, setup);
+}
 
+Running::~Running() {
+  if (process_ < 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+bool Running::has_ended() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == process_;
+}
+
+std::string Running::err() const {
+  const std::string path = streams_ / "err";
+  return std::filesystem::exists(path) ? files::read_bytes(path) : "";
+}
+
+Result Running::wait() {
+  int status = 0;
+  if (::waitpid(process_, &status, 0) != process_) throw std::runtime_error("cannot wait for a process");
+  process_ = -1;
   Result result;
   if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
-  if (setup.out_path.empty()) result.out = files::read_bytes(out);
-  result.err = files::read_bytes(err);
+  if (out_path_.empty()) result.out = files::read_bytes(streams_ / "out");
+  result.err = err();
   return result;
+}
+
+Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup) {
+  Running program(folder, arguments, setup);
+  if (setup.signal != 0) send_when_ready(program, setup);
+  return program.wait();
 }
 
 bool is_one_line(const std::string& text) {

@@ -30,6 +30,28 @@ struct Setup {
 // The process has a file of this folder open, with a name or without.
 bool has_file_open_in(pid_t process, const files::Folder& folder);
 
+// `isoweave ARGUMENTS` on its way in `folder`. The destructor kills it.
+class Running {
+ public:
+  Running(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup = {});
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  pid_t process() const { return process_; }
+  bool has_ended() const;
+
+  // Standard error so far.
+  std::string err() const;
+
+  Result wait();
+
+ private:
+  files::Folder streams_;
+  std::string out_path_;
+  pid_t process_ = -1;
+};
+
 // Runs `isoweave ARGUMENTS` in `folder`.
 Result run(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup = {});
 

@@ -1,13 +1,9 @@
 // Buttons, sliders and keys of the view.
+import { addOrbitKeys, byId, pressedKey, toggle } from './buttons.js';
 import { report } from './data.js';
 import { element, shown } from './element.js';
 import { drawLegend } from './colours.js';
 import { slabCount } from './slabs.js';
-
-const kTurn = Math.PI / 24;
-const kZoom = 1.15;
-
-const byId = (id) => document.getElementById(id);
 
 export function surfaceNames() {
   let level = 0;
@@ -32,16 +28,6 @@ export function markSurface(index) {
   byId('drawn').textContent = '';
   byId('split-line').lastChild.textContent = surfaceNames()[index].toLowerCase();
   byId('drawn').append(`${surfaceNames()[index]}: `, shown(`page.surfaces.${index}.triangles`, 'count'), ' triangles');
-}
-
-// A button that is pressed or not.
-function toggle(id, act) {
-  const button = byId(id);
-  button.addEventListener('click', () => {
-    const on = button.getAttribute('aria-pressed') !== 'true';
-    button.setAttribute('aria-pressed', String(on));
-    act(on);
-  });
 }
 
 function addErrors(view) {
@@ -102,20 +88,11 @@ function addSplit(view, startSplit) {
 }
 
 function addKeys(view, choose, current) {
-  const turns = { ArrowLeft: [-kTurn, 0], ArrowRight: [kTurn, 0], ArrowUp: [0, -kTurn], ArrowDown: [0, kTurn] };
   const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', c: 'compare', 0: 'reset' };
-  byId('view').addEventListener('keydown', (event) => {
-    const turn = turns[event.key];
-    if (!turn || event.altKey || event.ctrlKey || event.metaKey) return;
-    view.orbit(...turn);
-    event.preventDefault();
-  });
+  addOrbitKeys(view, byId('view'));
   document.addEventListener('keydown', (event) => {
-    if (event.altKey || event.ctrlKey || event.metaKey || event.target.type === 'range') return;
-    const { key } = event;
+    const key = pressedKey(event);
     if (presses[key] && !byId(presses[key]).hidden) byId(presses[key]).click();
-    else if (key === '+' || key === '=') view.orbit(0, 0, kZoom);
-    else if (key === '-') view.orbit(0, 0, 1 / kZoom);
     else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? 1 : 0);
     else if (/^[1-9]$/.test(key) && Number(key) <= report.page.surfaces.length) choose(Number(key) - 1);
   });

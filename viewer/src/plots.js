@@ -2,72 +2,15 @@
 import uPlot from 'uplot';
 import { report, unit } from './data.js';
 import { element, shown } from './element.js';
-import { formatted, short } from './format.js';
+import { formatted } from './format.js';
+import {
+  faint, kHeight, logAxis, memoryOptions, nameAxis, positive, series, triangleOptions,
+} from './plot_style.js';
 
-const kHeight = 250;
 const plots = []; // { make, host, plot }
 
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-
-function axis(values, more = {}) {
-  return {
-    stroke: colour('muted'),
-    grid: { stroke: colour('line'), width: 1 },
-    ticks: { stroke: colour('line'), width: 1, size: 4 },
-    font: '12px system-ui, sans-serif',
-    values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : values(tick))),
-    ...more,
-  };
-}
-
-function series(label, name, format, more = {}) {
-  return {
-    label,
-    stroke: colour(name),
-    width: 2,
-    value: (_, value) => (value === null || value === undefined ? '–' : formatted(value, format, unit)),
-    ...more,
-  };
-}
-
-// Of a logarithmic axis, only powers of ten: there are nine times as many other lines.
-const decades = {
-  filter: (_, ticks) => ticks.map((tick) => (Number.isInteger(Math.log10(tick)) ? tick : null)),
-};
-const logAxis = () => axis(short, { size: 58, ...decades, grid: { stroke: colour('line'), width: 1, ...decades } });
-const nameAxis = (label, values) => axis(values, { label, labelSize: 20, labelFont: '12px system-ui, sans-serif' });
-
 const column = (key) => report.sweep.map((record) => record[key]);
-// Nothing has no logarithm.
-const positive = (values) => values.map((value) => (value > 0 ? value : null));
-const few = () => report.sweep.length < 30;
-
-function triangleOptions() {
-  const points = { show: few(), size: 6 };
-  return {
-    scales: { x: { time: false }, y: { distr: 3 } },
-    axes: [nameAxis('layers swept', short), logAxis()],
-    series: [
-      { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
-      series('Final', 'plot-final', 'count', { points }),
-      series('Live', 'plot-live', 'count', { points }),
-      series('Undecided', 'plot-undecided', 'count', { points, dash: [5, 4] }),
-    ],
-  };
-}
-
-function memoryOptions() {
-  return {
-    scales: { x: { time: false }, y: { range: (_, low, high) => [0, high * 1.08 || 1] } },
-    axes: [nameAxis('layers swept', short),
-      axis((value) => formatted(value, 'bytes'), { size: 66 })],
-    series: [
-      { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) },
-      series('Held by slab and zone', 'plot-memory', 'bytes',
-        { points: { show: few(), size: 6 }, fill: `${colour('plot-memory')}26` }),
-    ],
-  };
-}
+const few = () => ({ show: report.sweep.length < 30, size: 6 });
 
 const bins = () => report.page.distance.bins;
 
@@ -81,7 +24,7 @@ function errorOptions() {
     axes: [nameAxis(`distance${unit ? ` (${unit})` : ''}`, (value) => formatted(value, 'bare')), logAxis()],
     series: [
       { label: 'From', value: (_, value) => (value === null ? '–' : formatted(value, 'length', unit)) },
-      series('Vertices', 'plot-error', 'count', { paths: bars, points: { show: false }, fill: `${colour('plot-error')}99`, width: 1 }),
+      series('Vertices', 'plot-error', 'count', { paths: bars, points: { show: false }, fill: faint('plot-error', '99'), width: 1 }),
     ],
   };
 }
@@ -110,11 +53,11 @@ function addSweepPlots() {
   const layers = column('layer');
   const cells = (keys) => (row) => keys.map(([key, format]) => shown(`sweep.${row}.${key}`, format));
   addPlot('plot-triangles', 'Triangles along the sweep',
-    'Final, live and undecided triangles after each slab, on a logarithmic scale', triangleOptions,
+    'Final, live and undecided triangles after each slab, on a logarithmic scale', () => triangleOptions(few()),
     [layers, ...['final_triangles', 'live_triangles', 'undecided_triangles'].map((key) => positive(column(key)))],
     numberTable(['Layers', 'Final', 'Live', 'Undecided'], layers.length, cells([['layer', 'count'],
       ['final_triangles', 'count'], ['live_triangles', 'count'], ['undecided_triangles', 'count']])));
-  addPlot('plot-memory', 'Memory along the sweep', 'Bytes that slab and undecided zone hold after each slab', memoryOptions,
+  addPlot('plot-memory', 'Memory along the sweep', 'Bytes that slab and undecided zone hold after each slab', () => memoryOptions(few()),
     [layers, column('bytes')],
     numberTable(['Layers', 'Bytes'], layers.length, cells([['layer', 'count'], ['bytes', 'bytes']])));
 }

@@ -1,34 +1,17 @@
-// The mesh in three dimensions. It is drawn when something has changed, and not otherwise.
+// The mesh in three dimensions.
 import {
-  BufferGeometry, DirectionalLight, DoubleSide, Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial,
 } from 'three';
-import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { report, valueAt } from './data.js';
 import { cutAfter, drawnSlabs, slabCorners } from './slabs.js';
+import { firstDirection, Stage } from './stage.js';
 
-const kField = 32; // degrees
 const kPlain = 0xe2ddd0;
 
-// From where the mesh is seen first: the patient from the front, anything else from a corner.
-function firstDirection() {
-  const space = report.space || valueAt('input.space')?.toUpperCase();
-  if (space === 'RAS') return new Vector3(-0.45, 1, 0.22);
-  if (space === 'LPS') return new Vector3(0.45, -1, 0.22);
-  return new Vector3(0.65, -1, 0.55);
-}
-
-export class View {
+export class View extends Stage {
   constructor(canvas) {
-    this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    super(canvas);
     this.renderer.localClippingEnabled = true;
-    this.scene = new Scene();
-    this.camera = new PerspectiveCamera(kField, 1, 0.1, 1000);
-    this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener('change', () => this.draw());
-    this.addLights();
     this.surface = new Mesh(new BufferGeometry(), new MeshStandardMaterial({
       color: kPlain, roughness: 0.62, metalness: 0, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
@@ -43,19 +26,6 @@ export class View {
     this.planes = new Group();
     this.planes.visible = false;
     this.scene.add(this.surface, this.edges, this.before, this.beforeEdges, this.planes);
-    new ResizeObserver(() => this.resize()).observe(canvas);
-  }
-
-  // They go with the camera: whatever is looked at is lit.
-  addLights() {
-    const key = new DirectionalLight(0xffffff, 2.1);
-    key.position.set(-0.6, 0.9, 0.7);
-    const back = new DirectionalLight(0xbfd4ff, 0.7);
-    back.position.set(0.9, -0.4, 0.3);
-    this.camera.add(key, back, key.target, back.target);
-    key.target.position.set(0, 0, -1);
-    back.target.position.set(0, 0, -1);
-    this.scene.add(this.camera, new HemisphereLight(0xf4f8ff, 0x8a8378, 0.9));
   }
 
   // The first one also says where to look.
@@ -69,17 +39,7 @@ export class View {
 
   reset() {
     const { radius, center } = this.surface.geometry.boundingSphere;
-    const tightest = Math.min(1, this.camera.aspect);
-    const distance = (1.04 * radius) / Math.sin((kField * Math.PI) / 360) / tightest;
-    this.camera.position.copy(firstDirection().setLength(distance)).add(center);
-    this.camera.near = radius / 200;
-    this.camera.far = radius * 60;
-    this.camera.updateProjectionMatrix();
-    this.controls.target.copy(center);
-    this.controls.minDistance = radius / 50;
-    this.controls.maxDistance = radius * 30;
-    this.controls.update();
-    this.draw();
+    this.lookAt(center, radius, firstDirection(report.space || valueAt('input.space')?.toUpperCase()));
   }
 
   setWireframe(on) {
@@ -133,39 +93,7 @@ export class View {
     this.draw();
   }
 
-  // Angles in radians; zoom above 1 comes nearer.
-  orbit(aside, up, zoom = 1) {
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    const turned = new Vector3(offset.x, offset.z, -offset.y); // three's spheres have y up
-    const place = new Spherical().setFromVector3(turned);
-    place.theta += aside;
-    place.phi += up;
-    place.makeSafe();
-    place.radius = Math.min(Math.max(place.radius / zoom, this.controls.minDistance), this.controls.maxDistance);
-    turned.setFromSpherical(place);
-    this.camera.position.set(turned.x, -turned.z, turned.y).add(this.controls.target);
-    this.controls.update();
-    this.draw();
-  }
-
-  resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
-    this.drawNow();
-  }
-
-  draw() {
-    if (this.asked) return;
-    this.asked = requestAnimationFrame(() => this.drawNow());
-  }
-
-  drawNow() {
-    cancelAnimationFrame(this.asked);
-    this.asked = 0;
+  render() {
     if (this.split === null) {
       this.drawOne(false);
       return;
@@ -185,6 +113,6 @@ export class View {
     this.edges.visible = !before && this.wireframe;
     this.before.visible = before;
     this.beforeEdges.visible = before && this.wireframe;
-    this.renderer.render(this.scene, this.camera);
+    super.render();
   }
 }

@@ -1,0 +1,52 @@
+// mesh --watch: a page on this machine that shows the sweep while it runs. It never changes the result and never waits
+// for a browser; builds without the viewer or without cpp-httplib refuse it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "isoweave/pipeline.hpp"
+#include "isoweave/volume.hpp"
+
+namespace isoweave::cli {
+
+struct WatchOptions {
+  std::string port;  // empty: nobody watches; "0": any port that is free
+
+  bool given() const { return !port.empty(); }
+};
+
+// --watch. To be added after --quiet and --dry-run, with which it does not go.
+void add_watch_option(CLI::App& verb, WatchOptions& watch);
+
+// Refuses with std::invalid_argument what is known to fail: a build that has no page, a port that is none, a device.
+void check_watch(const WatchOptions& watch, Device device);
+
+// The most that watching holds.
+std::uint64_t watch_memory(const WatchOptions& watch);
+
+// What of the run is told to whoever watches.
+struct WatchedRun {
+  const VolumeInfo& volume;
+  const MeshOptions& options;
+  std::string input, output;    // names
+  std::int64_t resumed_at = 0;  // layers that an earlier process has done
+};
+
+class Watch : public SweepObserver {
+ public:
+  // The run is complete. Serving goes on until the end of this object.
+  virtual void complete(const MeshReport& report) = 0;
+
+  // Returns when those who watch have got the result, when nobody does, after five seconds, or once `stop` is set.
+  virtual void deliver(const std::atomic<bool>& stop) const = 0;
+};
+
+// Says where the page is, on standard error. Null where nobody watches: it was not asked for, or the port cannot be
+// had, which is a note and no error.
+std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run);
+
+}  // namespace isoweave::cli

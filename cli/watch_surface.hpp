@@ -1,0 +1,84 @@
+// Triangles to be looked at while they come: on a grid, and no more of them than can be drawn.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "isoweave/pipeline.hpp"
+
+namespace isoweave::cli {
+
+// x, y, z of three corners, in steps of the grid.
+using GridTriangle = std::array<std::uint16_t, 9>;
+
+// 65536 steps along the longest side of a box.
+struct ViewGrid {
+  std::array<double, 3> origin{};
+  double step = 1;
+
+  static ViewGrid around(std::span<const Point> points);
+
+  // Corners outside of the box go to its border.
+  GridTriangle place(const TriangleCorners& triangle) const;
+};
+
+// Which point stands for a cubic cell. Open addressing: looked up three times for each triangle that is kept.
+class CellTable {
+ public:
+  using Place = std::array<std::uint16_t, 3>;
+
+  std::size_t size() const { return size_; }
+
+  // The point that came first in the cell of so many bits less in which `place` is.
+  Place first_in_cell(const Place& place, int bits);
+
+ private:
+  struct Slot {
+    std::uint64_t cell = kEmpty;
+    Place first{};
+  };
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+
+  Slot& slot_of(std::uint64_t cell);
+  void grow();
+
+  std::vector<Slot> slots_;
+  std::size_t size_ = 0;
+};
+
+// A surface that stays below a number of triangles: each time there would be more, the vertices within a cell become
+// one (Rossignac and Borrel 1993, Multi-resolution 3D approximations), and triangles that have become edges or points
+// go. The first cells are as wide as the edges are long, then twice as wide each time. Up to then triangles are as they
+// came.
+class CoarseSurface {
+ public:
+  // Cells of 2^bits steps to begin with; 0: none.
+  explicit CoarseSurface(std::size_t most_triangles, int bits = 0) : most_(most_triangles), bits_(bits) {}
+
+  void add(const GridTriangle& triangle);
+
+  std::span<const GridTriangle> triangles() const { return triangles_; }
+  int bits() const { return bits_; }
+
+  // What is there now, and what has become of that.
+  void mark() { marked_ = triangles_.size(); }
+  std::span<const GridTriangle> marked() const { return triangles().first(marked_); }
+
+ private:
+  bool snap(GridTriangle& triangle);
+  bool is_full() const;
+  int first_bits() const;
+  void coarsen();
+
+  std::size_t most_;
+  int bits_;
+  CellTable cells_;
+  std::vector<GridTriangle> triangles_;
+  std::size_t marked_ = 0;
+};
+
+}  // namespace isoweave::cli

@@ -1,0 +1,22 @@
+# mesh --watch: a page that shows the sweep while it runs, served by cpp-httplib. ISOWEAVE_WATCH is AUTO (take it in where
+# the viewer and cpp-httplib are there), ON (stop without them) or OFF. Without it `--watch` is an error that says so.
+set(ISOWEAVE_WATCH AUTO CACHE STRING "mesh --watch, through the viewer and cpp-httplib: AUTO, ON or OFF")
+set_property(CACHE ISOWEAVE_WATCH PROPERTY STRINGS AUTO ON OFF)
+
+set(ISOWEAVE_HAS_WATCH FALSE)
+if(ISOWEAVE_WATCH STREQUAL AUTO OR ISOWEAVE_WATCH)
+  set(lack "")
+  find_package(IsoweaveHttplib QUIET)
+  if(NOT ISOWEAVE_HAS_VIEWER)
+    set(lack "the viewer is not there")
+  elseif(NOT IsoweaveHttplib_FOUND)
+    set(lack "cpp-httplib, or pkg-config to find it with, is not there")
+  endif()
+  if(NOT lack)
+    set(ISOWEAVE_HAS_WATCH TRUE)
+  elseif(ISOWEAVE_WATCH STREQUAL AUTO)
+    message(STATUS "No --watch: ${lack}")
+  else()
+    message(FATAL_ERROR "ISOWEAVE_WATCH=ON: ${lack}")
+  endif()
+endif()
