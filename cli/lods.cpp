@@ -53,6 +53,12 @@ LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
   }
 }
 
+std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs) {
+  std::vector<TriangleMesh> meshes;
+  for (std::size_t level = 0; level + 1 < outputs.size(); ++level) meshes.push_back(read_mesh(outputs[level].path));
+  return meshes;
+}
+
 Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
   Json levels = Json::array();
   for (std::size_t level = 0; level < report.levels.size(); ++level) {

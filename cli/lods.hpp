@@ -43,6 +43,9 @@ class LevelSinks {
   std::vector<MeshSink*> pointers_;
 };
 
+// The meshes in the files of all levels but the last one.
+std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs);
+
 // What was written of finer levels, for the report; and a line for each.
 Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs);
 void print_levels(const MeshReport& report, const std::vector<OutputOptions>& outputs);

@@ -301,7 +301,9 @@ std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t 
 // The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
 PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
                            const RunControl& control) {
-  PageContents contents{read_mesh(level_outputs(arguments.output, arguments.stop).back().path), std::nullopt, ""};
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
+  PageContents contents{read_mesh(outputs.back().path)};
+  contents.finer = read_finer(outputs);
   if (report.collapses == 0) {
     contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
   } else if (report.triangles_extracted > kMostFullTriangles) {
@@ -327,6 +329,9 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   parse_slab(arguments.slab, 1);
   check_page(arguments.page, arguments.output);
   check_watch(arguments.watch, control.device);
+  if (control.device == Device::kCuda && !arguments.checkpoint.empty()) {
+    wrong_value("--checkpoint", "a run on processors", "--device cuda");
+  }
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({arguments.input.path, output.path, run.report, arguments.page.path});
@@ -401,7 +406,9 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   Json json = report_json(report, info, arguments, options, file, forecast);
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl& quiet) {
-    check_page_memory(arguments, control.memory, report.triangles);
+    std::uint64_t triangles = report.triangles;
+    for (const SurfaceReport& level : report.levels) triangles += level.triangles;
+    check_page_memory(arguments, control.memory, triangles);
     return page_contents(arguments, options, report, quiet);
   });
   if (run.quiet) return;

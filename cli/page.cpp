@@ -41,6 +41,7 @@ Json surfaces_json(const std::vector<PageSurface>& surfaces) {
     json.push_back({{"name", surface.name},
                     {"triangles", surface.mesh.triangles.size()},
                     {"vertices", surface.mesh.vertices.size()}});
+    if (surface.level) json.back()["level"] = *surface.level;
   }
   return json;
 }
@@ -60,6 +61,9 @@ Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& re
     notes.push_back(
         "What is drawn is a stand-in: the mesh has more triangles than a page shows (--page-triangles). "
         "Counts, checks and distances are those of the mesh.");
+  }
+  if (page.lacks_finer) {
+    notes.push_back("Levels of detail with more triangles than a page shows (--page-triangles) are left out.");
   }
   if (!full_note.empty()) notes.push_back(full_note);
   const auto digest = report.find("digest");
@@ -89,12 +93,13 @@ void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageCon
                 const RunControl& control) {
   const auto most_triangles = static_cast<std::uint64_t>(parse_count("--page-triangles", page.triangles));
   const MeshCheck check = check_mesh(contents.mesh);
-  PageSurfaces shown = page_surfaces(std::move(contents.mesh), std::move(contents.full), most_triangles, control);
+  const std::string full_note = std::move(contents.full_note);
+  PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
   Json& json = report["page"];
   json["check"] = check_json(check, report["output"]);
   json["surfaces"] = surfaces_json(shown.surfaces);
   json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
-  json["notes"] = notes_json(shown, check, report, contents.full_note);
+  json["notes"] = notes_json(shown, check, report, full_note);
 
   const std::string_view html = page_template();
   const std::size_t mark = html.find(kPageMark);

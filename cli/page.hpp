@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
@@ -42,8 +43,9 @@ std::uint64_t page_memory(std::uint64_t triangles);
 
 struct PageContents {
   TriangleMesh mesh;
-  std::optional<TriangleMesh> full;  // before simplification
-  std::string full_note;             // why that is not there
+  std::optional<TriangleMesh> full{};  // before simplification
+  std::string full_note{};             // why that is not there
+  std::vector<TriangleMesh> finer{};   // levels of detail before `mesh`, finest first
 };
 
 // Why a surface of more than kMostFullTriangles is not there.

@@ -93,28 +93,40 @@ PageErrors measured_errors(const TriangleMesh& mesh, const TriangleMesh& full, c
   return errors;
 }
 
-// The mesh, or what stands in for it, and what is coarser.
-std::vector<PageSurface> levels_of(TriangleMesh mesh, std::uint64_t most_triangles, const RunControl& control) {
-  std::vector<PageSurface> levels;
-  const bool fits = mesh.triangles.size() <= most_triangles;
-  if (!fits) mesh = simplified(mesh, most_triangles, control);
-  levels.push_back({fits ? "mesh" : "stand-in", std::move(mesh), {}});
-  const std::uint64_t finest = levels[0].mesh.triangles.size();
+// The mesh, or what stands in for it.
+PageSurface shown_mesh(TriangleMesh mesh, std::uint64_t most_triangles, const RunControl& control) {
+  if (mesh.triangles.size() <= most_triangles) return {"mesh", std::move(mesh)};
+  return {"stand-in", simplified(mesh, most_triangles, control)};
+}
+
+void add_coarser(std::vector<PageSurface>& surfaces, const RunControl& control) {
+  const std::uint64_t finest = surfaces.back().mesh.triangles.size();
   for (const std::uint64_t part : kCoarser) {
     if (finest / part < kFewestTriangles) break;
-    const TriangleMesh& finer = levels.back().mesh;
+    const TriangleMesh& finer = surfaces.back().mesh;
     TriangleMesh coarser = simplified(finer, finest / part, control);
     if (static_cast<double>(coarser.triangles.size()) > kWorthIt * static_cast<double>(finer.triangles.size())) break;
-    levels.push_back({"level", std::move(coarser), {}});
+    surfaces.push_back({"level", std::move(coarser)});
+  }
+}
+
+// Those that are not too large, with their numbers.
+std::vector<PageSurface> shown_levels(std::vector<TriangleMesh> finer, std::uint64_t most_triangles) {
+  std::vector<PageSurface> levels;
+  for (std::size_t level = 0; level < finer.size(); ++level) {
+    if (finer[level].triangles.size() > most_triangles || finer[level].triangles.empty()) continue;
+    finer[level].normals = {};
+    levels.push_back({"finer", std::move(finer[level]), {}, level});
   }
   return levels;
 }
 
 }  // namespace
 
-PageSurfaces page_surfaces(TriangleMesh mesh, std::optional<TriangleMesh> full, std::uint64_t most_triangles,
-                           const RunControl& control) {
+PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control) {
   PageSurfaces page;
+  TriangleMesh& mesh = contents.mesh;
+  std::optional<TriangleMesh>& full = contents.full;
   if (mesh.triangles.empty()) return page;
   mesh.normals = {};
   const bool comparable = full && !full->triangles.empty();
@@ -124,10 +136,18 @@ PageSurfaces page_surfaces(TriangleMesh mesh, std::optional<TriangleMesh> full, 
     tree.emplace(*full, executor);
     page.errors = measured_errors(mesh, *full, *tree, executor);
   }
-  page.surfaces = levels_of(std::move(mesh), most_triangles, control);
+  const std::size_t finer = contents.finer.size();
+  page.surfaces = shown_levels(std::move(contents.finer), most_triangles);
+  page.lacks_finer = page.surfaces.size() < finer;
+  page.surfaces.push_back(shown_mesh(std::move(mesh), most_triangles, control));
+  if (finer > 0) {
+    page.surfaces.back().level = finer;
+  } else {
+    add_coarser(page.surfaces, control);
+  }
   if (comparable) {
     for (PageSurface& surface : page.surfaces) surface.distances = distances_from(*tree, surface.mesh, executor);
-    page.surfaces.insert(page.surfaces.begin(), PageSurface{"full", std::move(*full), {}});
+    page.surfaces.insert(page.surfaces.begin(), PageSurface{"full", std::move(*full)});
   }
   return page;
 }

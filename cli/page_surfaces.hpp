@@ -9,13 +9,15 @@
 #include "isoweave/measure.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
+#include "page.hpp"
 
 namespace isoweave::cli {
 
 struct PageSurface {
-  std::string name;  // "full"; "mesh" or "stand-in"; "level" for the coarser ones
+  std::string name;  // "full"; "finer" for levels of detail; "mesh" or "stand-in"; "level" for coarser ones of our own
   TriangleMesh mesh;
-  std::vector<float> distances;  // of the vertices from the full surface, or none
+  std::vector<float> distances{};      // of the vertices from the full surface, or none
+  std::optional<std::size_t> level{};  // number among the levels of detail of the run
 };
 
 // Distances of a mesh from the full surface.
@@ -30,10 +32,10 @@ struct PageErrors {
 struct PageSurfaces {
   std::vector<PageSurface> surfaces;  // in the order above; none for a mesh without triangles
   std::optional<PageErrors> errors;   // where there is a full surface
+  bool lacks_finer = false;           // some levels of detail have more triangles than a page shows
 };
 
-// A mesh of more triangles is replaced by a stand-in of about so many.
-PageSurfaces page_surfaces(TriangleMesh mesh, std::optional<TriangleMesh> full, std::uint64_t most_triangles,
-                           const RunControl& control);
+// A mesh of more triangles is replaced by a stand-in of about so many. Coarser levels are made where the run made none.
+PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control);
 
 }  // namespace isoweave::cli

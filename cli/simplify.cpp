@@ -52,8 +52,9 @@ MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t lev
 }
 
 // The mesh as it is in the file, beside the one that was given.
-PageContents page_contents(const std::string& path, TriangleMesh full) {
-  PageContents contents{read_mesh(path), std::nullopt, ""};
+PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMesh full) {
+  PageContents contents{read_mesh(outputs.back().path)};
+  contents.finer = read_finer(outputs);
   if (full.triangles.size() <= kMostFullTriangles) {
     contents.full = std::move(full);
   } else {
@@ -91,8 +92,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   Json json = report_json(report, mesh, arguments);
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["notes"] = sinks.last().notes();
-  evidence.write(std::move(json), control,
-                 [&](const RunControl&) { return page_contents(outputs.back().path, std::move(mesh)); });
+  evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());

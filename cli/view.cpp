@@ -50,8 +50,11 @@ Json read_report(const std::string& path) {
 }
 
 // As the run was told, or beside the report when both were moved.
-std::string mesh_of(const Json& report, const std::string& report_path) {
-  const std::filesystem::path named = report["output"].get<std::string>();
+std::string mesh_of(const Json& surface, const std::string& report_path) {
+  if (!surface.is_object() || !surface.contains("output") || !surface["output"].is_string()) {
+    throw BadInput(report_path + ": expected levels that name their meshes as \"output\", found others");
+  }
+  const std::filesystem::path named = surface["output"].get<std::string>();
   std::error_code error;
   if (std::filesystem::exists(named, error)) return named.string();
   const std::filesystem::path beside = std::filesystem::path(report_path).parent_path() / named.filename();
@@ -72,7 +75,10 @@ void run_view(ViewArguments arguments) {
   const std::string mesh_path = reported ? mesh_of(report, arguments.input) : arguments.input;
   check_different(
       {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
-  PageContents contents{read_mesh(mesh_path), std::nullopt, ""};
+  PageContents contents{read_mesh(mesh_path)};
+  if (report.contains("levels")) {
+    for (const Json& level : report["levels"]) contents.finer.push_back(read_mesh(mesh_of(level, arguments.input)));
+  }
   if (arguments.before.empty()) {
     contents.full_note =
         "No surface from before simplification was given: there is no before and after, and no "

@@ -148,6 +148,29 @@ TEST(CliPage, HoldsTheMeshAndTheSurfaceBefore) {
   }
 }
 
+TEST(CliPage, HoldsTheLevelsOfTheRun) {
+  const files::Folder folder;
+  expect_done(folder, mesh({"--lods", "0.05vox,0.2vox,0.6vox", "--html", "out.html", "--report", "out.json"}));
+  expect_done(folder, {"view", "out.json", "-o", "view.html", "--quiet"});
+  const Json report = report_of(folder, "out.json");
+  for (const std::string name : {"out.html", "view.html"}) {
+    Json surfaces = json_in(files::read_bytes(folder / name), "report")["page"]["surfaces"];
+    if (name == "out.html") {
+      EXPECT_EQ(surfaces[0]["name"], "full");
+      surfaces.erase(0);
+    }
+    ASSERT_EQ(surfaces.size(), 3U) << name;
+    for (std::size_t level = 0; level < 3; ++level) {
+      EXPECT_EQ(surfaces[level]["name"], level < 2 ? "finer" : "mesh");
+      EXPECT_EQ(surfaces[level]["level"], level);
+      EXPECT_EQ(surfaces[level]["triangles"], level < 2 ? report["levels"][level]["triangles"] : report["triangles"]);
+    }
+  }
+  expect_done(folder, mesh({"--lods", "0.05vox,0.6vox", "--html", "few.html", "--page-triangles", "4000"}));
+  const Json page = json_in(files::read_bytes(folder / "few.html"), "report")["page"];
+  EXPECT_NE(page["notes"].dump().find("Levels of detail with more triangles"), std::string::npos) << page["notes"];
+}
+
 TEST(CliPage, DistancesAreThoseOfCompare) {
   const files::Folder folder;
   expect_done(folder, mesh({"--html", "out.html", "--report", "out.json"}));

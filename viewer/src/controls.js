@@ -5,10 +5,16 @@ import { element, shown } from './element.js';
 import { drawLegend } from './colours.js';
 import { slabCount } from './slabs.js';
 
+// The surface of the mesh itself, or of what stands in for it; -1 where there is none.
+export function resultIndex() {
+  return report.page.surfaces.findIndex(({ name }) => name === 'mesh' || name === 'stand-in');
+}
+
 export function surfaceNames() {
   let level = 0;
   const names = { full: 'Before', mesh: 'Result', 'stand-in': 'Stand-in' };
-  return report.page.surfaces.map(({ name }) => names[name] ?? `LOD ${(level += 1)}`);
+  return report.page.surfaces.map((surface) =>
+    (surface.level === undefined ? names[surface.name] ?? `LOD ${(level += 1)}` : `LOD ${surface.level}`));
 }
 
 // Radio buttons, one per surface; `choose` is called with its number.
@@ -93,7 +99,7 @@ function addKeys(view, choose, current) {
   document.addEventListener('keydown', (event) => {
     const key = pressedKey(event);
     if (presses[key] && !byId(presses[key]).hidden) byId(presses[key]).click();
-    else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? 1 : 0);
+    else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? resultIndex() : 0);
     else if (/^[1-9]$/.test(key) && Number(key) <= report.page.surfaces.length) choose(Number(key) - 1);
   });
 }

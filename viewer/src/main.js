@@ -1,5 +1,5 @@
 // Puts the page together.
-import { markSurface, startControls, surfaceNames } from './controls.js';
+import { markSurface, resultIndex, startControls, surfaceNames } from './controls.js';
 import { packedSurface, report } from './data.js';
 import { geometryOf, middleOf, unpack } from './geometry.js';
 import { drawPlots, plotData, startPlots } from './plots.js';
@@ -21,7 +21,7 @@ function hideControls() {
 class Surfaces {
   constructor(view) {
     this.view = view;
-    this.shown = report.page.surfaces.findIndex(({ name }) => name === 'mesh' || name === 'stand-in');
+    this.shown = resultIndex();
     this.geometries = new Map();
   }
 

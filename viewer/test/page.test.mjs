@@ -37,6 +37,8 @@ before(async () => {
     '--report', 'large.json', '--quiet');
   run('mesh', kVolume, '--iso', '300', '-o', 'empty.ply', '--html', 'empty.html', '--report', 'empty.json', '--quiet');
   run('simplify', 'mesh.ply', '--triangles', '4000', '-o', 'small.stl', '--html', 'small.html', '--report', 'small.json', '--quiet');
+  run('mesh', kVolume, '--iso', '127.5', '-o', 'levels.ply', '--lods', '0.1vox,0.3vox,1vox', '--html', 'levels.html',
+    '--report', 'levels.json', '--quiet');
   run('view', 'mesh.ply', '--quiet');
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
   writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
@@ -206,6 +208,20 @@ describe('the view', () => {
       assert.equal(await pressed(page, id), was, id);
       await settled(page);
       assert.equal((await picture(page)).sum, first.sum, `${id} and back`);
+    }
+  }));
+
+  test('names the levels of the run', () => withPage('levels.html', kSmall, async (page) => {
+    const names = await page.evaluate(`[...document.querySelectorAll('#surfaces label b')].map((e) => e.innerText)`);
+    assert.deepEqual(names, ['Before', 'LOD 0', 'LOD 1', 'LOD 2']);
+    assert.equal(await page.evaluate(`document.querySelector('#surfaces input:checked').value`), '3');
+    const { levels, triangles } = json('levels.json');
+    for (const [index, count] of [...levels.map((level) => level.triangles), triangles].entries()) {
+      const drawn = await page.evaluate(`window.isoweave.ready.then(async ({ view, surfaces }) => {
+        await surfaces.choose(${index + 1});
+        return view.surface.geometry.index.count / 3;
+      })`);
+      assert.equal(drawn, count);
     }
   }));
 
