@@ -5,13 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "measure/triangle_tree.hpp"
 #include "parallel/array.hpp"
-#include "parallel/parallel.hpp"
 #include "simplify/reach.hpp"
 #include "slab/vec3.hpp"
 
