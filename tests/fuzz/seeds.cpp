@@ -269,7 +269,7 @@ void put_options(Seeds& seeds) {
 void put_state(Seeds& seeds) {
   const TempFolder folder;
   CheckpointFolder states(folder / "");
-  states.begin_state({"", "a note", "a mark", 3, 8}, {"a volume", "options"})->commit();
+  states.begin_state({"", "a note", {"a mark", "another"}, 3, 8}, {"a volume", "options"})->commit();
   for (const char* name : {"state-0", "state-1"}) {
     if (!std::filesystem::exists(folder / name)) continue;
     const std::string state = get(folder / name);
