@@ -330,7 +330,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   check_page(arguments.page, arguments.output);
   check_watch(arguments.watch, control.device);
   if (control.device == Device::kCuda && !arguments.checkpoint.empty()) {
-    wrong_value("--checkpoint", "a run on processors", "--device cuda");
+    throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
   }
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {

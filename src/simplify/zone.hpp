@@ -55,7 +55,7 @@ class Zone : public ZoneView {
   std::vector<Array<LevelVertex>> levels;  // before the last one; each parallel to vertices
 
   // Edges with a higher cost wait: what is decided is what a run with that error would decide. All vertices count as
-  // settled afterwards. At most what retires an edge; below what it was only for what is appended from now on.
+  // settled afterwards. At most what retires an edge; lowered, it leaves what has been decided as it is.
   void set_limit(CostBits limit);
 
   // Nothing more is to be decided: all edges are retired.

@@ -260,6 +260,7 @@ TEST(CliDevice, WhatTakesProcessorsIsRefused) {
     const Result result = run(folder.path(), arguments);
     EXPECT_EQ(result.code, 2) << result.err;
     EXPECT_NE(result.err.find("which takes processors"), std::string::npos) << result.err;
+    EXPECT_EQ(listing(folder), std::vector<std::string>{});
   }
 }
 
