@@ -20,8 +20,8 @@ using program::run;
 
 constexpr const char* kVolume = "generate:gyroid:24x24x24:uint8";
 
-std::vector<std::string> mesh(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"mesh", kVolume, "--iso", "127.5"};
+std::vector<std::string> mesh(const std::vector<std::string>& more, const std::string& volume = kVolume) {
+  std::vector<std::string> arguments{"mesh", volume, "--iso", "127.5"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -197,16 +197,18 @@ TEST(CliLevels, WrongUseIsRefused) {
 }
 
 TEST(CliDistance, IsGuaranteedAndIsTheErrorWhereNoneIsGiven) {
+  constexpr const char* kSmall = "generate:gyroid:12x12x12:uint8";
   const files::Folder folder;
-  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"})).code, 0);
-  const Json bounded = report_of(folder, mesh({"-o", "a.ply", "--max-distance", "0.3vox", "--report", "r.json"}));
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"}, kSmall)).code, 0);
+  const Json bounded =
+      report_of(folder, mesh({"-o", "a.ply", "--max-distance", "0.3vox", "--report", "r.json"}, kSmall));
   EXPECT_DOUBLE_EQ(bounded.at("error").get<double>(), 0.3);
   const Json distance = Json::parse(run(folder.path(), {"compare", "a.ply", "full.ply", "--json"}).out);
   EXPECT_LE(distance.at("a_to_b").at("max").get<double>(), 0.3 * (1 + 1e-5));
   const auto tight = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"-o", "b.ply", "--error", "0.5vox", "--report", "r.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return report_of(folder, mesh(arguments)).at("digest");
+    return report_of(folder, mesh(arguments, kSmall)).at("digest");
   };
   EXPECT_NE(tight({"--max-distance", "0.1vox"}), tight({}));
   EXPECT_EQ(tight({"--max-distance", "0.1vox"}),
