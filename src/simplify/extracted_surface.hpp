@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "measure/triangle_tree.hpp"
+#include "measure/geometry.hpp"
 #include "parallel/array.hpp"
 #include "simplify/reach.hpp"
 #include "slab/vec3.hpp"

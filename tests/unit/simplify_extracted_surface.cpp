@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "measure/triangle_tree.hpp"
 #include "simplify/extracted_surface.hpp"
 
 namespace isoweave {
