@@ -40,8 +40,8 @@ Examples:
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --watch
 
-Without --error, --triangles and --ratio the error is 0.2vox. The result does not depend on --threads, --schedule and
---slab.)";
+Without --error, --lods, --max-distance, --triangles and --ratio the error is 0.2vox. The result does not depend on
+--threads, --schedule and --slab.)";
 
 std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
