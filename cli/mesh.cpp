@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "components.hpp"
 #include "evidence.hpp"
 #include "isoweave/error.hpp"
 #include "lods.hpp"
@@ -50,6 +51,7 @@ struct MeshArguments {
   RunOptions run;
   OutputOptions output;
   StopOptions stop;
+  ComponentOptions components;
   PageOptions page;
   WatchOptions watch;
   std::string iso, quality = "normal", slab, inside = "above", normals = "none";
@@ -80,6 +82,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"error", arguments.stop.error},
           {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
           {"specks", arguments.stop.specks},
+          {"min_component", arguments.components.min_component},
+          {"largest", arguments.components.largest},
           {"lods", arguments.stop.lods},
           {"max_distance", arguments.stop.max_distance},
           {"quality", arguments.quality},
@@ -103,6 +107,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.iso = task.at("iso");
   arguments.stop = {task.at("error"),  task.at("triangles"), "",
                     task.at("specks"), task.at("lods"),      task.at("max_distance")};
+  arguments.components = {task.at("min_component"), task.at("largest")};
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
@@ -208,9 +213,9 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
 
 std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
-          fmt::format("iso {} inside {} {} {} quality {}", options.iso, arguments.inside,
+          fmt::format("iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside,
                       options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
-                      arguments.quality)};
+                      arguments.quality, component_text(component_rule(arguments.components)))};
 }
 
 // How the mesh of a level is to be written.
@@ -306,8 +311,8 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   contents.finer = read_finer(outputs);
   if (report.collapses == 0) {
     contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
-  } else if (report.triangles_extracted > kMostFullTriangles) {
-    contents.full_note = too_full_note(report.triangles_extracted);
+  } else if (report.triangles_extracted - report.triangles_dropped > kMostFullTriangles) {
+    contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
   } else {
     MeshOptions full = options;
     full.error = {0, false};
@@ -329,6 +334,8 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   parse_slab(arguments.slab, 1);
   check_page(arguments.page, arguments.output);
   check_watch(arguments.watch, control.device);
+  const ComponentRule rule = component_rule(arguments.components);
+  check_components(rule, control.device);
   if (control.device == Device::kCuda && !arguments.checkpoint.empty()) {
     throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
   }
@@ -354,8 +361,16 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     options.iso = automatic_iso(arguments.input, *control.stop);
     if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
   }
-  options.triangles =
-      stop_triangles(arguments.stop, [&] { return count_triangles(*open_input(arguments.input), options, control); });
+  std::optional<ComponentChoice> components;
+  const auto choose = [&] {
+    if (rule.keeps_all() || components) return;
+    components = choose_components(*open_input(arguments.input), options, rule, control);
+    options.components = &*components;
+  };
+  options.triangles = stop_triangles(arguments.stop, [&] {
+    choose();
+    return components ? components->triangles : count_triangles(*open_input(arguments.input), options, control);
+  });
   const MeshFileOptions file = file_options(arguments, arguments.stop, options, info.geometry);
   std::optional<Forecast> forecast;
   if (resume == nullptr) {
@@ -367,9 +382,11 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
     const std::uint64_t bytes = output_bytes(*forecast, arguments, file);
     const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_out(forecast_text(*forecast, bytes, threads));
+    if (!rule.keeps_all()) print_out("components that --largest or --min-component drops are counted in\n");
     evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
     return;
   }
+  choose();
   if (!arguments.checkpoint.empty()) {
     parse_every(arguments.every, control.checkpoint);
     if (resume == nullptr) make_checkpoint_folder(arguments.checkpoint);
@@ -414,6 +431,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());
+  print_dropped(report);
   print_levels(report, outputs);
   if (options.triangles > 0)
     print_note(fmt::format("error reached: {:.4g}{}{}", report.error, info.geometry.unit.empty() ? "" : " ",
@@ -459,6 +477,7 @@ void add_mesh_verb(CLI::App& app) {
   add_output_options(*verb, arguments->output);
   verb->add_option("--iso", arguments->iso, "Value of the surface, or auto (Otsu's threshold)");
   add_stop_options(*verb, arguments->stop);
+  add_component_options(*verb, arguments->components, "full surface; a volume is read twice");
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   verb->add_option("--slab", arguments->slab, "Layers per slab: a number, auto or whole; never changes the result")
       ->default_str("auto");

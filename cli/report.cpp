@@ -83,6 +83,8 @@ Json run_json(const MeshReport& report, Json input) {
                {"postponed", report.postponed},
                {"rekeyed", report.rekeyed},
                {"specks", report.specks},
+               {"components_dropped", report.components_dropped},
+               {"triangles_dropped", report.triangles_dropped},
                {"rounds", report.rounds},
                {"locked_vertices", report.locked_vertices},
                {"seconds",

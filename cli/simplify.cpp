@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "components.hpp"
 #include "evidence.hpp"
 #include "lods.hpp"
 #include "mesh_output.hpp"
@@ -25,18 +26,19 @@ A vox is here the square root of twice the mean triangle area.)";
 struct SimplifyArguments {
   std::string input, quality = "normal";
   StopOptions stop;
+  ComponentOptions components;
   OutputOptions output;
   RunOptions run;
   PageOptions page;
 };
 
-Json report_json(const MeshReport& report, const TriangleMesh& mesh, const SimplifyArguments& arguments) {
+Json report_json(const MeshReport& report, const SimplifyArguments& arguments) {
   std::string format = std::filesystem::path(arguments.input).extension().string();
   if (format.starts_with('.')) format.erase(0, 1);
   Json json = run_json(report, {{"path", arguments.input},
                                 {"format", format},
-                                {"triangles", mesh.triangles.size()},
-                                {"vertices", mesh.vertices.size()}});
+                                {"triangles", report.triangles_extracted},
+                                {"vertices", report.vertices_extracted}});
   json["quality"] = arguments.quality;
   json["output"] = level_outputs(arguments.output, arguments.stop).back().name();
   return json;
@@ -47,8 +49,19 @@ MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t lev
   MeshFileOptions file;
   file.comments = {"isoweave " ISOWEAVE_VERSION,
                    fmt::format("simplified, {} quality {}",
-                               stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality)};
+                               stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality) +
+                       component_text(component_rule(arguments.components))};
   return mesh_file_options(arguments.output, std::move(file));
+}
+
+// A mesh that is given counts as what is extracted from it.
+void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
+  report.components_dropped = dropped.components;
+  report.triangles_dropped = dropped.triangles;
+  report.triangles_extracted += dropped.triangles;
+  report.vertices_extracted += dropped.vertices;
+  if (dropped.components == 0 || report.triangles_dropped < report.triangles_extracted) return;
+  report.warnings.push_back(fmt::format("nothing is left: each of {} components is dropped", dropped.components));
 }
 
 // The mesh as it is in the file, beside the one that was given.
@@ -73,6 +86,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   options.max_distance = stop_distance(arguments.stop, "");
   options.levels = finer_levels(arguments.stop, "");
   options.drop_specks = drops_specks(arguments.stop);
+  const ComponentRule rule = component_rule(arguments.components);
   check_page(arguments.page, arguments.output);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
@@ -81,21 +95,25 @@ void run_simplify(const SimplifyArguments& arguments) {
 
   exit_on_signal();
   TriangleMesh mesh = read_mesh(arguments.input);
+  DroppedComponents dropped;
+  if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
   const LevelSinks sinks(outputs, [&](std::size_t level) { return file_options(arguments, level, options.triangles); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
+  MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
+  add_dropped(dropped, report);
   printer.finish();
-  Json json = report_json(report, mesh, arguments);
+  Json json = report_json(report, arguments);
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());
+  print_dropped(report);
   print_levels(report, outputs);
   if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g}", report.error));
   print_summary(report, outputs.back().name(), 0);
@@ -109,6 +127,7 @@ void add_simplify_verb(CLI::App& app) {
   verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
   add_output_options(*verb, arguments->output);
   add_stop_options(*verb, arguments->stop);
+  add_component_options(*verb, arguments->components, "mesh as it is given");
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);

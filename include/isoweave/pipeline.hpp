@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "isoweave/components.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/simplify_options.hpp"
@@ -105,6 +106,10 @@ struct MeshOptions {
   // Errors of finer meshes that come out of the same sweep, ascending, all below `error`; each is the mesh of a run
   // with that error. Not with a number of triangles.
   std::vector<Length> levels{};
+  // The components that are kept, found by choose_components in this volume with these `iso`, `inside_above` and
+  // `closed`; null: all. The result is the mesh of a surface that never had the others: errors, numbers of triangles
+  // and distances refer to what is kept. Costs a second union-find over the triangles of each slab. Not on a device.
+  const ComponentChoice* components = nullptr;
   std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
   bool normals = false;   // from gradients, unit length, outwards
   OutputSpace space = OutputSpace::kAsVolume;
@@ -162,7 +167,9 @@ struct MeshReport : SurfaceReport {
   std::uint64_t nan = 0;    // samples
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
-  std::uint64_t specks = 0;           // components dropped
+  std::uint64_t specks = 0;  // components dropped
+  // By MeshOptions::components; their triangles are among those extracted. `specks` are others.
+  std::uint64_t components_dropped = 0, triangles_dropped = 0;
   std::vector<SurfaceReport> levels;  // finer meshes, as MeshOptions::levels
   std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
   std::int64_t resumed_at = 0;        // layers that an earlier process has done
@@ -176,18 +183,28 @@ struct MeshReport : SurfaceReport {
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
 // and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, DeviceError, Interrupted, and
 // std::invalid_argument for options out of range (a NaN iso, a negative error); BadInput also when the volume's file
-// has another size or time of change in the end than in the beginning. Memory: slab plus undecided zone. With a
-// checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a source that fails in
-// the middle. Resuming gives the same mesh, for any threads, schedule and slab; throws BadInput when the state was
-// saved by another version, for another volume or with other options.
+// has another size or time of change in the end than in the beginning, or when its surface is not the one that
+// components were chosen in. Memory: slab plus undecided zone. With a checkpoint folder the state is saved before
+// Interrupted is thrown, and before BadInput from a source that fails in the middle. Resuming gives the same mesh, for
+// any threads, schedule and slab; throws BadInput when the state was saved by another version, for another volume or
+// with other options.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
 // The same with levels: a sink for each, in their order, and the last one for the mesh with the largest error.
 MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
                        const RunControl& control = {});
 
-// Triangles of the full surface, in a pass over the volume that keeps nothing. Throws what mesh_volume throws.
+// Triangles of the full surface, without components that are not kept, in a pass over the volume that keeps nothing.
+// Throws what mesh_volume throws.
 std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
+
+// Which components of the volume's surface a rule keeps, for MeshOptions::components: a pass over the volume of its
+// own, as they are known in the end only. A source can be read once: mesh_volume takes another opening of the volume.
+// Of the options only `iso`, `inside_above`, `closed` and `slab` count. Takes about as long as extraction, and memory
+// for a slab and 20 bytes for each place where a part of the surface begins, seen along the slices. Does not depend on
+// threads or slabs. Throws what mesh_volume throws, and std::invalid_argument for a device.
+ComponentChoice choose_components(SliceSource& volume, const MeshOptions& options, const ComponentRule& rule,
+                                  const RunControl& control = {});
 
 struct SimplifyOptions {
   Length error{0, false};  // in the mesh's unit; voxels: square roots of twice the mean triangle area
@@ -208,9 +225,9 @@ struct Forecast {
 };
 
 // Reads slices at up to 24 places, extracts what lies between and simplifies a part of that, in a small part of the
-// time of the run. A source can be read once only: this one is of no use afterwards. Where skipping slices means to
-// decompress them, no more than the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what
-// mesh_volume throws.
+// time of the run. Components that are not kept are not known here: what is written is an upper bound then. A source
+// can be read once only: this one is of no use afterwards. Where skipping slices means to decompress them, no more than
+// the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what mesh_volume throws.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 // Simplifies a mesh with the same rules. Vertices on non-manifold or badly oriented edges, and vertices whose triangles

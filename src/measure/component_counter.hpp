@@ -37,8 +37,6 @@ class ComponentCounter {
   }
 
  private:
-  std::uint32_t root(std::uint32_t label);
-
   std::vector<std::uint32_t> parent_;
   std::uint64_t added_ = 0;
   std::atomic<std::uint64_t> joined_{0};

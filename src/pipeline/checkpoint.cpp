@@ -16,7 +16,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 4\n";  // the number changes with the fields
+constexpr std::string_view kFormat = "isoweave state 5\n";  // the number changes with the fields
 
 constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
 
@@ -101,6 +101,20 @@ std::string file_text(const VolumeInfo& volume) {
          "." + std::to_string(status.st_mtim.tv_nsec);
 }
 
+std::string volume_text(const VolumeInfo& volume) {
+  std::ostringstream text;
+  text << volume.dims[0] << " x " << volume.dims[1] << " x " << volume.dims[2] << ' ' << sample_type_name(volume.type)
+       << ", spacing" << numbers_text(volume.geometry.spacing) << ", origin" << numbers_text(volume.geometry.origin)
+       << ", axes" << numbers_text(volume.geometry.direction) << ", scale"
+       << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume);
+  return text.str();
+}
+
+std::string iso_text(const MeshOptions& options) {
+  return "iso" + numbers_text(std::array{options.iso}) + (options.inside_above ? " above" : " below") +
+         (options.closed ? " closed" : " open");
+}
+
 void require_same(const std::string& path, const char* what, const std::string& saved, const std::string& now) {
   if (saved == now) return;
   bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
@@ -108,23 +122,25 @@ void require_same(const std::string& path, const char* what, const std::string& 
 
 }  // namespace
 
+std::string surface_text(const VolumeInfo& volume, const MeshOptions& options) {
+  return volume_text(volume) + ", " + iso_text(options);
+}
+
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   RunIdentity identity;
+  identity.volume = volume_text(volume);
   std::ostringstream text;
-  text << volume.dims[0] << " x " << volume.dims[1] << " x " << volume.dims[2] << ' ' << sample_type_name(volume.type)
-       << ", spacing" << numbers_text(volume.geometry.spacing) << ", origin" << numbers_text(volume.geometry.origin)
-       << ", axes" << numbers_text(volume.geometry.direction) << ", scale"
-       << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume);
-  identity.volume = text.str();
-  text.str("");
-  text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")
-       << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
+  text << iso_text(options) << ", error" << numbers_text(std::array{options.error.value})
        << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << levels_text(options.levels)
        << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
        << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
   if (options.max_distance.value > 0) {
     text << ", distance" << numbers_text(std::array{options.max_distance.value})
          << (options.max_distance.voxels ? " voxels" : "");
+  }
+  if (options.components != nullptr) {
+    const ComponentRule& rule = options.components->rule;
+    text << ", components of " << rule.min_triangles << (rule.largest ? ", the largest" : "");
   }
   identity.options = text.str();
   return identity;

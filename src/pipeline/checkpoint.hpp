@@ -16,6 +16,9 @@ struct RunIdentity {
   std::string options;
 };
 
+// What the surface that is extracted depends on.
+std::string surface_text(const VolumeInfo& volume, const MeshOptions& options);
+
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options);
 
 // Opens a saved state behind its header. Throws BadInput when it was saved by another version or in a run with another

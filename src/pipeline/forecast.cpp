@@ -207,6 +207,7 @@ class Forecaster {
     options.closed = false;
     options.normals = false;
     options.levels.clear();
+    options.components = nullptr;
     options.space = OutputSpace::kIndex;
     options.error = {error, false};
     options.slab = slab;

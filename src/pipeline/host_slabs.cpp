@@ -17,6 +17,7 @@ HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const Wor
     SweepObserver* const observer = simplifier_.is_last(level) ? options.observer : nullptr;
     outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, options.measure, level, observer));
   }
+  if (options.components != nullptr) filter_.emplace(*options.components, Lattice{volume.dims}, executor);
   if (options.triangles > 0) target_.emplace(simplifier_, executor, options.triangles);
 }
 
@@ -26,6 +27,7 @@ std::int64_t HostSlabs::extract(const SliceWindow& window, std::int64_t layers, 
   report.cells_crossed += piece_.cells_crossed;
   report.triangles_extracted += piece_.triangles.size();
   report.vertices_extracted += piece_.positions.size();
+  if (filter_) filter_->apply(piece_);
   return extracted;
 }
 
@@ -65,6 +67,7 @@ void HostSlabs::wait_for_sink() {
 
 void HostSlabs::finish(MeshReport& report) const {
   report.schedule = simplifier_.schedule();
+  if (filter_) report.triangles_dropped = report.triangles_extracted - filter_->triangles();
   report_simplifier(simplifier_, report);
   for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
     outputs_[level]->report(report.levels[level]);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "extract/component_filter.hpp"
 #include "extract/marching_cubes.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/full_output.hpp"
@@ -20,8 +21,9 @@ class HostSlabs final : public SlabEngine {
     ExtractOptions extract;
     SimplifierOptions simplify;
     bool simplifies = true;
-    std::uint64_t triangles = 0;  // to stop at; 0: no such number
-    double voxel = 1;             // mean side
+    std::uint64_t triangles = 0;                  // to stop at; 0: no such number
+    double voxel = 1;                             // mean side
+    const ComponentChoice* components = nullptr;  // that are kept; null: all
     bool measure = true;
     SweepObserver* observer = nullptr;
   };
@@ -49,6 +51,7 @@ class HostSlabs final : public SlabEngine {
   template <class Archive>
   void exchange_with(Archive& archive) {
     extractor_.exchange(archive);
+    if (filter_) filter_->exchange(archive);
     simplifier_.exchange(archive);
     for (const auto& output : outputs_) output->exchange(archive);
     full_output_.exchange(archive);
@@ -58,6 +61,7 @@ class HostSlabs final : public SlabEngine {
   const World& world_;
   const Executor& executor_;
   MarchingCubes extractor_;
+  std::optional<ComponentFilter> filter_;
   Simplifier simplifier_;
   std::optional<CountTarget> target_;
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level

@@ -9,6 +9,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
 #include "pipeline/checkpoint.hpp"
+#include "pipeline/component_slabs.hpp"
 #include "pipeline/device_slabs.hpp"
 #include "pipeline/host_slabs.hpp"
 #include "pipeline/slab_plan.hpp"
@@ -27,8 +28,9 @@ class NoSink final : public MeshSink {
 
 class VolumeSweep {
  public:
+  // finder: gets the surface, if it is not null, instead of the sinks.
   VolumeSweep(SliceSource& source, std::span<MeshSink* const> sinks, const MeshOptions& options,
-              const RunControl& control)
+              const RunControl& control, ComponentFinder* finder = nullptr)
       : volume_(checked(source.info())),
         options_(options),
         control_(control),
@@ -38,7 +40,7 @@ class VolumeSweep {
         simplifies_(options.error.value > 0 || !has_cells()),
         level_errors_(level_errors(options.levels, error(), voxel_, options.triangles)),
         sinks_(sinks.begin(), sinks.end()),
-        engine_(make_engine()),
+        engine_(make_engine(finder)),
         layers_(engine_->layers_left()) {
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
@@ -88,9 +90,11 @@ class VolumeSweep {
             {volume_.geometry.spacing[0], volume_.geometry.spacing[1], volume_.geometry.spacing[2]}};
   }
 
-  std::unique_ptr<SlabEngine> make_engine() const {
+  std::unique_ptr<SlabEngine> make_engine(ComponentFinder* finder) const {
     check_sinks(sinks_.size(), level_errors_.size());
+    check_components();
     const IsoRule rule = stored_rule(volume_, options_);
+    if (finder != nullptr) return std::make_unique<ComponentSlabs>(volume_, rule, *finder, executor_);
     if (control_.device == Device::kCuda) {
       check_device_options();
       return std::make_unique<DeviceSlabs>(
@@ -103,10 +107,19 @@ class VolumeSweep {
     host.simplifies = simplifies_;
     host.triangles = options_.triangles;
     host.voxel = voxel_;
+    host.components = options_.components;
     host.measure = control_.measure;
     host.observer = control_.observer;
     // A zone that has been left in the middle cannot be saved.
     return std::make_unique<HostSlabs>(volume_, host, world_, sinks_, executor_, saves() ? nullptr : control_.stop);
+  }
+
+  void check_components() const {
+    if (options_.components == nullptr) return;
+    const std::string expected = surface_text(volume_, options_);
+    const std::string& found = options_.components->surface;
+    if (found != expected)
+      throw std::invalid_argument("components: expected those of " + expected + ", found those of " + found);
   }
 
   // What there is on processors only.
@@ -117,6 +130,7 @@ class VolumeSweep {
     if (options_.triangles > 0) refuse("a number of triangles to stop at");
     if (!options_.levels.empty()) refuse("levels");
     if (options_.max_distance.value > 0) refuse("a guaranteed distance");
+    if (options_.components != nullptr) refuse("components to be dropped");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
     if (control_.observer != nullptr) refuse("an observer");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
@@ -164,7 +178,7 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{resident_,
+    const MemoryModel model{resident_ + engine_->other_bytes(),
                             volume_.slice_bytes(),
                             static_cast<std::uint64_t>(volume_.slice_samples()),
                             executor_.threads(),
@@ -264,6 +278,7 @@ class VolumeSweep {
 
   void finish_report() {
     engine_->finish(report_);
+    finish_components();
     const double low = volume_.slope * range_.min + volume_.intercept;
     const double high = volume_.slope * range_.max + volume_.intercept;
     report_.min = volume_.slope > 0 || range_.empty() ? low : high;
@@ -274,10 +289,29 @@ class VolumeSweep {
                                  " samples are NaN and count as outside");
     }
     if (report_.triangles > 0) return;
+    if (report_.components_dropped > 0) {
+      report_.warnings.push_back(volume_.path + ": nothing is left: each of " +
+                                 std::to_string(report_.components_dropped) + " components has fewer than " +
+                                 std::to_string(options_.components->rule.min_triangles) + " triangles");
+      return;
+    }
     report_.warnings.push_back(
         volume_.path + ": the surface is empty: iso " + std::to_string(options_.iso) +
         (range_.empty() ? ", no samples are numbers"
                         : ", samples from " + std::to_string(report_.min) + " to " + std::to_string(report_.max)));
+  }
+
+  // A volume that is another one than when components were chosen may have the same name, size and time.
+  void finish_components() {
+    if (options_.components == nullptr) return;
+    const ComponentChoice& choice = *options_.components;
+    report_.components_dropped = choice.components_dropped;
+    const std::uint64_t kept = report_.triangles_extracted - report_.triangles_dropped;
+    if (kept == choice.triangles && report_.triangles_dropped == choice.triangles_dropped) return;
+    throw BadInput(volume_.path + ": expected the surface that components were chosen in, " +
+                   std::to_string(choice.triangles) + " triangles kept and " +
+                   std::to_string(choice.triangles_dropped) + " dropped, found " + std::to_string(kept) + " and " +
+                   std::to_string(report_.triangles_dropped));
   }
 
   // What was read of a file that somebody wrote meanwhile may be of two volumes.
@@ -392,6 +426,33 @@ class VolumeSweep {
 };
 
 }  // namespace
+
+ComponentChoice choose_components(SliceSource& volume, const MeshOptions& options, const ComponentRule& rule,
+                                  const RunControl& control) {
+  if (control.device == Device::kCuda) {
+    throw std::invalid_argument(
+        "a CUDA device: expected a run without components to be dropped, which takes processors");
+  }
+  MeshOptions full;
+  full.iso = options.iso;
+  full.inside_above = options.inside_above;
+  full.closed = options.closed;
+  full.slab = options.slab;
+  full.error = {0, false};
+  RunControl finding = control;
+  finding.measure = false;
+  finding.checkpoint = {};
+  finding.resume = nullptr;
+  finding.observer = nullptr;
+  const Executor executor(control.threads);
+  ComponentFinder finder(Lattice{volume.info().dims}, executor);
+  NoSink sink;
+  MeshSink* const sinks[] = {&sink};
+  VolumeSweep(volume, sinks, full, finding, &finder).run();
+  ComponentChoice choice = finder.choose(rule);
+  choice.surface = surface_text(volume.info(), full);
+  return choice;
+}
 
 std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
   MeshOptions full = options;

@@ -49,6 +49,9 @@ class SlabEngine {
   // Triangles held over to the next slab, in the memory of the process.
   virtual std::uint64_t held_triangles() const = 0;
 
+  // Held besides in the memory of the process, and growing.
+  virtual std::uint64_t other_bytes() const { return 0; }
+
   // Hands over the triangles held over to the next slab, where they are in the memory of the process.
   virtual void view_undecided(const SweepObserver::Visitor&) const {}
 

@@ -22,6 +22,15 @@ struct Lattice {
     return 3 * point + static_cast<std::uint64_t>(axis);
   }
 
+  // The layer whose extraction makes the vertex of an edge: that below the slice the edge lies on, or that it crosses.
+  std::int64_t layer_of(std::uint64_t edge) const {
+    const auto above = static_cast<std::int64_t>(edge / (3 * plane()));
+    return edge % 3 == 2 ? above - 1 : above - 2;
+  }
+
+  // Whether an edge between samples lies in a face of the volume.
+  bool is_on_border(std::uint64_t edge) const;
+
   // Whether mesh-edge ids (256 per vertex id, see EdgeNumbering) fit in 64 bits.
   static bool fits(const std::array<std::int64_t, 3>& dims);
 };

@@ -125,6 +125,28 @@ TEST(CliCheckpoint, ResumesFromAnywhere) {
   EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
 }
 
+TEST(CliCheckpoint, DroppedComponentsStayDropped) {
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = mesh({"--largest", "--min-component", "50"});
+    arguments[1] = "generate:noise:" + kSlice + "x" + std::to_string(kSlices / 2) + ":uint8";
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const files::Folder whole;
+  ASSERT_EQ(run(whole.path(), with({"--quiet"})).code, 0);
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), with({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
+                after(folder, SIGINT, std::chrono::milliseconds(0)))
+                .code,
+            130);
+  ASSERT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
+  EXPECT_EQ(files::read_bytes(folder / "out.ply").size(), files::read_bytes(whole / "out.ply").size());
+  EXPECT_EQ(digest(folder / "out.json"), digest(whole / "out.json"));
+  const nlohmann::json report = nlohmann::json::parse(files::read_bytes(folder / "out.json"));
+  EXPECT_EQ(report.at("components"), 1);
+  EXPECT_GT(report.at("components_dropped"), 0);
+}
+
 // The volume as the second channel of an array of Zarr, in chunks of 8 slices; the first is left out.
 void put_array(const files::Folder& folder) {
   const std::string size = kSlice + "x" + std::to_string(kSlices);

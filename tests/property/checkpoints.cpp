@@ -117,6 +117,24 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Resumed, ::testing::Values("noise", "gyroid", "box", "specks", "white"));
 
+TEST(Checkpoints, DroppedComponentsStayDropped) {
+  for (const double error : {0.0, 0.4}) {
+    const SurfaceCase surface{{"noise", {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, false, error};
+    MeshOptions options = mesh_options(surface);
+    const ComponentChoice choice = choose_components(*generate_volume(surface.volume), options, {12, false});
+    EXPECT_GT(choice.components, 1U);
+    EXPECT_GT(choice.components_dropped, 1U);
+    options.components = &choice;
+    const MeshReport whole = run_whole(surface, options);
+    InterruptedRun run(surface, options);
+    const MeshReport resumed = run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, 5);
+    expect_same_result(resumed, whole);
+    EXPECT_EQ(resumed.triangles_dropped, whole.triangles_dropped);
+    EXPECT_EQ(check_mesh(read_mesh(run.mesh_path())).digest, whole.digest);
+  }
+}
+
 TEST(Checkpoints, EveryFormatGoesOnToTheSameMesh) {
   const SurfaceCase surface{{"noise", {20, 20, 40}, SampleType::kUint8}, true, 0.3};
   MeshOptions options = mesh_options(surface);
@@ -315,11 +333,12 @@ TEST_F(SavedState, AnotherVolumeIsRefused) {
 }
 
 TEST_F(SavedState, AnotherTaskIsRefused) {
+  const ComponentChoice choice = choose_components(*generate_volume(surface_.volume), options_, {60, false});
   for (const auto& change : std::vector<std::function<void(MeshOptions&)>>{
            [](MeshOptions& o) { o.iso += 1; }, [](MeshOptions& o) { o.closed = false; },
            [](MeshOptions& o) { o.error.value = 0.31; }, [](MeshOptions& o) { o.error.voxels = false; },
-           [](MeshOptions& o) { o.quality = Quality::kFine; }, [](MeshOptions& o) { o.inside_above = false; },
-           [](MeshOptions& o) { o.space = OutputSpace::kIndex; }}) {
+           [](MeshOptions& o) { o.quality = Quality::kFine; }, [&](MeshOptions& o) { o.components = &choice; },
+           [](MeshOptions& o) { o.inside_above = false; }, [](MeshOptions& o) { o.space = OutputSpace::kIndex; }}) {
     MeshOptions options = options_;
     change(options);
     expect_refused<BadInput>([&] { resume(*generate_volume(surface_.volume), options); }, "the task has changed");
@@ -329,7 +348,7 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 4\n"));
+  writer.list(std::string("isoweave state 5\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -343,7 +362,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 4\n"));
+  writer.list(std::string("isoweave state 5\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
