@@ -15,14 +15,16 @@ std::span<std::uint32_t> span_of(Array<std::uint32_t>& array) { return {array.da
 
 }  // namespace
 
-void ComponentFilter::apply(SurfacePiece& piece) {
+bool ComponentFilter::apply(SurfacePiece& piece) {
   find_parts(piece);
   judge_parts(piece);
+  if (!agrees_with_front()) return false;
   front_is_kept_.resize(piece.incomplete.size());
   for (std::size_t n = 0; n < front_is_kept_.size(); ++n) front_is_kept_[n] = kept_[piece.incomplete[n]];
   const bool all = std::find(kept_.begin(), kept_.end(), 0) == kept_.end();
   if (!all) drop(piece);
   triangles_ += piece.triangles.size();
+  return true;
 }
 
 void ComponentFilter::find_parts(const SurfacePiece& piece) {
@@ -51,6 +53,11 @@ void ComponentFilter::judge_parts(const SurfacePiece& piece) {
     const std::uint32_t root = find_root(span_of(parents_), v);
     if (root != v) kept_[v] = kept_[root];
   });
+}
+
+// Vertices of the front that are of one part now.
+bool ComponentFilter::agrees_with_front() const {
+  return std::equal(front_is_kept_.begin(), front_is_kept_.end(), kept_.begin());
 }
 
 bool ComponentFilter::keeps_seed(std::uint64_t id) const {

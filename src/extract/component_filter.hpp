@@ -18,8 +18,9 @@ class ComponentFilter {
   ComponentFilter(const ComponentChoice& choice, const Lattice& lattice, const Executor& executor)
       : choice_(choice), lattice_(lattice), executor_(executor) {}
 
-  // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more.
-  void apply(SurfacePiece& piece);
+  // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more. False,
+  // and nothing is changed, when a component is kept in part: the choice is not one of this surface.
+  bool apply(SurfacePiece& piece);
 
   std::uint64_t triangles() const { return triangles_; }  // kept so far
 
@@ -33,6 +34,7 @@ class ComponentFilter {
  private:
   void find_parts(const SurfacePiece& piece);
   void judge_parts(const SurfacePiece& piece);
+  bool agrees_with_front() const;
   void drop(SurfacePiece& piece) const;
   bool keeps_seed(std::uint64_t id) const;
   std::uint64_t count_open_edges(const SurfacePiece& piece) const;

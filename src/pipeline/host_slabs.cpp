@@ -7,7 +7,8 @@ namespace isoweave {
 
 HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const World& world,
                      std::span<MeshSink* const> sinks, const Executor& executor, const std::atomic<bool>* stop)
-    : options_(options),
+    : path_(volume.path),
+      options_(options),
       world_(world),
       executor_(executor),
       extractor_(volume, options.extract, executor),
@@ -27,7 +28,7 @@ std::int64_t HostSlabs::extract(const SliceWindow& window, std::int64_t layers, 
   report.cells_crossed += piece_.cells_crossed;
   report.triangles_extracted += piece_.triangles.size();
   report.vertices_extracted += piece_.positions.size();
-  if (filter_) filter_->apply(piece_);
+  if (filter_ && !filter_->apply(piece_)) refuse_components(path_);
   return extracted;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "extract/component_filter.hpp"
@@ -57,6 +58,7 @@ class HostSlabs final : public SlabEngine {
     full_output_.exchange(archive);
   }
 
+  const std::string path_;  // of the volume
   Options options_;
   const World& world_;
   const Executor& executor_;

@@ -306,12 +306,9 @@ class VolumeSweep {
     if (options_.components == nullptr) return;
     const ComponentChoice& choice = *options_.components;
     report_.components_dropped = choice.components_dropped;
-    const std::uint64_t kept = report_.triangles_extracted - report_.triangles_dropped;
-    if (kept == choice.triangles && report_.triangles_dropped == choice.triangles_dropped) return;
-    throw BadInput(volume_.path + ": expected the surface that components were chosen in, " +
-                   std::to_string(choice.triangles) + " triangles kept and " +
-                   std::to_string(choice.triangles_dropped) + " dropped, found " + std::to_string(kept) + " and " +
-                   std::to_string(report_.triangles_dropped));
+    const bool same = report_.triangles_dropped == choice.triangles_dropped &&
+                      report_.triangles_extracted == choice.triangles + choice.triangles_dropped;
+    if (!same) refuse_components(volume_.path);
   }
 
   // What was read of a file that somebody wrote meanwhile may be of two volumes.

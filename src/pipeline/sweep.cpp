@@ -110,6 +110,10 @@ double most_distance(const Length& length, double voxel) {
   throw std::invalid_argument("max distance: expected a length of 0 or more, found " + std::to_string(distance));
 }
 
+void refuse_components(const std::string& path) {
+  throw BadInput(path + ": the volume has changed: expected the surface that components were chosen in, found another");
+}
+
 void check_sinks(std::size_t sinks, std::size_t levels) {
   if (sinks == levels + 1) return;
   throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +

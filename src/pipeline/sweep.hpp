@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "extract/rules.hpp"
@@ -64,6 +65,9 @@ std::vector<double> level_errors(std::span<const Length> levels, double error, d
 
 // Their costs, in units of a0.
 std::vector<CostBits> level_costs(std::span<const double> errors, double a0);
+
+// Throws BadInput: the surface is not the one that components were chosen in.
+[[noreturn]] void refuse_components(const std::string& path);
 
 // Throws std::invalid_argument unless there is a sink for each level and one more.
 void check_sinks(std::size_t sinks, std::size_t levels);

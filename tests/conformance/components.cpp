@@ -434,8 +434,25 @@ TEST_F(ComponentsAnd, AChoiceIsForOneSurface) {
   EXPECT_THROW(mesh_volume(*scene_.volume(), sink, options), std::invalid_argument);
   options.closed = true;
   Scene other = scene_;
-  other.fill({2, 2, 2}, {9, 9, 9});
-  EXPECT_THROW(mesh_volume(*other.volume(), sink, options), BadInput);
+  for (const Dims& first : {Dims{2, 2, 2}, Dims{0, 0, 17}, Dims{3, 6, 0}, Dims{5, 5, 8}}) {
+    other.fill(first, {first[0] + 3, first[1] + 3, first[2] + 3});
+    for (const std::int64_t slab : {1, 4, 50}) {
+      options.slab = slab;
+      EXPECT_THROW(mesh_volume(*other.volume(), sink, options), BadInput) << first[2] << ", slab " << slab;
+    }
+  }
+  // Another leg of an arch, which a kept part and a dropped one turn out to share.
+  Scene legs({9, 5, 8});
+  legs.fill({1, 1, 1}, {3, 3, 7});
+  legs.fill({5, 1, 1}, {6, 2, 4});
+  const ComponentChoice apart = choose(legs, {0, true});
+  options = legs.options();
+  options.components = &apart;
+  legs.fill({3, 1, 3}, {5, 2, 4});
+  for (const std::int64_t slab : {1, 2, 50}) {
+    options.slab = slab;
+    EXPECT_THROW(mesh_volume(*legs.volume(), sink, options), BadInput) << "slab " << slab;
+  }
   EXPECT_FALSE(sink.finished);
   RunControl control;
   control.device = Device::kCuda;
