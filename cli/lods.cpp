@@ -1,12 +1,31 @@
 #include "lods.hpp"
 
+#include <cctype>
 #include <filesystem>
+#include <stdexcept>
 #include <system_error>
 
 #include "options.hpp"
 #include "output.hpp"
 
 namespace isoweave::cli {
+
+namespace {
+
+void check_one_file(const OutputOptions& output, const StopOptions& stop) {
+  if (!stop.has_levels()) throw std::invalid_argument("--one-file: expected several levels by --lods, found none");
+  std::string ending = std::filesystem::path(output.path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".glb" || (ending.starts_with(".precomputed") && output.compress)) return;
+  wrong_value("--one-file", "a mesh named .glb, or .precomputed with --compress", output.path);
+}
+
+// Of one of several, as messages name it.
+std::string level_name(const std::vector<OutputOptions>& outputs, std::size_t level) {
+  return outputs[level].one_file ? fmt::format("{}, level {}", outputs[level].name(), level) : outputs[level].name();
+}
+
+}  // namespace
 
 std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit) {
   std::vector<Length> levels;
@@ -17,7 +36,9 @@ std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit)
 }
 
 std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop) {
+  if (output.one_file) check_one_file(output, stop);
   if (!stop.has_levels()) return {output};
+  if (output.one_file) return std::vector<OutputOptions>(stop_levels(stop).size(), output);
   const std::filesystem::path path(output.path);
   std::vector<OutputOptions> outputs;
   for (std::size_t level = 0; level < stop_levels(stop).size(); ++level) {
@@ -47,10 +68,16 @@ void remove_level_folders(const std::vector<std::string>& folders) {
 
 LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
                        const std::function<MeshFileOptions(std::size_t)>& options) {
-  for (std::size_t level = 0; level < outputs.size(); ++level) {
-    sinks_.push_back(open_output(outputs[level], options(level)));
-    pointers_.push_back(sinks_.back().get());
+  if (outputs.front().one_file) {
+    std::vector<MeshFileOptions> levels;
+    for (std::size_t level = 0; level < outputs.size(); ++level) levels.push_back(options(level));
+    sinks_ = open_mesh_levels(outputs.front().path, levels);
+  } else {
+    for (std::size_t level = 0; level < outputs.size(); ++level) {
+      sinks_.push_back(open_output(outputs[level], options(level)));
+    }
   }
+  for (const auto& sink : sinks_) pointers_.push_back(sink.get());
 }
 
 std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs) {
@@ -71,7 +98,7 @@ Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& out
 
 void print_levels(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
   for (std::size_t level = 0; level < report.levels.size(); ++level) {
-    print_surface(report.levels[level], outputs[level].name());
+    print_surface(report.levels[level], level_name(outputs, level));
   }
 }
 

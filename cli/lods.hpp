@@ -1,4 +1,4 @@
-// Levels of detail: several meshes from one sweep, each in a file of its own.
+// Levels of detail: several meshes from one sweep, each in a file of its own or all in one.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ namespace isoweave::cli {
 // The errors of all levels but the last one.
 std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit);
 
-// The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ...; where no levels are asked for, the
-// output itself.
+// The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ...; where no levels are asked for, and
+// for each where one file has them all, the output itself. Refuses formats that cannot have them all.
 std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop);
 
 // The folders of the parts of each level's file, for runs that can be resumed: `folder` itself for a single one.

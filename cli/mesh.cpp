@@ -74,6 +74,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"step", arguments.input.step},
           {"output", absolute_path(arguments.output.path)},
           {"compress", arguments.output.compress},
+          {"one_file", arguments.output.one_file},
           {"segment", arguments.output.segment},
           {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
           {"html", arguments.page.given() ? absolute_path(arguments.page.path) : ""},
@@ -101,7 +102,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.input = {task.at("volume"), task.at("raw"),     task.at("spacing"), task.at("origin"),
                      task.at("series"), task.at("dataset"), task.at("level"),   task.at("channel"),
                      task.at("time"),   task.at("roi"),     task.at("step")};
-  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment")};
+  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment"), task.at("one_file")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
@@ -285,14 +286,22 @@ void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::u
                                std::ceil(static_cast<double>(page_memory(triangles)) * 1e-6), arguments.memory));
 }
 
-// What the finest level will take in its file; refuses what its format cannot hold.
-void check_finest(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
-                  const RunControl& control) {
-  if (options.levels.empty()) return;
-  MeshOptions finest = options;
-  finest.error = options.levels.front();
-  finest.levels.clear();
-  output_bytes(forecast_mesh(*open_input(arguments.input), finest, control), arguments, file);
+// What the finest level will take in its file, or all levels in one; refuses what its format cannot hold. `last`: of
+// the coarsest level.
+void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                 const RunControl& control, const Forecast& last) {
+  Forecast sum;
+  if (arguments.output.one_file) sum = last;
+  for (const Length& error : options.levels) {
+    MeshOptions level = options;
+    level.error = error;
+    level.levels.clear();
+    const Forecast forecast = forecast_mesh(*open_input(arguments.input), level, control);
+    sum.vertices += forecast.vertices;
+    sum.triangles += forecast.triangles;
+    output_bytes(sum, arguments, file);
+    if (!arguments.output.one_file) return;
+  }
 }
 
 // What of a cap is left for the run.
@@ -375,7 +384,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   std::optional<Forecast> forecast;
   if (resume == nullptr) {
     forecast = checked_forecast(arguments, options, file, control);
-    check_finest(arguments, options, file, control);
+    check_finer(arguments, options, file, control, *forecast);
   }
   if (forecast) check_page_memory(arguments, control.memory, forecast->triangles);
   if (arguments.dry_run) {

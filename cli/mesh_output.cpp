@@ -27,6 +27,9 @@ void add_output_options(CLI::App& verb, OutputOptions& output) {
       ->excludes(path);
   verb.add_flag("--compress", output.compress,
                 "Pack .glb (EXT_meshopt_compression) or .precomputed (multi-resolution, Draco), with rounding");
+  verb.add_flag("--one-file", output.one_file,
+                "All levels of --lods in one .glb (MSFT_lod), or .precomputed with --compress")
+      ->excludes("--to-stdout");
   verb.add_option("--segment", output.segment, "Number of the object in .precomputed")->capture_default_str();
 }
 

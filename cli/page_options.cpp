@@ -41,8 +41,11 @@ void check_page(const PageOptions& page, const OutputOptions& output) {
   if (!page.given()) return;
   check_page(page, "--html");
   const bool folder = output.path.ends_with(".precomputed");
-  if (output.to_stdout.empty() && !output.compress && !folder) return;
-  const std::string found = !output.to_stdout.empty() ? "--to-stdout" : output.compress ? "--compress" : output.path;
+  if (output.to_stdout.empty() && !output.compress && !output.one_file && !folder) return;
+  const std::string found = !output.to_stdout.empty() ? "--to-stdout"
+                            : output.compress         ? "--compress"
+                            : output.one_file         ? "--one-file"
+                                                      : output.path;
   wrong_value("--html", "a mesh file that isoweave can read again", found);
 }
 

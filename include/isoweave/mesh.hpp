@@ -21,8 +21,9 @@ struct TriangleMesh {
 };
 
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
-// vertex), OBJ (v and f), OFF, VTP (arrays appended raw and not compressed), and what open_mesh_file writes as GLB
-// (coordinates as stored, without the node's unit and axes; not compressed) and 3MF; told by content, then by name.
+// vertex), OBJ (v and f), OFF, VTP (arrays appended raw and not compressed), and what open_mesh_file and
+// open_mesh_levels write as GLB (coordinates as stored, without the node's unit and axes; the finest of several levels;
+// not compressed) and 3MF; told by content, then by name.
 // Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
 // kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always.
 TriangleMesh read_mesh(const std::string& path);
@@ -95,6 +96,18 @@ void write_ply_with_quality(const std::string& path, const TriangleMesh& mesh, s
 // parts already and no mark, or a mark and no such parts. All but STL and OBJ need room for the faces twice while
 // finish() runs, .precomputed for all. With `compress` the whole mesh is in memory then: see mesh_file_memory.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
+
+// Writes several levels of detail into one file, finest first: a sink for each, in that order, for mesh_volume with
+// levels. The file appears when all of them have been finished; destroying one before discards everything. Each has
+// options of its own, of which `normals` and `compress` must be the same.
+//   .glb                        a mesh for each in the same data, as nodes of the extension MSFT_lod; viewers without
+//   it,
+//                               and read_mesh, see the finest. At most 4 GiB in all
+//   .precomputed, `compress`    a level of neuroglancer's each, rounded to steps twice as long from one to the next
+// Throws what open_mesh_file throws, and CannotWrite for other formats. Needs room for all levels twice while the last
+// one finishes; with `compress` one level at a time is in memory then, and all that has been packed.
+std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
+                                                        std::span<const MeshFileOptions> levels);
 
 // Writes a mesh to an open descriptor, a pipe say, when it is finished; until then it is in files without names in
 // $TMPDIR or /tmp. `format` is "ply" or "stl", `name` stands for the descriptor in messages. Throws

@@ -1,8 +1,12 @@
 // GLB, glTF 2.0 in one file: a scene as JSON, then positions, normals and indices. Positions are written as they come,
 // behind a place kept for the scene; normals and indices wait in files of their own.
+#include <atomic>
+
+#include "isoweave/error.hpp"
 #include "write/glb_scene.hpp"
 #include "write/mesh_file_sink.hpp"
 #include "write/mesh_format.hpp"
+#include "write/mesh_levels.hpp"
 
 namespace isoweave {
 namespace {
@@ -17,42 +21,44 @@ struct Counts {
 // Numbers of a viewed float are those of the float: its double has the same value.
 std::array<double, 3> as_doubles(const Point& point) { return {point[0], point[1], point[2]}; }
 
-std::string scene_text(const MeshFileOptions& options, const Counts& counts, const Bounds& bounds) {
-  GltfJson json = gltf_scene(options);
-  if (counts.vertices == 0) {
-    // glTF has no empty meshes, nor scenes with an empty list of nodes.
-    json.erase("nodes");
-    json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
-    return gltf_text(json);
-  }
-  GltfJson attributes{{"POSITION", 0}};
-  std::uint64_t end = 0;
+// Adds a mesh of so many vertices and triangles, whose data begin at byte `end` of the BIN chunk; moves that behind
+// them.
+void add_mesh(GltfJson& json, bool normals, const Counts& counts, const Bounds& bounds, std::uint64_t& end) {
   const auto add = [&](std::uint64_t bytes, int target, GltfJson accessor) {
     json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", end}, {"byteLength", bytes}, {"target", target}});
     accessor["bufferView"] = json["bufferViews"].size() - 1;
     json["accessors"].push_back(std::move(accessor));
     end += bytes;
+    return json["accessors"].size() - 1;
   };
-  add(counts.vertices * kPointBytes, kGltfVertices,
-      {{"componentType", kGltfFloat},
-       {"count", counts.vertices},
-       {"type", "VEC3"},
-       {"min", as_doubles(bounds.low)},
-       {"max", as_doubles(bounds.high)}});
-  if (options.normals) {
-    attributes["NORMAL"] = 1;
-    add(counts.vertices * kPointBytes, kGltfVertices,
-        {{"componentType", kGltfFloat}, {"count", counts.vertices}, {"type", "VEC3"}});
+  GltfJson attributes;
+  attributes["POSITION"] = add(counts.vertices * kPointBytes, kGltfVertices,
+                               {{"componentType", kGltfFloat},
+                                {"count", counts.vertices},
+                                {"type", "VEC3"},
+                                {"min", as_doubles(bounds.low)},
+                                {"max", as_doubles(bounds.high)}});
+  if (normals) {
+    attributes["NORMAL"] = add(counts.vertices * kPointBytes, kGltfVertices,
+                               {{"componentType", kGltfFloat}, {"count", counts.vertices}, {"type", "VEC3"}});
   }
   GltfJson primitive{{"attributes", attributes}};
   if (counts.triangles > 0) {
-    add(counts.triangles * kTriangleBytes, kGltfIndices,
-        {{"componentType", kGltfUint32}, {"count", counts.triangles * 3}, {"type", "SCALAR"}});
-    primitive["indices"] = json["accessors"].size() - 1;
+    primitive["indices"] = add(counts.triangles * kTriangleBytes, kGltfIndices,
+                               {{"componentType", kGltfUint32}, {"count", counts.triangles * 3}, {"type", "SCALAR"}});
   } else {
     primitive["mode"] = kGltfPoints;
   }
-  json["meshes"] = {{{"primitives", GltfJson::array({primitive})}}};
+  GltfJson mesh;
+  mesh["primitives"] = GltfJson::array({primitive});
+  json["meshes"].push_back(std::move(mesh));
+}
+
+std::string scene_text(const MeshFileOptions& options, const Counts& counts, const Bounds& bounds) {
+  if (counts.vertices == 0) return gltf_text(gltf_empty_scene(options));
+  GltfJson json = gltf_scene(options);
+  std::uint64_t end = 0;
+  add_mesh(json, options.normals, counts, bounds, end);
   json["buffers"] = {{{"byteLength", end}}};
   return gltf_text(json);
 }
@@ -72,7 +78,7 @@ class GlbSink final : public MeshFileSink {
       : MeshFileSink(target, options), json_bytes_(reserved_bytes(options)), faces_(open_side("faces.part")) {
     if (options.normals) normals_ = &open_side("normals.part");
     if (continued()) {
-      load_bounds(saved_state(6));
+      bounds_.load(saved_state(6));
     } else {
       file().write(glb_begin("", json_bytes_, 0));
       file().write(glb_chunk(0));
@@ -82,20 +88,7 @@ class GlbSink final : public MeshFileSink {
  private:
   std::uint64_t data_begin() const { return kGlbHeaderBytes + json_bytes_ + kGlbChunkHeaderBytes; }
 
-  void load_bounds(const std::vector<std::uint64_t>& numbers) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      bounds_.low[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(numbers[axis]));
-      bounds_.high[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(numbers[3 + axis]));
-    }
-  }
-
-  std::vector<std::uint64_t> state() const override {
-    std::vector<std::uint64_t> numbers;
-    for (const Point& corner : {bounds_.low, bounds_.high}) {
-      for (const float coordinate : corner) numbers.push_back(std::bit_cast<std::uint32_t>(coordinate));
-    }
-    return numbers;
-  }
+  std::vector<std::uint64_t> state() const override { return bounds_.state(); }
 
   void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
                    std::span<const Triangle64> triangles) override {
@@ -106,14 +99,11 @@ class GlbSink final : public MeshFileSink {
                   [&](std::byte*& out, std::size_t n) { store_point(out, vertices[n]); });
     if (normals_ != nullptr) {
       write_records(*normals_, records_, normals.size(), kPointBytes,
-                    [&](std::byte*& out, std::size_t n) { store_point(out, unit_normal(normals[n])); });
+                    [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(normals[n])); });
     }
     write_records(faces_, records_, triangles.size(), kTriangleBytes,
                   [&](std::byte*& out, std::size_t n) { store_indices(out, triangles[n]); });
   }
-
-  // glTF has no normals without a direction.
-  static Point unit_normal(const Point& normal) { return normal == Point{0, 0, 0} ? Point{0, 0, 1} : normal; }
 
   void complete() override {
     if (normals_ != nullptr) file().append(*normals_);
@@ -138,7 +128,65 @@ class GlbSink final : public MeshFileSink {
   std::vector<std::byte> records_;
 };
 
+// Levels of detail, each with a mesh of its own in the one chunk of data.
+class GlbLevels final : public LevelFile {
+ public:
+  GlbLevels(const std::string& path, std::span<const MeshFileOptions> levels) : LevelFile(path, levels), file_(path) {
+    for (const LevelParts& level : this->levels()) bytes_ += data_bytes(level.vertices(), level.triangles());
+  }
+
+  void check_room(const LevelParts&, std::uint64_t vertices, std::uint64_t triangles) override {
+    const std::uint64_t more = data_bytes(vertices, triangles);
+    check_glb_fits(path(), 0, 0, false, bytes_.fetch_add(more, std::memory_order_relaxed) + more);
+  }
+
+ private:
+  std::uint64_t data_bytes(std::uint64_t vertices, std::uint64_t triangles) {
+    return vertices * kPointBytes * (options().normals ? 2 : 1) + triangles * kTriangleBytes;
+  }
+
+  // A level that has vanished is a node without a mesh.
+  GltfJson scene(std::uint64_t& end) {
+    if (levels().front().vertices() == 0) return gltf_empty_scene(options());
+    std::vector<MeshFileOptions> level_options;
+    std::vector<GltfJson> nodes;
+    std::size_t meshes = 0;
+    for (const LevelParts& level : levels()) {
+      level_options.push_back(level.options());
+      nodes.push_back(GltfJson::object());
+      if (level.vertices() > 0) nodes.back()["mesh"] = meshes++;
+    }
+    GltfJson json = gltf_levels(level_options, std::move(nodes));
+    for (const LevelParts& level : levels()) {
+      if (level.vertices() == 0) continue;
+      add_mesh(json, options().normals, {level.vertices(), level.triangles()}, level.bounds(), end);
+    }
+    json["buffers"] = {{{"byteLength", end}}};
+    return json;
+  }
+
+  void write() override {
+    std::uint64_t data = 0;
+    const std::string text = gltf_text(scene(data));
+    const std::uint64_t json_bytes = (text.size() + 3) / 4 * 4;
+    const std::uint64_t total = kGlbHeaderBytes + json_bytes + (data > 0 ? kGlbChunkHeaderBytes + data : 0);
+    check_glb_fits(path(), 0, 0, false, total);
+    file_.write(glb_begin(text, json_bytes, total));
+    if (data > 0) file_.write(glb_chunk(data));
+    for (LevelParts& level : levels()) level.append_to(file_);
+    if (file_.size() != total) throw CannotWrite(path() + ": its counts and its size differ");
+    file_.commit();
+  }
+
+  AtomicFile file_;
+  std::atomic<std::uint64_t> bytes_{0};  // of the chunk of data
+};
+
 }  // namespace
+
+std::unique_ptr<LevelFile> open_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
+  return std::make_unique<GlbLevels>(path, levels);
+}
 
 std::unique_ptr<MeshSink> open_glb(const MeshTarget& target, const MeshFileOptions& options) {
   return std::make_unique<GlbSink>(target, options);

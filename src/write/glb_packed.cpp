@@ -7,6 +7,7 @@
 #include "isoweave/error.hpp"
 #include "write/glb_scene.hpp"
 #include "write/mesh_format.hpp"
+#include "write/mesh_levels.hpp"
 #include "write/whole_mesh_sink.hpp"
 
 namespace isoweave {
@@ -59,59 +60,12 @@ PackedView pack_indices(const std::vector<std::uint32_t>& indices, std::size_t v
   return view;
 }
 
-// The views at multiples of four in the BIN chunk, which is buffer 0; buffer 1 is what they would be without packing.
-std::vector<std::byte> add_views(GltfJson& json, const std::vector<PackedView>& views) {
-  std::vector<std::byte> data;
-  std::size_t plain = 0;
-  for (const PackedView& view : views) {
-    const std::size_t bytes = view.count * view.stride;
-    GltfJson entry{{"buffer", 1}, {"byteOffset", plain}, {"byteLength", bytes}, {"target", view.target}};
-    if (view.target == kGltfVertices) entry["byteStride"] = view.stride;
-    entry["extensions"][kExtension] = {{"buffer", 0},
-                                       {"byteOffset", data.size()},
-                                       {"byteLength", view.bytes.size()},
-                                       {"byteStride", view.stride},
-                                       {"mode", view.mode},
-                                       {"count", view.count}};
-    json["bufferViews"].push_back(std::move(entry));
-    const auto packed = std::as_bytes(std::span(view.bytes));
-    data.insert(data.end(), packed.begin(), packed.end());
-    data.resize((data.size() + 3) / 4 * 4);
-    plain += bytes;
-  }
-  GltfJson fallback{{"byteLength", plain}};
-  fallback["extensions"][kExtension] = {{"fallback", true}};
-  json["buffers"] = {{{"byteLength", data.size()}}, fallback};
-  return data;
-}
-
-class PackedGlbSink final : public WholeMeshSink {
+// The arrays and meshes of a scene. Data come at multiples of four in the BIN chunk, which is buffer 0; buffer 1 is
+// what they would be without packing.
+class PackedScene {
  public:
-  PackedGlbSink(const MeshTarget& target, const MeshFileOptions& options)
-      : WholeMeshSink(target, options, kMostPackedTriangles) {}
-
- private:
-  void write_mesh(TriangleMesh mesh) override {
-    if (mesh.triangles.empty()) return write_empty();
-    const Grid16 grid = Grid16::around(mesh.vertices);
-    note(rounding_note(path(), grid, options().unit));
-    GltfJson json = scene(grid);
-    const std::vector<std::byte> data = add_views(json, pack(std::move(mesh), grid, json));
-    write(json, data);
-  }
-
-  GltfJson scene(const Grid16& grid) const {
-    GltfJson json = gltf_scene(
-        options(), {{"mesh", 0}, {"translation", grid.origin}, {"scale", {grid.step, grid.step, grid.step}}});
-    json["asset"]["extras"]["rounding_error"] = grid.error();
-    for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-      json[key] = {"KHR_mesh_quantization", kExtension};
-    }
-    return json;
-  }
-
-  // Positions, normals if there are any, indices; adds their accessors and the mesh.
-  static std::vector<PackedView> pack(TriangleMesh mesh, const Grid16& grid, GltfJson& json) {
+  // Positions, normals if there are any, indices. Returns the number of the mesh.
+  std::size_t add(TriangleMesh mesh, const Grid16& grid) {
     std::vector<std::uint32_t> indices(mesh.triangles.size() * 3);
     meshopt_optimizeVertexCache(indices.data(), mesh.triangles.front().data(), indices.size(), mesh.vertices.size());
     mesh.triangles = {};
@@ -137,51 +91,145 @@ class PackedGlbSink final : public WholeMeshSink {
     }
     mesh = {};
 
-    std::vector<PackedView> views{pack_vertices(positions)};
-    json["accessors"] = {{{"bufferView", 0},
-                          {"componentType", kGltfUint16},
-                          {"count", used},
-                          {"type", "VEC3"},
-                          {"min", low},
-                          {"max", high}}};
-    GltfJson attributes{{"POSITION", 0}};
+    GltfJson attributes;
+    attributes["POSITION"] =
+        add_array(pack_vertices(positions),
+                  {{"componentType", kGltfUint16}, {"count", used}, {"type", "VEC3"}, {"min", low}, {"max", high}});
     if (!normals.empty()) {
-      views.push_back(pack_vertices(normals));
-      attributes["NORMAL"] = 1;
-      json["accessors"].push_back(
-          {{"bufferView", 1}, {"componentType", kGltfByte}, {"normalized", true}, {"count", used}, {"type", "VEC3"}});
+      attributes["NORMAL"] =
+          add_array(pack_vertices(normals),
+                    {{"componentType", kGltfByte}, {"normalized", true}, {"count", used}, {"type", "VEC3"}});
     }
-    json["accessors"].push_back(
-        {{"bufferView", views.size()}, {"componentType", kGltfUint32}, {"count", indices.size()}, {"type", "SCALAR"}});
-    json["meshes"] = {{{"primitives", {{{"attributes", attributes}, {"indices", views.size()}}}}}};
-    views.push_back(pack_indices(indices, used));
-    return views;
+    const std::size_t corners = add_array(
+        pack_indices(indices, used), {{"componentType", kGltfUint32}, {"count", indices.size()}, {"type", "SCALAR"}});
+    meshes_.push_back({{"primitives", {{{"attributes", attributes}, {"indices", corners}}}}});
+    return meshes_.size() - 1;
   }
 
-  void write_empty() {
-    GltfJson json = gltf_scene(options());
-    json.erase("nodes");
-    json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
-    write(json, {});
-  }
-
-  void write(const GltfJson& json, std::span<const std::byte> data) {
+  // Writes the file, with `json` around what was added.
+  void write(const std::string& path, GltfJson json, OutputDescriptor& file) {
+    GltfJson fallback{{"byteLength", plain_}};
+    fallback["extensions"][kExtension] = {{"fallback", true}};
+    if (!data_.empty()) {
+      json["accessors"] = accessors_;
+      json["meshes"] = meshes_;
+      json["bufferViews"] = views_;
+      json["buffers"] = {{{"byteLength", data_.size()}}, fallback};
+    }
     const std::string text = gltf_text(json);
     const std::uint64_t json_bytes = (text.size() + 3) / 4 * 4;
-    const std::uint64_t chunk = data.empty() ? 0 : kGlbChunkHeaderBytes + data.size();
+    const std::uint64_t chunk = data_.empty() ? 0 : kGlbChunkHeaderBytes + data_.size();
     const std::uint64_t total = kGlbHeaderBytes + json_bytes + chunk;
-    check_glb_fits(path(), 0, 0, false, total);
-    const std::vector<std::byte> header = glb_begin(text, json_bytes, total);
-    file().write(header);
-    if (!data.empty()) {
-      file().write(glb_chunk(data.size()));
-      file().write(data);
-    }
-    check_written(total, header);
+    check_glb_fits(path, 0, 0, false, total);
+    file.write(glb_begin(text, json_bytes, total));
+    if (!data_.empty()) file.write(glb_chunk(data_.size()));
+    file.write(data_);
+    if (file.size() != total) throw CannotWrite(path + ": its counts and its size differ");
+  }
+
+ private:
+  // Returns the number of its accessor.
+  std::size_t add_array(const PackedView& view, GltfJson accessor) {
+    const std::size_t bytes = view.count * view.stride;
+    GltfJson entry{{"buffer", 1}, {"byteOffset", plain_}, {"byteLength", bytes}, {"target", view.target}};
+    if (view.target == kGltfVertices) entry["byteStride"] = view.stride;
+    entry["extensions"][kExtension] = {{"buffer", 0},
+                                       {"byteOffset", data_.size()},
+                                       {"byteLength", view.bytes.size()},
+                                       {"byteStride", view.stride},
+                                       {"mode", view.mode},
+                                       {"count", view.count}};
+    accessor["bufferView"] = views_.size();
+    views_.push_back(std::move(entry));
+    const auto packed = std::as_bytes(std::span(view.bytes));
+    data_.insert(data_.end(), packed.begin(), packed.end());
+    data_.resize((data_.size() + 3) / 4 * 4);
+    plain_ += bytes;
+    accessors_.push_back(std::move(accessor));
+    return accessors_.size() - 1;
+  }
+
+  GltfJson views_, accessors_, meshes_;
+  std::vector<std::byte> data_;
+  std::size_t plain_ = 0;
+};
+
+// Where a mesh in whole steps lies.
+GltfJson placed_node(std::size_t mesh, const Grid16& grid) {
+  return {{"mesh", mesh}, {"translation", grid.origin}, {"scale", {grid.step, grid.step, grid.step}}};
+}
+
+// What a viewer has to know to read it.
+void add_requirements(GltfJson& json, double rounding_error) {
+  json["asset"]["extras"]["rounding_error"] = rounding_error;
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    for (const char* extension : {"KHR_mesh_quantization", kExtension}) json[key].push_back(extension);
+  }
+}
+
+class PackedGlbSink final : public WholeMeshSink {
+ public:
+  PackedGlbSink(const MeshTarget& target, const MeshFileOptions& options)
+      : WholeMeshSink(target, options, kMostPackedTriangles) {}
+
+ private:
+  void write_mesh(TriangleMesh mesh) override {
+    PackedScene scene;
+    if (mesh.triangles.empty()) return scene.write(path(), gltf_empty_scene(options()), file());
+    const Grid16 grid = Grid16::around(mesh.vertices);
+    note(rounding_note(path(), grid, options().unit));
+    const std::size_t number = scene.add(std::move(mesh), grid);
+    GltfJson json = gltf_scene(options(), placed_node(number, grid));
+    add_requirements(json, grid.error());
+    scene.write(path(), std::move(json), file());
   }
 };
 
+// Levels of detail, each in steps of its own.
+class PackedGlbLevels final : public LevelFile {
+ public:
+  PackedGlbLevels(const std::string& path, std::span<const MeshFileOptions> levels)
+      : LevelFile(path, levels), file_(path) {}
+
+  void check_room(const LevelParts& level, std::uint64_t vertices, std::uint64_t triangles) override {
+    check_count_fits(path(), "vertices", level.vertices(), vertices);
+    check_count_fits(path(), "triangles", level.triangles(), triangles, kMostPackedTriangles);
+  }
+
+ private:
+  void write() override {
+    PackedScene scene;
+    std::vector<MeshFileOptions> level_options;
+    std::vector<GltfJson> nodes;
+    Grid16 coarsest;
+    coarsest.step = 0;
+    for (LevelParts& level : levels()) {
+      level_options.push_back(level.options());
+      nodes.push_back(GltfJson::object());
+      if (level.triangles() == 0) continue;
+      TriangleMesh mesh = level.load();
+      const Grid16 grid = Grid16::around(mesh.vertices);
+      if (grid.step > coarsest.step) coarsest = grid;
+      nodes.back() = placed_node(scene.add(std::move(mesh), grid), grid);
+    }
+    GltfJson json = gltf_empty_scene(options());
+    if (coarsest.step > 0) {
+      note(rounding_note(path(), coarsest, options().unit));
+      json = gltf_levels(level_options, std::move(nodes));
+      add_requirements(json, coarsest.error());
+    }
+    scene.write(path(), std::move(json), file_.descriptor());
+    file_.commit();
+  }
+
+  AtomicFile file_;
+};
+
 }  // namespace
+
+std::unique_ptr<LevelFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
+  return std::make_unique<PackedGlbLevels>(path, levels);
+}
 
 std::unique_ptr<MeshSink> open_packed_glb(const MeshTarget& target, const MeshFileOptions& options) {
   return std::make_unique<PackedGlbSink>(target, options);

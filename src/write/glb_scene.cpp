@@ -1,6 +1,7 @@
 #include "write/glb_scene.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -30,6 +31,21 @@ void Bounds::add(std::span<const Point> points) {
   }
 }
 
+std::vector<std::uint64_t> Bounds::state() const {
+  std::vector<std::uint64_t> numbers;
+  for (const Point& corner : {low, high}) {
+    for (const float coordinate : corner) numbers.push_back(std::bit_cast<std::uint32_t>(coordinate));
+  }
+  return numbers;
+}
+
+void Bounds::load(const std::vector<std::uint64_t>& state) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(state[axis]));
+    high[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(state[3 + axis]));
+  }
+}
+
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   GltfJson json;
   json["asset"] = {{"version", "2.0"}, {"generator", kGltfGenerator}};
@@ -49,6 +65,27 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
     root["children"] = {1};
     json["nodes"] = {root, placed};
   }
+  return json;
+}
+
+GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels) {
+  GltfJson json = gltf_scene(options.front(), GltfJson::object());
+  json["nodes"].erase(1);  // the root's child is the finest level
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    GltfJson& node = levels[level];
+    node["name"] = "lod" + std::to_string(level);
+    node["extras"]["comments"] = options[level].comments;
+    if (level > 0) levels[0]["extensions"]["MSFT_lod"]["ids"].push_back(level + 1);
+  }
+  for (GltfJson& node : levels) json["nodes"].push_back(std::move(node));
+  if (levels.size() > 1) json["extensionsUsed"] = {"MSFT_lod"};
+  return json;
+}
+
+GltfJson gltf_empty_scene(const MeshFileOptions& options) {
+  GltfJson json = gltf_scene(options);
+  json.erase("nodes");
+  json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
   return json;
 }
 

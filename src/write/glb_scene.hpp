@@ -35,11 +35,25 @@ struct Bounds {
              -std::numeric_limits<float>::infinity()};
 
   void add(std::span<const Point> points);
+
+  // As numbers of a mark, six of them.
+  std::vector<std::uint64_t> state() const;
+  void load(const std::vector<std::uint64_t>& state);
 };
+
+// glTF has no normals without a direction.
+inline Point gltf_normal(const Point& normal) { return normal == Point{0, 0, 0} ? Point{0, 0, 1} : normal; }
 
 // "asset", "scene", "scenes" and the root node, which holds mesh 0 or, if `placed` says where it lies, a node that
 // does.
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
+
+// The same for several levels of detail (MSFT_lod), finest first: `levels` says what their nodes hold. The finest is
+// the only one that a viewer sees which does not know the extension.
+GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels);
+
+// The scene of a mesh without triangles: glTF has no empty meshes, nor scenes with an empty list of nodes.
+GltfJson gltf_empty_scene(const MeshFileOptions& options);
 
 // As text; whatever bytes comments have.
 std::string gltf_text(const GltfJson& scene);

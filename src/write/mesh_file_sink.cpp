@@ -65,6 +65,8 @@ void MeshFileSink::open_file() {
       if (!options_.parts.empty()) throw std::invalid_argument(path() + ": a stream cannot be continued later");
       stream_.emplace(open_side_scratch(), path());
       break;
+    case MeshTarget::Kind::kLevel:
+      break;
   }
 }
 
@@ -88,6 +90,7 @@ PartFile MeshFileSink::part(const std::string& name, std::uint64_t size) const {
 int MeshFileSink::open_side_scratch() const {
   switch (target_.kind) {
     case MeshTarget::Kind::kFolder:
+    case MeshTarget::Kind::kLevel:
       return open_scratch_in(folder_of(without_slashes(path())), path());
     case MeshTarget::Kind::kStream:
       return open_scratch_in(temporary_folder(), path());
@@ -156,10 +159,13 @@ void MeshFileSink::finish() {
   complete();
   if (atomic_) atomic_->commit();
   if (stream_) stream_->copy_to(target_.descriptor, path());
-  if (!options_.parts.empty()) {
-    for (const std::string& name : side_names_) remove_part(part(name, 0));
-  }
+  if (target_.kind != MeshTarget::Kind::kLevel) remove_parts();
   state_ = State::kFinished;
+}
+
+void MeshFileSink::remove_parts() const {
+  if (options_.parts.empty()) return;
+  for (const std::string& name : side_names_) remove_part(part(name, 0));
 }
 
 void MeshFileSink::check_written(std::uint64_t expected_bytes, std::span<const std::byte> header) {

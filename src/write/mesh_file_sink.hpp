@@ -21,7 +21,7 @@ using Triangle64 = std::array<std::uint64_t, 3>;
 
 // What a finished mesh becomes.
 struct MeshTarget {
-  enum class Kind { kFile, kFolder, kStream };
+  enum class Kind { kFile, kFolder, kStream, kLevel };  // kLevel: a part of a file that others write as well
 
   std::string path;  // as the user gave it; what stands for a stream in messages
   Kind kind = Kind::kFile;
@@ -64,6 +64,9 @@ class MeshFileSink : public MeshSink {
 
   // Writes what can only be written at the end, and checks the file against the counts.
   virtual void complete() = 0;
+
+  // Removes the files that were kept. finish() does, but for a level, which others may have to wait for.
+  void remove_parts() const;
 
   // Throws CannotWrite when the file is not as long as its counts say, or does not begin with `header`.
   void check_written(std::uint64_t expected_bytes, std::span<const std::byte> header);

@@ -66,6 +66,12 @@ MeshFormat mesh_format(const std::string& path) {
   throw CannotWrite(path + ": expected a name that ends in " + names);
 }
 
+MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options) {
+  const MeshFormat format = mesh_format(path);
+  check_options(path, format, options);
+  return format;
+}
+
 void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more,
                       std::uint64_t most) {
   if (have > most || more > most - have) {
@@ -87,8 +93,7 @@ void check_glb_fits(const std::string& path, std::uint64_t vertices, std::uint64
 }
 
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options) {
-  const MeshFormat format = mesh_format(path);
-  check_options(path, format, options);
+  const MeshFormat format = checked_mesh_format(path, options);
   const MeshTarget file{path};
   const MeshTarget folder{path, MeshTarget::Kind::kFolder};
   switch (format) {
@@ -124,8 +129,7 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
                               const MeshFileOptions& options) {
   // Lines of text, and what packing leaves of triangles: as measured on scans.
   constexpr std::uint64_t kTextVertex = 32, kObjFace = 24, kOffFace = 22, k3mfVertex = 14, k3mfTriangle = 7;
-  const MeshFormat format = mesh_format(path);
-  check_options(path, format, options);
+  const MeshFormat format = checked_mesh_format(path, options);
   if (options.compress) return packed_bytes(path, format, vertices, triangles, options.normals);
   const std::uint64_t raw_vertex = options.normals ? 24 : 12;
   switch (format) {

@@ -13,6 +13,9 @@ enum class MeshFormat { kPly, kStl, kObj, kOff, kGlb, kVtp, k3mf, kPrecomputed }
 // By the ending, whatever its case. Throws CannotWrite when it is none that is known.
 MeshFormat mesh_format(const std::string& path);
 
+// The same; throws as well for options that the format does not have.
+MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options);
+
 // Throws CannotWrite when `have` + `more` is more than the most that a format holds.
 void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more,
                       std::uint64_t most = 0xffffffffU);

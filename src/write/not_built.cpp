@@ -1,6 +1,7 @@
 // Stands in for the writers whose libraries the build lacks: an error that says which option brings them in.
 #include "isoweave/error.hpp"
 #include "write/mesh_file_sink.hpp"
+#include "write/mesh_levels.hpp"
 
 namespace isoweave {
 namespace {
@@ -18,11 +19,19 @@ namespace {
 std::unique_ptr<MeshSink> open_packed_glb(const MeshTarget& target, const MeshFileOptions&) {
   not_built(target.path, "meshoptimizer", "ISOWEAVE_MESHOPTIMIZER");
 }
+
+std::unique_ptr<LevelFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions>) {
+  not_built(path, "meshoptimizer", "ISOWEAVE_MESHOPTIMIZER");
+}
 #endif
 
 #ifndef ISOWEAVE_HAS_DRACO
 std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, const MeshFileOptions&) {
   not_built(target.path, "Draco", "ISOWEAVE_DRACO");
+}
+
+std::unique_ptr<LevelFile> open_packed_precomputed_levels(const std::string& path, std::span<const MeshFileOptions>) {
+  not_built(path, "Draco", "ISOWEAVE_DRACO");
 }
 #endif
 

@@ -11,13 +11,6 @@ namespace {
 
 constexpr double kSteps = 65535;
 
-template <class Item>
-std::vector<Item> read_all(OutputDescriptor& file, std::uint64_t count) {
-  std::vector<Item> items(static_cast<std::size_t>(count));
-  file.read_back(0, std::as_writable_bytes(std::span(items)));
-  return items;
-}
-
 }  // namespace
 
 WholeMeshSink::WholeMeshSink(const MeshTarget& target, const MeshFileOptions& options, std::uint64_t most_triangles)

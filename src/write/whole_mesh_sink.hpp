@@ -30,6 +30,14 @@ class WholeMeshSink : public MeshFileSink {
   std::vector<std::string> notes_;
 };
 
+// All of a file of items in memory.
+template <class Item>
+std::vector<Item> read_all(OutputDescriptor& file, std::uint64_t count) {
+  std::vector<Item> items(static_cast<std::size_t>(count));
+  file.read_back(0, std::as_writable_bytes(std::span(items)));
+  return items;
+}
+
 // A cube around a mesh in which coordinates are whole numbers of steps from 0 to 65535.
 struct Grid16 {
   std::array<double, 3> origin{};

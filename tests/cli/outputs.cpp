@@ -185,6 +185,58 @@ TEST(CliLevels, ComeFromMeshesTooAndCanBeResumed) {
   EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
 }
 
+TEST(CliLevels, OneFileHasThemAll) {
+  const files::Folder folder;
+  const std::vector<std::string> lods{"--lods", "0,0.1vox,0.5", "--report", "r.json"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = mesh(lods);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return report_of(folder, arguments);
+  };
+  const Json separate = with({"-o", "s.glb"});
+  const Json one = with({"-o", "a.glb", "--one-file"});
+  EXPECT_EQ(one.at("output"), "a.glb");
+  EXPECT_EQ(one.at("digest"), separate.at("digest"));
+  EXPECT_EQ(one.at("levels").at(0).at("digest"), separate.at("levels").at(0).at("digest"));
+  // The data of each level are those of its file, one after the other.
+  std::string data;
+  for (int level = 0; level < 3; ++level) {
+    const std::string bytes = files::read_bytes(folder / ("s_lod" + std::to_string(level) + ".glb"));
+    data += bytes.substr(bytes.find("BIN", 20) + 4);
+  }
+  const std::string bytes = files::read_bytes(folder / "a.glb");
+  EXPECT_TRUE(bytes.substr(bytes.find("BIN", 20) + 4) == data);
+  EXPECT_EQ(Json::parse(run(folder.path(), {"check", "a.glb", "--json"}).out).at("digest"),
+            one.at("levels").at(0).at("digest"))
+      << "the finest is read";
+  with({"-o", "k.glb", "--one-file", "--checkpoint", "run", "--every", "1layers", "--slab", "4"});
+  EXPECT_TRUE(files::read_bytes(folder / "k.glb").substr(bytes.find("BIN", 20) + 4).size() == data.size());
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"})).code, 0);
+  report_of(folder, {"simplify", "full.ply", "-o", "m.glb", "--one-file", "--lods", "0.1,0.5", "--report", "r.json"});
+  EXPECT_EQ(run(folder.path(), {"check", "m.glb"}).code, 0);
+}
+
+TEST(CliLevels, OneFileIsRefusedWhereThereCanBeNone) {
+  const files::Folder folder;
+  const std::vector<std::string> lods{"--lods", "0.1,0.2"};
+  const auto refused = [&](std::vector<std::string> more, int code, const std::string& says) {
+    more.insert(more.end(), lods.begin(), lods.end());
+    more.emplace_back("--one-file");
+    expect_failure(folder, mesh(more), code, says);
+  };
+  refused({"-o", "a.ply"}, 2, "--one-file: expected a mesh named .glb, or .precomputed with --compress");
+  refused({"-o", "a.precomputed"}, 2, "--one-file: expected a mesh named .glb");
+  refused({"-o", "missing/a.glb"}, 4, "missing");
+  refused({"-o", "a.glb", "--html", "a.html"}, 2, "--html");
+  expect_failure(folder, mesh({"-o", "a.glb", "--one-file", "--error", "1"}), 2, "--one-file: expected several levels");
+  // Each would fit alone: 3.8 and 3.6 GB.
+  expect_failure(folder,
+                 {"mesh", "generate:white:64x64x16000:uint8", "--iso", "127.5", "--lods", "0,0.001vox", "-o", "a.glb",
+                  "--one-file"},
+                 4, "at most 4294967295 bytes");
+}
+
 TEST(CliLevels, WrongUseIsRefused) {
   const files::Folder folder;
   expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.2,0.1"}), 2, "expected ascending errors");

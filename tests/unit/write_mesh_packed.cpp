@@ -161,6 +161,44 @@ TEST(WritePackedGlb, UnpacksToTheMeshWithinTheErrorTold) {
   }
 }
 
+TEST(WritePackedGlb, LevelsAreMeshesInStepsOfTheirOwn) {
+  const files::Folder folder;
+  const std::array<TriangleMesh, 2> levels{sheet(), meshes::grid(2)};
+  const std::array<MeshFileOptions, 2> options{packed_options(), packed_options()};
+  const auto sinks = open_mesh_levels(folder / "a.glb", options);
+  for (const std::size_t level : {1U, 0U}) {
+    std::vector<Triangle64> triangles;
+    for (const auto& t : levels[level].triangles) triangles.push_back({t[0], t[1], t[2]});
+    sinks[level]->append(levels[level].vertices, {}, triangles);
+    sinks[level]->finish();
+  }
+  const std::string bytes = files::read_bytes(folder / "a.glb");
+  const Json scene = Json::parse(bytes.substr(20, word_at(bytes, 12)));
+  EXPECT_EQ(scene["nodes"][1]["extensions"]["MSFT_lod"]["ids"].dump(), "[2]");
+  EXPECT_EQ(scene["extensionsRequired"].size(), 2U) << "whoever does not know the levels sees the finest";
+  for (std::size_t level = 0; level < 2; ++level) {
+    const Json& node = scene["nodes"][1 + level];
+    const Json& primitive = scene["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
+    const auto view = [&](const Json& accessor) {
+      return unpack(bytes, scene, scene["accessors"][accessor.get<std::size_t>()]["bufferView"].get<std::size_t>());
+    };
+    const auto positions = view(primitive["attributes"]["POSITION"]);
+    const auto indices = view(primitive["indices"]);
+    std::vector<Corners> found(levels[level].triangles.size());
+    ASSERT_EQ(indices.size(), 12 * found.size());
+    for (std::size_t n = 0; n < indices.size() / 4; ++n) {
+      std::uint32_t index = 0;
+      std::memcpy(&index, indices.data() + 4 * n, 4);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::uint16_t place = 0;
+        std::memcpy(&place, positions.data() + 8 * index + 2 * axis, 2);
+        found[n / 3][n % 3][axis] = node["translation"][axis].get<double>() + node["scale"][axis].get<double>() * place;
+      }
+    }
+    expect_close(corners_of(levels[level]), sorted(found), 0.00027);
+  }
+}
+
 TEST(WritePackedGlb, AnEmptyMeshIsAnEmptyScene) {
   const files::Folder folder;
   write(folder / "a.glb", {}, packed_options());
@@ -214,6 +252,70 @@ TEST(WritePackedPrecomputed, UnpacksToTheMeshWithinTheErrorTold) {
   expect_close(corners_of(mesh), sorted(corners), 0.000265);
 }
 
+// Two levels and one that has vanished.
+TEST(WritePackedPrecomputed, LevelsAreFragmentsInCellsTwiceAsWide) {
+  const files::Folder folder;
+  TriangleMesh fine = sheet();
+  fine.vertices.pop_back();
+  TriangleMesh coarse = meshes::grid(2);
+  for (Point& p : coarse.vertices) p = {p[0] * 10 + 100, p[1] * 7 - 50, 0.5F};
+  const std::array<MeshFileOptions, 3> options{packed_options(), packed_options(), packed_options()};
+  std::vector<std::string> notes;
+  {
+    const auto sinks = open_mesh_levels(folder / "a.precomputed", options);
+    for (std::size_t level = 0; level < 3; ++level) {
+      const TriangleMesh mesh = level == 0 ? fine : level == 1 ? coarse : TriangleMesh{};
+      std::vector<Triangle64> triangles;
+      for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+      sinks[level]->append(mesh.vertices, {}, triangles);
+      EXPECT_TRUE(folder.entries().empty());
+      sinks[level]->finish();
+    }
+    notes = sinks[2]->notes();
+  }
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("level 1, the coarsest, by 2 times that"), std::string::npos) << notes[0];
+  const std::string index = files::read_bytes(folder / "a.precomputed/1.index");
+  const std::string data = files::read_bytes(folder / "a.precomputed/1");
+  ASSERT_EQ(index.size(), 28U + 2 * 20 + 2 * 16);
+  std::array<float, 6> box{};
+  std::memcpy(box.data(), index.data(), sizeof(box));
+  std::array<std::uint32_t, 19> words{};
+  std::memcpy(words.data(), index.data() + 24, sizeof(words));
+  EXPECT_EQ(words[0], 2U) << "levels";
+  std::array<float, 2> scales{};
+  std::memcpy(scales.data(), &words[1], sizeof(scales));
+  EXPECT_GT(scales[0], 0.5);
+  EXPECT_GT(scales[1], 5 * scales[0]);
+  for (std::size_t n = 3; n < 9; ++n) EXPECT_EQ(words[n], 0U) << "offsets";
+  EXPECT_EQ(words[9], 1U);
+  EXPECT_EQ(words[10], 1U);
+  const std::array<std::size_t, 2> bytes{words[14], words[18]};
+  ASSERT_EQ(bytes[0] + bytes[1], data.size());
+  for (std::size_t level = 0; level < 2; ++level) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(data.data() + (level == 0 ? 0 : bytes[0]), bytes[level]);
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    ASSERT_TRUE(decoded.ok());
+    const draco::Mesh& found = *decoded.value();
+    const draco::PointAttribute& positions = *found.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+    std::vector<Corners> corners(found.num_faces());
+    for (std::uint32_t f = 0; f < found.num_faces(); ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::array<std::uint32_t, 3> place{};
+        positions.GetMappedValue(found.face(draco::FaceIndex(f))[c], place.data());
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_LE(place[axis], level == 0 ? 65534U : 32767U) << "in the first eighth of its cell";
+          const double cell = double{box[axis]} * (level == 0 ? 1 : 2);
+          corners[f][c][axis] = double{box[3 + axis]} + cell * place[axis] / 65535;
+        }
+      }
+    }
+    expect_close(corners_of(level == 0 ? fine : coarse), sorted(corners), 0.00027 * (level == 0 ? 1 : 2));
+  }
+}
+
 TEST(WritePackedPrecomputed, AnEmptyMeshHasNoFragment) {
   const files::Folder folder;
   write(folder / "a.precomputed", {}, packed_options());
@@ -226,9 +328,11 @@ TEST(WritePacked, ABuildWithoutTheLibrarySaysSo) {
   const files::Folder folder;
 #ifndef ISOWEAVE_HAS_MESHOPTIMIZER
   EXPECT_THROW(open_mesh_file(folder / "a.glb", packed_options()), CannotWrite);
+  EXPECT_THROW(open_mesh_levels(folder / "a.glb", std::array{packed_options()}), CannotWrite);
 #endif
 #ifndef ISOWEAVE_HAS_DRACO
   EXPECT_THROW(open_mesh_file(folder / "a.precomputed", packed_options()), CannotWrite);
+  EXPECT_THROW(open_mesh_levels(folder / "a.precomputed", std::array{packed_options()}), CannotWrite);
 #endif
   EXPECT_TRUE(folder.entries().empty());
 }
