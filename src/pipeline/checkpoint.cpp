@@ -106,6 +106,11 @@ void require_same(const std::string& path, const char* what, const std::string& 
   bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
 }
 
+const char* normals_text(Normals normals) {
+  if (normals == Normals::kAbsent) return "";
+  return normals == Normals::kGradient ? ", normals" : ", normals by quadrics";
+}
+
 }  // namespace
 
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
@@ -115,13 +120,15 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
        << ", spacing" << numbers_text(volume.geometry.spacing) << ", origin" << numbers_text(volume.geometry.origin)
        << ", axes" << numbers_text(volume.geometry.direction) << ", scale"
        << numbers_text(std::array{volume.slope, volume.intercept}) << file_text(volume);
+  if (options.values != nullptr) text << ", values" << file_text(options.values->info());
   identity.volume = text.str();
   text.str("");
   text << "iso" << numbers_text(std::array{options.iso}) << (options.inside_above ? " above" : " below")
        << (options.closed ? " closed" : " open") << ", error" << numbers_text(std::array{options.error.value})
        << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << levels_text(options.levels)
        << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
-       << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
+       << normals_text(options.normals) << (options.values != nullptr ? ", values" : "")
+       << (options.drop_specks ? ", no specks" : "");
   if (options.max_distance.value > 0) {
     text << ", distance" << numbers_text(std::array{options.max_distance.value})
          << (options.max_distance.voxels ? " voxels" : "");

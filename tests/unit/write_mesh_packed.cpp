@@ -44,7 +44,7 @@ std::vector<std::string> write(const std::string& path, const TriangleMesh& mesh
   std::vector<Triangle64> triangles;
   for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
   const auto sink = open_mesh_file(path, options);
-  sink->append(mesh.vertices, mesh.normals, triangles);
+  sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
   sink->finish();
   return sink->notes();
 }
