@@ -49,9 +49,12 @@ std::string histogram_text(const OneWayDistance& way, double max, std::string_vi
 }
 
 // The distances from A's vertices to B, as colours for whoever looks at A.
-void write_distances(const CompareArguments& arguments, const TriangleMesh& a, const TriangleMesh& b, int threads) {
-  const std::vector<std::string> comments{"isoweave " ISOWEAVE_VERSION, "quality: distance to the other mesh"};
-  write_ply_with_quality(arguments.distances, a, vertex_distances(a, b, threads), comments);
+void write_distances(const CompareArguments& arguments, TriangleMesh& a, const TriangleMesh& b, int threads) {
+  MeshFileOptions options;
+  options.values = true;
+  options.comments = {"isoweave " ISOWEAVE_VERSION, "quality: distance to the other mesh"};
+  a.values = vertex_distances(a, b, threads);
+  write_mesh(arguments.distances, a, options);
 }
 
 TriangleMesh read_surface(const std::string& path) {
@@ -73,7 +76,7 @@ void run_compare(const CompareArguments& arguments) {
   check_different({arguments.a, arguments.distances});
   check_different({arguments.b, arguments.distances});
   exit_on_signal();
-  const TriangleMesh a = read_surface(arguments.a);
+  TriangleMesh a = read_surface(arguments.a);
   const TriangleMesh b = read_surface(arguments.b);
   const MeshDistance distance = compare_meshes(a, b, options);
   if (!arguments.distances.empty()) write_distances(arguments, a, b, options.threads);

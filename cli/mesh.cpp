@@ -55,7 +55,7 @@ struct MeshArguments {
   PageOptions page;
   WatchOptions watch;
   std::string iso, quality = "normal", slab, inside = "above", normals = "none";
-  std::string space, memory, checkpoint, every, resume;
+  std::string color_by, space, memory, checkpoint, every, resume;
   bool open = false, closed = false, dry_run = false;
 };
 
@@ -91,6 +91,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"slab", arguments.slab},
           {"inside", arguments.inside},
           {"normals", arguments.normals},
+          {"color_by", arguments.color_by.empty() ? "" : absolute_path(arguments.color_by)},
           {"space", arguments.space},
           {"open", arguments.open},
           {"memory", arguments.memory},
@@ -113,6 +114,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
   arguments.normals = task.at("normals");
+  arguments.color_by = task.at("color_by");
   arguments.space = task.at("space");
   arguments.open = task.at("open");
   if (now.memory.empty()) arguments.memory = task.at("memory");
@@ -169,7 +171,7 @@ void make_part_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part"})
+  for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part", "values.part"})
     std::filesystem::remove(std::filesystem::path(folder) / part, error);
 }
 
@@ -181,9 +183,19 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
   return std::min(parse_count("--slab", text), whole);
 }
 
-bool parse_normals(std::string_view text) {
-  if (text == "quadric") not_available("--normals quadric");
-  return parse_choice<bool>("--normals", text, {{"none", false}, {"gradient", true}});
+Normals parse_normals(std::string_view text) {
+  return parse_choice<Normals>(
+      "--normals", text, {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
+}
+
+// The volume whose values the vertices get, with what was chosen of the first one; or none.
+std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
+  if (arguments.color_by.empty()) return nullptr;
+  InputOptions input;
+  input.path = arguments.color_by;
+  input.roi = arguments.input.roi;
+  input.step = arguments.input.step;
+  return open_input(input);
 }
 
 OutputSpace parse_space(std::string_view text) {
@@ -223,7 +235,8 @@ std::vector<std::string> comments(const MeshArguments& arguments, const StopOpti
 MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
                              const Geometry& geometry) {
   MeshFileOptions file;
-  file.normals = options.normals;
+  file.normals = options.normals != Normals::kAbsent;
+  file.values = !arguments.color_by.empty();
   file.comments = comments(arguments, stop, options);
   file.unit = geometry.unit;
   file.space = space_text(geometry, options.space);
@@ -274,6 +287,8 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["closed"] = options.closed;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
+  json["normals"] = arguments.normals;
+  if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["space"] = space_text(info.geometry, options.space);
@@ -327,7 +342,8 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
     full.error = {0, false};
     full.triangles = 0;
     full.levels.clear();
-    full.normals = false;
+    full.normals = Normals::kAbsent;
+    full.values = nullptr;
     MemorySink sink;
     mesh_volume(*open_input(arguments.input), sink, full, control);
     contents.full = sink.take();
@@ -351,10 +367,13 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({arguments.input.path, output.path, run.report, arguments.page.path});
+    check_different({arguments.color_by, output.path});
   }
 
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   const VolumeInfo info = volume->info();
+  const std::unique_ptr<SliceSource> values = open_values(arguments);
+  options.values = values.get();
   options.error = stop_error(arguments.stop, kUsualError, info.geometry.unit);
   options.max_distance = stop_distance(arguments.stop, info.geometry.unit);
   options.levels = finer_levels(arguments.stop, info.geometry.unit);
@@ -494,7 +513,11 @@ void add_mesh_verb(CLI::App& app) {
   verb->add_flag("--closed", arguments->closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb->add_option("--inside", arguments->inside, "Side of --iso that is inside: above or below")
       ->capture_default_str();
-  verb->add_option("--normals", arguments->normals, "none or gradient")->capture_default_str();
+  verb->add_option("--normals", arguments->normals,
+                   "none, gradient, or quadric: gradients that the simplification keeps as well as the places")
+      ->capture_default_str();
+  verb->add_option("--color-by", arguments->color_by,
+                   "Volume of the same size whose values the vertices get: 'quality' in PLY, 'value' in VTP");
   verb->add_option("--space", arguments->space, "Coordinates of the output: lps, ras or index (default: the volume's)");
   verb->add_option("--memory", arguments->memory, "Cap on the memory of the process, such as 800M or 2G");
   verb->add_flag("--dry-run", arguments->dry_run, "Say what the run would take, from a sample of the volume");

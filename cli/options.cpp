@@ -287,9 +287,4 @@ void check_different(std::initializer_list<std::string_view> paths) {
   }
 }
 
-void not_available(std::string_view what) {
-  const std::string_view full = ISOWEAVE_VERSION;
-  throw std::invalid_argument(fmt::format("{} is not available in version {}", what, full.substr(0, full.rfind('.'))));
-}
-
 }  // namespace isoweave::cli

@@ -78,6 +78,5 @@ ProgressMode progress_mode(const std::string& progress, bool quiet);
 void check_different(std::initializer_list<std::string_view> paths);
 
 // Refuses what the documents promise for later versions.
-[[noreturn]] void not_available(std::string_view what);
 
 }  // namespace isoweave::cli

@@ -127,18 +127,17 @@ void run_render(const RenderArguments& arguments) {
   check_different({arguments.path, arguments.output});
   check_output(arguments.output);
   exit_on_signal();
-  std::vector<float> quality;
-  const TriangleMesh mesh = read_mesh_with_quality(arguments.path, quality);
+  TriangleMesh mesh = read_mesh(arguments.path);
   if (mesh.triangles.empty()) throw BadInput(arguments.path + ": expected a mesh with triangles, found none");
   if (arguments.colour_by.empty()) {
-    quality.clear();
-  } else if (quality.empty()) {
+    mesh.values.clear();
+  } else if (mesh.values.empty()) {
     throw BadInput(arguments.path + ": expected a PLY file with a number 'quality' at each vertex, found none");
   }
-  write_png(arguments.output, render_mesh(mesh, options, quality));
+  write_png(arguments.output, render_mesh(mesh, options, mesh.values));
   if (!arguments.quiet) {
     print_note(fmt::format("{}: {} x {} pixels, {} triangles{}", arguments.output, options.width, options.height,
-                           grouped(mesh.triangles.size()), colours_text(options, quality)));
+                           grouped(mesh.triangles.size()), colours_text(options, mesh.values)));
   }
 }
 
@@ -155,8 +154,9 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--background", arguments->background, "#rrggbb, white, black or transparent")
       ->capture_default_str();
   verb->add_option("--color", arguments->colour, "Of the surface: #rrggbb, white or black")->capture_default_str();
-  verb->add_option("--color-by", arguments->colour_by,
-                   "quality: by the number at each vertex that compare --distances writes, dark to bright");
+  verb->add_option(
+      "--color-by", arguments->colour_by,
+      "quality: by the number at each vertex that mesh --color-by and compare --distances write, dark to bright");
   verb->add_option("--range", arguments->range,
                    "LOW,HIGH: numbers at the ends of the colours (default: all there are)");
   verb->add_option("--shading", arguments->shading, "smooth or flat")->capture_default_str();

@@ -45,11 +45,11 @@ class MemoryVolume final : public SliceSource {
 
 class MemorySink final : public MeshSink {
  public:
-  void append(std::span<const Point> vertices, std::span<const Point> normals,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    mesh.vertices.insert(mesh.vertices.end(), vertices.begin(), vertices.end());
-    mesh.normals.insert(mesh.normals.end(), normals.begin(), normals.end());
-    for (const auto& t : triangles) {
+  void append(const MeshPiece& piece) override {
+    mesh.vertices.insert(mesh.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    mesh.normals.insert(mesh.normals.end(), piece.normals.begin(), piece.normals.end());
+    mesh.values.insert(mesh.values.end(), piece.values.begin(), piece.values.end());
+    for (const auto& t : piece.triangles) {
       mesh.triangles.push_back(
           {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
     }

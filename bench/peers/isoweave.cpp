@@ -20,13 +20,12 @@ std::array<std::uint32_t, 3> narrow(const std::array<std::uint64_t, 3>& triangle
 // Holds the whole mesh in memory, as all peers do, in the pieces in which it comes.
 class HoldingSink : public isoweave::MeshSink {
  public:
-  void append(std::span<const isoweave::Point> vertices, std::span<const isoweave::Point>,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    isoweave::TriangleMesh& piece = pieces_.emplace_back();
-    piece.vertices.assign(vertices.begin(), vertices.end());
-    piece.triangles.resize(triangles.size());
-    std::transform(triangles.begin(), triangles.end(), piece.triangles.begin(), narrow);
-    triangles_ += triangles.size();
+  void append(const isoweave::MeshPiece& piece) override {
+    isoweave::TriangleMesh& held = pieces_.emplace_back();
+    held.vertices.assign(piece.vertices.begin(), piece.vertices.end());
+    held.triangles.resize(piece.triangles.size());
+    std::transform(piece.triangles.begin(), piece.triangles.end(), held.triangles.begin(), narrow);
+    triangles_ += piece.triangles.size();
   }
   void finish() override {}
   std::size_t triangles() const { return triangles_; }

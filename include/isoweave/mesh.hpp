@@ -18,6 +18,7 @@ struct TriangleMesh {
   std::vector<Point> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<Point> normals;                           // one per vertex, or none
+  std::vector<float> values{};                          // one per vertex, or none; not finite: unknown
 };
 
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
@@ -25,12 +26,17 @@ struct TriangleMesh {
 // open_mesh_levels write as GLB (coordinates as stored, without the node's unit and axes; the finest of several levels;
 // not compressed) and 3MF; told by content, then by name.
 // Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
-// kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always.
+// kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always. Values are the property
+// `quality` of PLY.
 TriangleMesh read_mesh(const std::string& path);
 
-// The same, and the property `quality` of the vertices of a PLY file, which write_ply_with_quality writes: a number for
-// each vertex, not finite where it is no float32. Files without it leave `quality` empty.
-TriangleMesh read_mesh_with_quality(const std::string& path, std::vector<float>& quality);
+// A piece of a mesh on its way to a sink.
+struct MeshPiece {
+  std::span<const Point> vertices{};                          // numbered on from the ones before; the first ever is 0
+  std::span<const Point> normals{};                           // as many as vertices, or none throughout
+  std::span<const float> values{};                            // likewise: a number for each vertex
+  std::span<const std::array<std::uint64_t, 3>> triangles{};  // over any vertices handed over so far
+};
 
 // Where finished pieces of a mesh go. Not thread-safe. mesh_volume calls append() from a thread of its own while it
 // makes the next piece, unless it was given one thread only; finish() and mark() are called when no append() is
@@ -39,11 +45,9 @@ class MeshSink {
  public:
   virtual ~MeshSink() = default;
 
-  // Appends vertices, numbered on from the ones before (the first ever is 0), their normals (as many as
-  // vertices, or none throughout), and triangles over any vertices appended so far. Mesh files refuse an index
-  // of no vertex, a coordinate that is not finite and missing normals with std::invalid_argument.
-  virtual void append(std::span<const Point> vertices, std::span<const Point> normals,
-                      std::span<const std::array<std::uint64_t, 3>> triangles) = 0;
+  // Appends a piece. Mesh files refuse an index of no vertex, a coordinate that is not finite and missing normals or
+  // values with std::invalid_argument.
+  virtual void append(const MeshPiece& piece) = 0;
 
   // Completes the mesh. Without it the destructor discards everything.
   virtual void finish() = 0;
@@ -74,13 +78,8 @@ struct MeshFileOptions {
   // rounded likewise and packed by Draco. Refused for other formats and by builds without the library.
   bool compress = false;
   std::uint64_t segment = 1;  // .precomputed: the number of the object
+  bool values = false;        // PLY (as the property `quality`, which viewers colour by) and VTP only
 };
-
-// Writes a whole mesh as binary PLY with a number of its own at each vertex, as the property `quality` that viewers
-// colour by. The file is complete or absent. Throws CannotWrite, and std::invalid_argument when the numbers are not as
-// many as the vertices.
-void write_ply_with_quality(const std::string& path, const TriangleMesh& mesh, std::span<const float> quality,
-                            std::span<const std::string> comments = {});
 
 // Writes a mesh file, the format by the name's ending; docs/formats.md says what each holds:
 //   .ply          binary little-endian, 32-bit indices
@@ -100,14 +99,18 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
 // Writes several levels of detail into one file, finest first: a sink for each, in that order, for mesh_volume with
 // levels. The file appears when all of them have been finished; destroying one before discards everything. Each has
 // options of its own, of which `normals` and `compress` must be the same.
-//   .glb                        a mesh for each in the same data, as nodes of the extension MSFT_lod; viewers without
-//   it,
-//                               and read_mesh, see the finest. At most 4 GiB in all
-//   .precomputed, `compress`    a level of neuroglancer's each, rounded to steps twice as long from one to the next
+//   .glb          a mesh for each in the same data, as nodes of the extension MSFT_lod; viewers that do not know it,
+//   and
+//                 read_mesh, see the finest. At most 4 GiB in all
+//   .precomputed  with `compress`: a level of neuroglancer's each, rounded to steps twice as long from one to the next
 // Throws what open_mesh_file throws, and CannotWrite for other formats. Needs room for all levels twice while the last
 // one finishes; with `compress` one level at a time is in memory then, and all that has been packed.
 std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
                                                         std::span<const MeshFileOptions> levels);
+
+// Writes a mesh that is there as a whole, through open_mesh_file, with its normals and values if the options ask for
+// them.
+void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options = {});
 
 // Writes a mesh to an open descriptor, a pipe say, when it is finished; until then it is in files without names in
 // $TMPDIR or /tmp. `format` is "ply" or "stl", `name` stands for the descriptor in messages. Throws

@@ -35,6 +35,11 @@ Length parse_length(std::string_view text, std::string_view unit);
 // index * spacing without origin and direction.
 enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
 
+// Normals of the vertices: none; gradients of the samples, which merge as vertices do; or gradients that the
+// simplification keeps as well: an edge collapses where the error of position and normal is least, and only as long as
+// that is within the error (Hoppe, 1999), where a normal of unit length that is off by 1 counts as half a mean voxel.
+enum class Normals : std::uint8_t { kAbsent, kGradient, kQuadric };
+
 // Where a run extracts and simplifies. It never changes the result.
 //   automatic  processors, until a device has been measured to be worth its start
 //   cuda       a CUDA device; slabs and the undecided zone live in its memory. mesh_volume only, without a number of
@@ -111,7 +116,10 @@ struct MeshOptions {
   // and distances refer to what is kept. Costs a second union-find over the triangles of each slab. Not on a device.
   const ComponentChoice* components = nullptr;
   std::int64_t slab = 0;  // layers per slab; 0: chosen from the size of a slice. Changes memory and speed only
-  bool normals = false;   // from gradients, unit length, outwards
+  Normals normals = Normals::kAbsent;  // unit length, outwards; zero where there is no direction
+  // Another volume of as many samples, whose values the vertices get: interpolated where a vertex is extracted, and
+  // along the edge when it collapses. Slope and intercept are accounted for. Read beside the first one, and not owned.
+  SliceSource* values = nullptr;
   OutputSpace space = OutputSpace::kAsVolume;
 };
 

@@ -84,6 +84,7 @@ void ComponentFilter::drop(SurfacePiece& piece) const {
   vertices.apply(piece.positions);
   vertices.apply(piece.ids);
   if (!piece.normals.empty()) vertices.apply(piece.normals);
+  if (!piece.values.empty()) vertices.apply(piece.values);
   if (piece.open_edges > 0) piece.open_edges = count_open_edges(piece);
 }
 

@@ -19,6 +19,7 @@ struct SurfacePiece {
   Array<Vec3> positions;                                            // of new vertices, physical lengths
   Array<std::uint64_t> ids;                                         // of new vertices, unique in the whole surface
   Array<Point> normals;                                             // of new vertices, unit or zero, outwards; or none
+  Array<float> values;                                              // of new vertices, or none
   Array<std::array<std::uint32_t, 3>> triangles;                    // counter-clockwise seen from outside
   std::vector<std::uint32_t> incomplete;                            // vertices that later pieces give more triangles
   double complete_below = std::numeric_limits<double>::infinity();  // z: no later piece has a point below it
@@ -33,6 +34,7 @@ struct SurfacePiece {
     positions.resize(0);
     ids.resize(0);
     normals.resize(0);
+    values.resize(0);
     triangles.resize(0);
     incomplete.clear();
     complete_below = std::numeric_limits<double>::infinity();

@@ -32,10 +32,12 @@ void drop_vertices(TriangleMesh& mesh, const std::vector<bool>& kept) {
     if (!kept[v]) continue;
     mesh.vertices[next] = mesh.vertices[v];
     if (!mesh.normals.empty()) mesh.normals[next] = mesh.normals[v];
+    if (!mesh.values.empty()) mesh.values[next] = mesh.values[v];
     number[v] = next++;
   }
   mesh.vertices.resize(next);
   if (!mesh.normals.empty()) mesh.normals.resize(next);
+  if (!mesh.values.empty()) mesh.values.resize(next);
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& v : triangle) v = number[v];
   }

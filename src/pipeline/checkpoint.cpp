@@ -120,6 +120,11 @@ void require_same(const std::string& path, const char* what, const std::string& 
   bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
 }
 
+const char* normals_text(Normals normals) {
+  if (normals == Normals::kAbsent) return "";
+  return normals == Normals::kGradient ? ", normals" : ", normals by quadrics";
+}
+
 }  // namespace
 
 std::string surface_text(const VolumeInfo& volume, const MeshOptions& options) {
@@ -129,11 +134,13 @@ std::string surface_text(const VolumeInfo& volume, const MeshOptions& options) {
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   RunIdentity identity;
   identity.volume = volume_text(volume);
+  if (options.values != nullptr) identity.volume += ", values" + file_text(options.values->info());
   std::ostringstream text;
   text << iso_text(options) << ", error" << numbers_text(std::array{options.error.value})
        << (options.error.voxels ? " voxels" : "") << ", triangles " << options.triangles << levels_text(options.levels)
        << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
-       << (options.normals ? ", normals" : "") << (options.drop_specks ? ", no specks" : "");
+       << normals_text(options.normals) << (options.values != nullptr ? ", values" : "")
+       << (options.drop_specks ? ", no specks" : "");
   if (options.max_distance.value > 0) {
     text << ", distance" << numbers_text(std::array{options.max_distance.value})
          << (options.max_distance.voxels ? " voxels" : "");

@@ -27,8 +27,8 @@ void DeviceSlabs::write(SlabRecord& record, MeshReport& report) {
   const std::uint32_t label = output_.next_label();
   engine_->take_final(first, label, piece_);
   output_.add_vertices(
-      added, normals_, [&](std::size_t n) { return piece_.vertices[n].position; },
-      [&](std::size_t n) { return piece_.normals[n]; });
+      added, {.normals = normals_}, [&](std::size_t n) { return piece_.vertices[n].position; },
+      [&](std::size_t n) { return piece_.normals[n]; }, [](std::size_t) { return 0.0F; });
   const auto corner = [&](std::size_t n, std::size_t c) {
     const std::uint32_t v = piece_.triangles[n][c];
     const FinalVertex& vertex = piece_.vertices[v];

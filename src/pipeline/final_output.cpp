@@ -48,9 +48,10 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
       new_vertices_);
   const std::uint64_t first = output_.vertices();
   const std::uint32_t label = output_.add_vertices(
-      new_vertices_.size(), !zone.normals.empty(),
+      new_vertices_.size(), {!zone.normals.empty(), !zone.values.empty()},
       [&](std::size_t n) { return zone.vertices[new_vertices_[n]].position; },
-      [&](std::size_t n) { return zone.normals[new_vertices_[n]]; });
+      [&](std::size_t n) { return zone.normals[new_vertices_[n]]; },
+      [&](std::size_t n) { return zone.values[new_vertices_[n]]; });
   executor_.for_each(static_cast<std::int64_t>(new_vertices_.size()), kBlock, [&](std::int64_t n) {
     const Index v = new_vertices_[static_cast<std::size_t>(n)];
     number(zone, v) = first + static_cast<std::uint64_t>(n);

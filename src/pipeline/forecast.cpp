@@ -43,10 +43,7 @@ constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer u
 // Counts triangles.
 class CountingSink : public MeshSink {
  public:
-  void append(std::span<const Point> /*vertices*/, std::span<const Point> /*normals*/,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    total += triangles.size();
-  }
+  void append(const MeshPiece& piece) override { total += piece.triangles.size(); }
   void finish() override {}
 
   std::uint64_t total = 0;
@@ -58,10 +55,9 @@ class LocatingSink final : public MeshSink {
  public:
   LocatingSink(const std::array<double, 3>& spacing, const Look& look) : spacing_(spacing), look_(look) {}
 
-  void append(std::span<const Point> vertices, std::span<const Point> /*normals*/,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
-    for (const auto& t : triangles) {
+  void append(const MeshPiece& piece) override {
+    vertices_.insert(vertices_.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const auto& t : piece.triangles) {
       const Point& at = vertices_[t[0]];
       look_(double{at[0]} / spacing_[0], double{at[1]} / spacing_[1], double{at[2]} / spacing_[2]);
     }
@@ -205,7 +201,8 @@ class Forecaster {
   MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
     MeshOptions options = options_;
     options.closed = false;
-    options.normals = false;
+    options.normals = Normals::kAbsent;
+    options.values = nullptr;
     options.levels.clear();
     options.components = nullptr;
     options.space = OutputSpace::kIndex;
@@ -317,7 +314,7 @@ class Forecaster {
                             static_cast<std::uint64_t>(info_.slice_samples()),
                             Executor(control_.threads).threads(),
                             error_ > 0,
-                            options_.normals,
+                            vertex_extras(options_),
                             options_.levels.size(),
                             options_.max_distance.value > 0};
     const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
@@ -334,7 +331,8 @@ class Forecaster {
       const std::int64_t planned = std::min(next_slab(info_, goal, asked, recent, per_layer), info_.dims[2] - done);
       const auto ahead =
           static_cast<double>(std::min(slices_ahead(info_, goal, planned), info_.dims[2] - done - planned));
-      ring = std::max(ring, MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals));
+      ring = std::max(ring,
+                      MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals != Normals::kAbsent));
       recent = planned;
       const auto at = static_cast<double>(done);
       const auto extracted = [&] {

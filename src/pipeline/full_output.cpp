@@ -5,8 +5,9 @@ namespace isoweave {
 void FullOutput::take(const SurfacePiece& piece) {
   const std::uint64_t first_number = output_.vertices();
   const std::uint32_t first_label = output_.add_vertices(
-      piece.positions.size(), !piece.normals.empty(), [&](std::size_t n) { return piece.positions[n]; },
-      [&](std::size_t n) { return piece.normals[n]; });
+      piece.positions.size(), {!piece.normals.empty(), !piece.values.empty()},
+      [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
+      [&](std::size_t n) { return piece.values[n]; });
   const auto vertex = [&](std::uint32_t v) {
     if (v < piece.inherited) return front_[v];
     const std::uint32_t n = v - piece.inherited;

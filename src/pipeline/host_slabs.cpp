@@ -1,5 +1,6 @@
 #include "pipeline/host_slabs.hpp"
 
+#include "extract/values.hpp"
 #include "pipeline/sweep.hpp"
 #include "pipeline/sweep_view.hpp"
 
@@ -11,6 +12,8 @@ HostSlabs::HostSlabs(const VolumeInfo& volume, const Options& options, const Wor
       options_(options),
       world_(world),
       executor_(executor),
+      lattice_{volume.dims},
+      spacing_(volume.geometry.spacing),
       extractor_(volume, options.extract, executor),
       simplifier_(options.simplify, executor, stop),
       full_output_(world, *sinks.back(), executor, options.measure, options.observer) {
@@ -31,6 +34,8 @@ std::int64_t HostSlabs::extract(const SliceWindow& window, std::int64_t layers, 
   if (filter_ && !filter_->apply(piece_)) refuse_components(path_);
   return extracted;
 }
+
+void HostSlabs::take_values(const SliceWindow& window) { sample_values(window, lattice_, spacing_, executor_, piece_); }
 
 void HostSlabs::simplify(SlabRecord& record) {
   record.live_triangles = piece_.triangles.size();

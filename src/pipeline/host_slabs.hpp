@@ -39,6 +39,7 @@ class HostSlabs final : public SlabEngine {
   }
   std::int64_t extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                        MeshReport& report) override;
+  void take_values(const SliceWindow& window) override;
   void simplify(SlabRecord& record) override;
   void write(SlabRecord& record, MeshReport& report) override;
   std::uint64_t held_triangles() const override { return options_.simplifies ? simplifier_.live_triangles() : 0; }
@@ -62,6 +63,8 @@ class HostSlabs final : public SlabEngine {
   Options options_;
   const World& world_;
   const Executor& executor_;
+  const Lattice lattice_;
+  const std::array<double, 3> spacing_;
   MarchingCubes extractor_;
   std::optional<ComponentFilter> filter_;
   Simplifier simplifier_;

@@ -22,7 +22,7 @@ namespace {
 
 class NoSink final : public MeshSink {
  public:
-  void append(std::span<const Point>, std::span<const Point>, std::span<const std::array<std::uint64_t, 3>>) override {}
+  void append(const MeshPiece&) override {}
   void finish() override {}
 };
 
@@ -45,11 +45,13 @@ class VolumeSweep {
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
     window_.emplace(source, engine_->slices_for(1).first);
+    if (options.values != nullptr) values_window_.emplace(*options.values, engine_->slices_for(1).first);
   }
 
   MeshReport run() {
     Stopwatch total;
     start_report();
+    check_values();
     if (saves()) save_state();
     while (engine_->layers_left() > 0) {
       stop_if_asked();
@@ -69,6 +71,25 @@ class VolumeSweep {
   }
 
  private:
+  // A volume of values has a sample wherever the other one has.
+  void check_values() {
+    if (options_.values == nullptr) return;
+    const VolumeInfo& values = options_.values->info();
+    const auto size = [](const VolumeInfo& volume) {
+      return std::to_string(volume.dims[0]) + " x " + std::to_string(volume.dims[1]) + " x " +
+             std::to_string(volume.dims[2]);
+    };
+    if (values.dims != volume_.dims) {
+      throw BadInput(values.path + ": expected " + size(volume_) + " samples as in " + volume_.path + ", found " +
+                     size(values));
+    }
+    const Geometry& a = values.geometry;
+    const Geometry& b = volume_.geometry;
+    if (a.spacing == b.spacing && a.origin == b.origin && a.direction == b.direction) return;
+    report_.warnings.push_back(values.path + ": lies elsewhere than " + volume_.path +
+                               " by its spacing, origin or axes; sample by sample it is taken for the same place");
+  }
+
   static const VolumeInfo& checked(const VolumeInfo& volume) {
     if (!Lattice::fits(volume.dims)) {
       throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + std::to_string(volume.dims[0]) +
@@ -76,6 +97,8 @@ class VolumeSweep {
     }
     return volume;
   }
+
+  bool normals() const { return options_.normals != Normals::kAbsent; }
 
   double error() const { return options_.error.value * (options_.error.voxels ? voxel_ : 1); }
 
@@ -87,7 +110,8 @@ class VolumeSweep {
             retire_cost(error(), a0, options_.triangles),
             options_.drop_specks,
             most_distance(options_.max_distance, voxel_),
-            {volume_.geometry.spacing[0], volume_.geometry.spacing[1], volume_.geometry.spacing[2]}};
+            {volume_.geometry.spacing[0], volume_.geometry.spacing[1], volume_.geometry.spacing[2]},
+            options_.normals == Normals::kQuadric};
   }
 
   std::unique_ptr<SlabEngine> make_engine(ComponentFinder* finder) const {
@@ -98,11 +122,11 @@ class VolumeSweep {
     if (control_.device == Device::kCuda) {
       check_device_options();
       return std::make_unique<DeviceSlabs>(
-          make_cuda_engine({volume_, rule, options_.normals, zone_options(), options_.quality}), options_.normals,
-          world_, *sinks_.back(), executor_, control_.measure);
+          make_cuda_engine({volume_, rule, normals(), zone_options(), options_.quality}), normals(), world_,
+          *sinks_.back(), executor_, control_.measure);
     }
     HostSlabs::Options host;
-    host.extract = {rule, options_.normals};
+    host.extract = {rule, normals()};
     host.simplify = {zone_options(), options_.quality, control_.schedule, level_costs(level_errors_, voxel_ * voxel_)};
     host.simplifies = simplifies_;
     host.triangles = options_.triangles;
@@ -131,6 +155,8 @@ class VolumeSweep {
     if (!options_.levels.empty()) refuse("levels");
     if (options_.max_distance.value > 0) refuse("a guaranteed distance");
     if (options_.components != nullptr) refuse("components to be dropped");
+    if (options_.normals == Normals::kQuadric) refuse("normals by quadrics");
+    if (options_.values != nullptr) refuse("values of another volume");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
     if (control_.observer != nullptr) refuse("an observer");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {
@@ -183,14 +209,14 @@ class VolumeSweep {
                             static_cast<std::uint64_t>(volume_.slice_samples()),
                             executor_.threads(),
                             simplifies_,
-                            options_.normals,
+                            vertex_extras(options_),
                             level_errors_.size(),
                             options_.max_distance.value > 0};
     const auto undecided = static_cast<double>(engine_->held_triangles());
     const double usable = kUsedPart * static_cast<double>(control_.memory);
     const auto room = [&] {
       const auto layers = static_cast<double>(plan.layers);
-      const double ring = MemoryModel::ring_for(layers, static_cast<double>(plan.ahead), options_.normals);
+      const double ring = MemoryModel::ring_for(layers, static_cast<double>(plan.ahead), normals());
       return model.triangles_within(usable, layers, std::max(ring, static_cast<double>(window_->room())), undecided);
     };
     while (plan.layers > 1 && room() < per_layer * static_cast<double>(plan.layers)) {
@@ -219,6 +245,7 @@ class VolumeSweep {
     std::int64_t read = 0;
     try {
       read = window_->advance(first, end, plan.ahead);
+      if (values_window_) values_window_->advance(first, end, plan.ahead);
     } catch (const BadInput&) {
       if (saves()) save_state();
       throw;
@@ -234,11 +261,12 @@ class VolumeSweep {
     const std::uint64_t before = report_.triangles_extracted;
     recent_layers_ = engine_->extract(*window_, plan_.layers, plan_.most_vertices, report_);
     recent_triangles_ = report_.triangles_extracted - before;
+    if (values_window_) engine_->take_values(*values_window_);
     plan_ = {};
     clock_.lap(report_.seconds_extract);
     SlabRecord record;
     record.layer = layers_ - engine_->layers_left();
-    record.bytes = window_->bytes();
+    record.bytes = window_->bytes() + (values_window_ ? values_window_->bytes() : 0);
     if (engine_->takes_slices_early() && engine_->layers_left() > 0) {
       plan_and_read();
       engine_->take_slices(*window_, plan_.layers);
@@ -407,6 +435,7 @@ class VolumeSweep {
   const std::vector<MeshSink*> sinks_;
   std::unique_ptr<SlabEngine> engine_;
   std::optional<SliceWindow> window_;
+  std::optional<SliceWindow> values_window_;
   SlabPlan plan_;  // of the slices that have been read; no layers: of none
   SampleRange range_;
   MeshReport report_;
@@ -456,7 +485,8 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
   full.error = {0, false};
   full.triangles = 0;
   full.levels.clear();
-  full.normals = false;
+  full.normals = Normals::kAbsent;
+  full.values = nullptr;
   RunControl counting = control;
   counting.measure = false;
   counting.checkpoint = {};

@@ -12,13 +12,12 @@ OverlappedSink::~OverlappedSink() {
   worker_.join();
 }
 
-void OverlappedSink::append(std::span<const Point> vertices, std::span<const Point> normals,
-                            std::span<const std::array<std::uint64_t, 3>> triangles) {
-  if (!overlaps_) return sink_.append(vertices, normals, triangles);
+void OverlappedSink::append(const MeshPiece& piece) {
+  if (!overlaps_) return sink_.append(piece);
   wait();
   {
     const std::lock_guard lock(mutex_);
-    piece_ = [this, vertices, normals, triangles] { sink_.append(vertices, normals, triangles); };
+    piece_ = [this, piece] { sink_.append(piece); };
   }
   if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
   changed_.notify_all();

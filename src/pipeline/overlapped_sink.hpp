@@ -22,8 +22,7 @@ class OverlappedSink {
 
   // Waits for the piece before this one, and returns while the sink takes this one: what the spans show must stay until
   // the next call of append() or wait() has returned. Throws what the sink threw at the piece before.
-  void append(std::span<const Point> vertices, std::span<const Point> normals,
-              std::span<const std::array<std::uint64_t, 3>> triangles);
+  void append(const MeshPiece& piece);
 
   // Returns when the sink has everything. Throws what it threw.
   void wait();

@@ -20,14 +20,13 @@ class Recorder : public MeshSink {
  public:
   explicit Recorder(MeshSink& sink) : sink_(sink) {}
 
-  void append(std::span<const Point> vertices, std::span<const Point> normals,
-              std::span<const std::array<std::uint64_t, 3>> triangles) override {
-    mesh_.vertices.insert(mesh_.vertices.end(), vertices.begin(), vertices.end());
-    for (const auto& t : triangles) {
+  void append(const MeshPiece& piece) override {
+    mesh_.vertices.insert(mesh_.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const auto& t : piece.triangles) {
       mesh_.triangles.push_back(
           {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
     }
-    sink_.append(vertices, normals, triangles);
+    sink_.append(piece);
   }
 
   void finish() override { sink_.finish(); }

@@ -36,6 +36,9 @@ class SlabEngine {
   virtual std::int64_t extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                                MeshReport& report) = 0;
 
+  // Gives the vertices just extracted the values of another volume, whose slices the window holds.
+  virtual void take_values(const SliceWindow&) {}
+
   // Whether slices of the next slab are worth sending before this one is simplified; and does so.
   virtual bool takes_slices_early() const { return false; }
   virtual void take_slices(const SliceWindow&, std::int64_t) {}

@@ -23,6 +23,11 @@ struct OutputCorner {
   Vec3 position;
 };
 
+// What vertices have beside their place.
+struct VertexKinds {
+  bool normals = false, values = false;
+};
+
 class SurfaceOutput {
  public:
   // measure: digest and components. With several threads the sink gets a piece while the next one is made. observer:
@@ -42,16 +47,19 @@ class SurfaceOutput {
   std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
 
   // Adds vertices with consecutive numbers from vertices() on and consecutive labels from the one returned.
-  // position(n), normal(n): of the n-th of them, called by any thread.
-  template <class Position, class Normal>
-  std::uint32_t add_vertices(std::size_t count, bool normals, const Position& position, const Normal& normal) {
+  // position(n), normal(n), value(n): of the n-th of them, called by any thread; the latter two where there are any.
+  template <class Position, class Normal, class Value>
+  std::uint32_t add_vertices(std::size_t count, VertexKinds kinds, const Position& position, const Normal& normal,
+                             const Value& value) {
     Piece& piece = pieces_[next_];
     piece.points.resize(count);
-    piece.normals.resize(normals ? count : 0);
+    piece.normals.resize(kinds.normals ? count : 0);
+    piece.values.resize(kinds.values ? count : 0);
     executor_.for_each(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t i) {
       const auto n = static_cast<std::size_t>(i);
       piece.points[n] = world_.point(position(n));
-      if (normals) piece.normals[n] = world_.normal(normal(n));
+      if (kinds.normals) piece.normals[n] = world_.normal(normal(n));
+      if (kinds.values) piece.values[n] = value(n);
     });
     vertices_ += count;
     return measure_ ? components_.add(count) : 0;
@@ -79,8 +87,10 @@ class SurfaceOutput {
           count, [&](std::size_t n, std::size_t c) { return corner(n, c).position; }, world_, executor_,
           [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
     }
-    sink_.append({piece.points.data(), piece.points.size()}, {piece.normals.data(), piece.normals.size()},
-                 {piece.triangles.data(), piece.triangles.size()});
+    sink_.append({.vertices = {piece.points.data(), piece.points.size()},
+                  .normals = {piece.normals.data(), piece.normals.size()},
+                  .values = {piece.values.data(), piece.values.size()},
+                  .triangles = {piece.triangles.data(), piece.triangles.size()}});
     next_ ^= 1;
   }
 
@@ -113,6 +123,7 @@ class SurfaceOutput {
   struct Piece {
     Array<Point> points;
     Array<Point> normals;
+    Array<float> values;
     Array<std::array<std::uint64_t, 3>> triangles;
   };
 

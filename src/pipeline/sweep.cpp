@@ -69,6 +69,15 @@ void report_target(const CountTarget& target, std::uint64_t asked, double unit, 
                             " were asked for: no other collapse keeps the topology and the sides of faces");
 }
 
+VertexExtras vertex_extras(const MeshOptions& options) {
+  VertexExtras extras;
+  if (options.normals != Normals::kAbsent) extras.extracted += sizeof(Point);
+  if (options.values != nullptr) extras.extracted += sizeof(float);
+  extras.held = extras.extracted + (options.normals == Normals::kQuadric ? sizeof(NormalQuadric) : 0);
+  if (options.values != nullptr) extras.slice_bytes = options.values->info().slice_bytes();
+  return extras;
+}
+
 void check_stop(const RunControl& control) {
   if (control.stop != nullptr && control.stop->load()) throw Interrupted("interrupted, nothing was written");
 }

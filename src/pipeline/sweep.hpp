@@ -11,6 +11,7 @@
 #include "isoweave/pipeline.hpp"
 #include "simplify/count_target.hpp"
 #include "simplify/simplifier.hpp"
+#include "slab/memory_model.hpp"
 
 namespace isoweave {
 
@@ -48,6 +49,9 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 
 void check_stop(const RunControl& control);
+
+// Bytes that a run holds for a vertex beside its place.
+VertexExtras vertex_extras(const MeshOptions& options);
 
 // The error at which a run to `asked` triangles stopped, and a warning if there are more. `unit` is the root of a0.
 void report_target(const CountTarget& target, std::uint64_t asked, double unit, MeshReport& report);

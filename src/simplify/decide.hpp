@@ -4,12 +4,15 @@
 #include <array>
 #include <cstdint>
 
+#include "extract/gradient.hpp"
 #include "isoweave/simplify_options.hpp"
 #include "parallel/atomics.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/reach.hpp"
 #include "simplify/simplify_totals.hpp"
 #include "simplify/star.hpp"
+#include "simplify/zone_rules.hpp"
+#include "slab/value_rules.hpp"
 
 namespace isoweave {
 
@@ -103,11 +106,13 @@ class BasicDecider {
   ISOWEAVE_HD bool topology_allows();
   ISOWEAVE_HD bool keeps_sides(Vec3 x) const;
   ISOWEAVE_HD Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
+  ISOWEAVE_HD Quadric with_normals(const Quadric& full) const;
   ISOWEAVE_HD Reach reach(Vec3 x) const;
   ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
   ISOWEAVE_HD void defer();
   ISOWEAVE_HD void raise_key(CostBits cost);
   ISOWEAVE_HD void collapse(Vec3 x);
+  ISOWEAVE_HD void merge_normals(Vec3 x);
   ISOWEAVE_HD void join_rings();
   ISOWEAVE_HD void merge_sides(Index h);
   ISOWEAVE_HD void update_keys(CostBits collapse_cost);
@@ -150,14 +155,14 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   Vec3 best;
   CostBits limit = key;
   if (quality_ == Quality::kFast) {
-    full = u.quadric + moved(v.quadric, -edge_vector_);
+    full = with_normals(u.quadric + moved(v.quadric, -edge_vector_));
     best = minimiser(full, factorise(full), 0.5 * edge_vector_);
   } else {
     const double a0 = zone_.options.a0;
     const double weight = 1 / (2 * a0 * a0);
     const FaceSums u_sums = arithmetic_.sum_faces(u_fan_, u_.count(), weight);
     const FaceSums v_sums = arithmetic_.sum_faces(v_fan_, v_.count(), weight);
-    full = u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_);
+    full = with_normals(u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_));
     best = best_place(full, u_sums.normal + v_sums.normal, dot(v_sums.normal, edge_vector_));
     limit = cost_bits(refinement_limit(quality_) * cost_value(key));
     const CostBits cost = to_cost(evaluate(full, best));
@@ -260,6 +265,14 @@ ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const
   return Reach::kWithin;
 }
 
+// The quadric of both ends, measured from u, less what the best normal at each place saves where normals count.
+template <class Arithmetic>
+ISOWEAVE_HD Quadric BasicDecider<Arithmetic>::with_normals(const Quadric& full) const {
+  if (zone_.normal_quadrics.empty()) return full;
+  const NormalQuadric& u = zone_.normal_quadrics[u_.vertex];
+  return with_best_normal(full, u + moved(zone_.normal_quadrics[v_.vertex], -edge_vector_));
+}
+
 // The first position that keeps every face on its side and within reach: the best one, then the two ends and the
 // midpoint, cheapest first, as long as they cost no more than the limit.
 template <class Arithmetic>
@@ -342,11 +355,27 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::collapse(Vec3 x) {
   merged.quadric = moved(merged.quadric, x) + moved(gone.quadric, x - edge_vector_);
   merged.position = merged.position + x;
   gone.half_edge = kNone;
-  if (!zone_.normals.empty()) {
-    Point& normal = zone_.normals[u_.vertex];
-    for (std::size_t c = 0; c < 3; ++c) normal[c] += zone_.normals[v_.vertex][c];
+  merge_normals(x);
+  if (!zone_.values.empty()) {
+    float& value = zone_.values[u_.vertex];
+    const double t = place_along(edge_vector_, x);
+    value = static_cast<float>(value_between(double{value}, double{zone_.values[v_.vertex]}, t));
   }
   join_rings();
+}
+
+// Of both ends: their sum, or where normals count the best one at x.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_normals(Vec3 x) {
+  if (zone_.normals.empty()) return;
+  Point& normal = zone_.normals[u_.vertex];
+  if (zone_.normal_quadrics.empty()) {
+    for (std::size_t c = 0; c < 3; ++c) normal[c] += zone_.normals[v_.vertex][c];
+    return;
+  }
+  NormalQuadric& merged = zone_.normal_quadrics[u_.vertex];
+  merged = moved(merged, x) + moved(zone_.normal_quadrics[v_.vertex], x - edge_vector_);
+  normal = unit_point(merged.offset);
 }
 
 // The star of the merged vertex: around u_ from the first opposite vertex to the second, and around v_ back to the
@@ -391,7 +420,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
     count += cost_of(before) <= zone_.options.retire;
   }
   changed_count_ = static_cast<int>(count);
-  arithmetic_.edge_costs({ends, count}, costs);
+  edge_costs(zone_, arithmetic_, {ends, count}, costs);
   for (std::size_t n = 0; n < count; ++n) {
     CostBits cost = cost_of(before_[n]);
     if (cost < collapse_cost + 1) cost = collapse_cost + 1;

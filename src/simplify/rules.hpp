@@ -19,6 +19,7 @@ inline constexpr CostBits kRetiredCost = 0x7f800000u;  // +infinity: an edge tha
 inline constexpr float kCostFloor = 1e-20F;            // lower costs count as this
 inline constexpr float kPostponeFactor = 16;           // a smaller factor gives far more rounds on noise
 inline constexpr float kPostponeFloor = 2.4e-4F;       // a 64th of a voxel, squared
+inline constexpr double kNormalWeight = 0.25;          // a normal off by 1 counts as half a voxel, squared
 inline constexpr int kMaxValence = 24;                 // of a merged vertex
 inline constexpr double kSideCosine = 0.2;             // least cosine between a face before and after
 

@@ -77,6 +77,8 @@ void Zone::show_arrays() {
   show(vertices, vertex_array_);
   show(states, state_array_);
   show(normals, normal_array_);
+  show(normal_quadrics, normal_quadric_array_);
+  show(values, value_array_);
   show(turn_keys, turn_key_array_);
   show(turns, turn_array_);
   show(triangles, triangle_array_);
@@ -135,6 +137,8 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   turn_array_.resize(end);
   for (Array<LevelVertex>& level : levels) level.resize(end);
   normal_array_.insert(normal_array_.end(), piece.normals.begin(), piece.normals.end());
+  value_array_.insert(value_array_.end(), piece.values.begin(), piece.values.end());
+  if (options.normals_count) normal_quadric_array_.resize(end);
   show_arrays();
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     const auto from = static_cast<std::size_t>(n);
@@ -145,6 +149,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
     states[first + from] = VertexState::kIncomplete;
     turn_keys[first + from] = 0;
     turns[first + from] = Turn();
+    if (options.normals_count) normal_quadrics[first + from] = NormalQuadric();
     for (Array<LevelVertex>& level : levels) level[first + from] = LevelVertex();
   });
 }
@@ -294,12 +299,13 @@ void Zone::initial_quadric(Index v) {
   star.gather(*this, v);
   if (star.border || star.overflow) {
     give_initial_quadric(*this, v);
-    return;
+  } else {
+    const VectorArithmetic arithmetic;
+    Fan fan;
+    arithmetic.measure(*this, star, fan);
+    vertices[v].quadric = arithmetic.sum_faces(fan, star.count(), initial_weight(options)).planes;
   }
-  const VectorArithmetic arithmetic;
-  Fan fan;
-  arithmetic.measure(*this, star, fan);
-  vertices[v].quadric = arithmetic.sum_faces(fan, star.count(), initial_weight(options)).planes;
+  if (options.normals_count) give_normal_quadric(*this, v);
 }
 
 // Edges that get their keys together.
@@ -354,7 +360,7 @@ bool Zone::settle_edge(Index h, EdgeBatch& batch) {
 
 void Zone::give_keys(EdgeBatch& batch) {
   std::array<CostBits, EdgeBatch::kCapacity> costs;
-  kernels().edge_costs(std::span(batch.ends).first(batch.count), costs.data());
+  edge_costs(*this, VectorArithmetic(), std::span(batch.ends).first(batch.count), costs.data());
   for (std::size_t n = 0; n < batch.count; ++n) set_key(batch.half_edges[n], make_key(costs[n], batch.ties[n]));
   batch.count = 0;
 }
@@ -393,6 +399,8 @@ void Zone::compact(const Executor& executor) {
   new_vertex.apply(state_array_);
   for (Array<LevelVertex>& level : levels) new_vertex.apply(level);
   if (!normal_array_.empty()) new_vertex.apply(normal_array_);
+  if (!normal_quadric_array_.empty()) new_vertex.apply(normal_quadric_array_);
+  if (!value_array_.empty()) new_vertex.apply(value_array_);
   show_arrays();
   for (Index& v : front_) move_vertex(v);
   for (Index& h : unkeyed_edges_) move_half_edge(h);
@@ -405,6 +413,7 @@ std::uint64_t Zone::bytes() const {
   return level_bytes + (extracted_surface_ ? extracted_surface_->bytes() : 0) +
          vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
+         normal_quadric_array_.capacity() * sizeof(NormalQuadric) + value_array_.capacity() * sizeof(float) +
          triangle_array_.capacity() * sizeof(Triangle) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }

@@ -77,6 +77,8 @@ class Zone : public ZoneView {
     archive.list(vertex_array_);
     archive.list(state_array_);
     archive.list(normal_array_);
+    archive.list(normal_quadric_array_);
+    archive.list(value_array_);
     archive.list(triangle_array_);
     for (Array<LevelVertex>& level : levels) archive.list(level);
     if (extracted_surface_) extracted_surface_->exchange(archive);
@@ -109,6 +111,8 @@ class Zone : public ZoneView {
   Array<Vertex> vertex_array_;
   Array<VertexState> state_array_;
   std::vector<Point> normal_array_;
+  Array<NormalQuadric> normal_quadric_array_;  // where normals count
+  std::vector<float> value_array_;
   Array<Key> turn_key_array_;
   Array<Turn> turn_array_;
   Array<Triangle> triangle_array_;

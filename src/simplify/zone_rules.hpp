@@ -98,6 +98,43 @@ ISOWEAVE_HD inline void give_initial_quadric(const ZoneView& zone, Index v) {
   zone.vertices[v].quadric = sum;
 }
 
+ISOWEAVE_HD inline Vec3 normal_at(const ZoneView& zone, Index v) {
+  const Point& normal = zone.normals[v];
+  return {double{normal[0]}, double{normal[1]}, double{normal[2]}};
+}
+
+// Adds what the normals of the faces around v say: after give_initial_quadric, in the order of its faces.
+ISOWEAVE_HD inline void give_normal_quadric(const ZoneView& zone, Index v) {
+  const double each = initial_weight(zone.options) * kNormalWeight * zone.options.a0;
+  const Index first = zone.vertices[v].half_edge;
+  const Vec3 from = zone.vertices[v].position;
+  Index h = first;
+  do {
+    const Index corners[2] = {zone.destination(h), zone.origin(previous(h))};
+    const Vec3 a = zone.vertices[corners[0]].position - from;
+    const Vec3 b = zone.vertices[corners[1]].position - from;
+    const double size = sqrt(dot(cross(a, b), cross(a, b)));  // twice the area
+    const Vec3 normals[3] = {normal_at(zone, v), normal_at(zone, corners[0]), normal_at(zone, corners[1])};
+    if (size > 0) add_face(a, b, normals, each * size, zone.vertices[v].quadric, zone.normal_quadrics[v]);
+    h = zone.rotate(h);
+  } while (h != first && exists(h));
+}
+
+// Costs of collapsing edges.
+template <class Arithmetic>
+ISOWEAVE_HD inline void edge_costs(const ZoneView& zone, const Arithmetic& arithmetic, std::span<const EdgeEnds> edges,
+                                   CostBits* costs) {
+  if (zone.normal_quadrics.empty()) return arithmetic.edge_costs(edges, costs);
+  const Vertex* const vertices = zone.vertices.data();
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    const Vertex& first = *edges[n].first;
+    const Vertex& second = *edges[n].second;
+    costs[n] = to_cost(collapse_cost(first.quadric, zone.normal_quadrics[static_cast<std::size_t>(&first - vertices)],
+                                     second.quadric, zone.normal_quadrics[static_cast<std::size_t>(&second - vertices)],
+                                     second.position - first.position));
+  }
+}
+
 // The ends of an edge, the one with the smaller id first.
 ISOWEAVE_HD inline EdgeEnds ends_in_order(const ZoneView& zone, Index a, Index b) {
   const bool a_first = zone.vertices[a].id < zone.vertices[b].id;

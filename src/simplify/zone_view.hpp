@@ -12,6 +12,7 @@
 
 #include "isoweave/mesh.hpp"
 #include "parallel/host_device.hpp"
+#include "simplify/normal_quadric.hpp"
 #include "simplify/quadric.hpp"
 #include "simplify/rules.hpp"
 
@@ -87,11 +88,12 @@ struct Turn {
 
 struct ZoneOptions {
   EdgeNumbering numbering;
-  double a0 = 1;             // mean voxel face, length squared
-  CostBits retire = 0;       // edges with a higher cost are retired
-  bool drop_specks = false;  // a tetrahedron within its cost vanishes
-  double most_distance = 0;  // of any point from the extracted surface; 0: no such bound
-  Vec3 cell{};               // lengths of a box that holds a few triangles, where there is such a bound
+  double a0 = 1;               // mean voxel face, length squared
+  CostBits retire = 0;         // edges with a higher cost are retired
+  bool drop_specks = false;    // a tetrahedron within its cost vanishes
+  double most_distance = 0;    // of any point from the extracted surface; 0: no such bound
+  Vec3 cell{};                 // lengths of a box that holds a few triangles, where there is such a bound
+  bool normals_count = false;  // in costs and places, by quadrics of their own
 };
 
 class ExtractedSurface;
@@ -99,13 +101,15 @@ class ExtractedSurface;
 struct ZoneView {
   std::span<Vertex> vertices;
   std::span<VertexState> states;  // parallel to vertices
-  std::span<Point> normals;       // parallel to vertices, or empty: sum of the unit normals merged into each
-  std::span<Key> turn_keys;       // parallel to vertices: least key of the edges; kept by the schedule
-  std::span<Turn> turns;          // parallel to vertices; kept by the schedules that use them
+  std::span<Point> normals;  // parallel to vertices, or empty: sum of the unit normals merged into each, or the best
+  std::span<Key> turn_keys;  // parallel to vertices: least key of the edges; kept by the schedule
+  std::span<Turn> turns;     // parallel to vertices; kept by the schedules that use them
   std::span<Triangle> triangles;
   ZoneOptions options;
   CostBits limit = 0;  // edges with a higher cost wait until it is raised; at most options.retire
   const ExtractedSurface* extracted = nullptr;  // where distances are bounded; on the host only
+  std::span<NormalQuadric> normal_quadrics{};   // parallel to vertices, where normals count; on the host only
+  std::span<float> values{};                    // parallel to vertices, or empty; on the host only
 
   ISOWEAVE_HD Index triangle_count() const { return static_cast<Index>(triangles.size()); }
 

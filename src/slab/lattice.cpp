@@ -11,11 +11,10 @@ bool Lattice::fits(const std::array<std::int64_t, 3>& dims) {
 }
 
 bool Lattice::is_on_border(std::uint64_t edge) const {
-  const std::uint64_t point = edge / 3;
-  const std::array<std::uint64_t, 3> index{point % row() - 1, point % plane() / row() - 1, point / plane() - 1};
+  const Edge place = this->edge(edge);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (axis == edge % 3) continue;
-    if (index[axis] == 0 || index[axis] + 1 == static_cast<std::uint64_t>(dims[axis])) return true;
+    if (axis == place.axis) continue;
+    if (place.low[axis] == 0 || place.low[axis] + 1 == dims[axis]) return true;
   }
   return false;
 }

@@ -22,6 +22,20 @@ struct Lattice {
     return 3 * point + static_cast<std::uint64_t>(axis);
   }
 
+  // An edge: its lower end and its axis.
+  struct Edge {
+    std::array<std::int64_t, 3> low;
+    std::size_t axis;
+  };
+
+  // The edge that has an id.
+  Edge edge(std::uint64_t id) const {
+    const std::uint64_t point = id / 3;
+    const std::uint64_t k = point / plane(), j = point % plane() / row(), i = point % row();
+    return {{static_cast<std::int64_t>(i) - 1, static_cast<std::int64_t>(j) - 1, static_cast<std::int64_t>(k) - 1},
+            static_cast<std::size_t>(id % 3)};
+  }
+
   // The layer whose extraction makes the vertex of an edge: that below the slice the edge lies on, or that it crosses.
   std::int64_t layer_of(std::uint64_t edge) const {
     const auto above = static_cast<std::int64_t>(edge / (3 * plane()));

@@ -8,13 +8,20 @@
 
 namespace isoweave {
 
+// Bytes for normals and values of vertices.
+struct VertexExtras {
+  std::uint64_t extracted = 0;    // of each vertex on its way from extraction
+  std::uint64_t held = 0;         // in the zone
+  std::uint64_t slice_bytes = 0;  // of the volume of values
+};
+
 struct MemoryModel {
   std::uint64_t resident = 0;  // bytes that the process holds before the run: the program and its libraries
   std::uint64_t slice_bytes = 0;
   std::uint64_t slice_samples = 0;
   int threads = 1;
   bool simplifies = true;
-  bool normals = false;
+  VertexExtras extras{};
   std::uint64_t levels = 0;  // finer ones
   bool bounded = false;      // distances: the extracted surface around the zone is held as well
 
@@ -41,15 +48,18 @@ struct MemoryModel {
 
   double slices(double layers, double ring) const {
     constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
-    return ring * static_cast<double>(slice_bytes) + (layers + 1) * kBits * static_cast<double>(slice_samples);
+    return ring * static_cast<double>(slice_bytes + extras.slice_bytes) +
+           (layers + 1) * kBits * static_cast<double>(slice_samples);
   }
 
   // On the way from extraction to the zone, or straight to the file.
-  double per_new() const { return (simplifies ? 65 : 115) + (normals ? 12 : 0); }
+  double per_new() const { return (simplifies ? 65 : 115) + static_cast<double>(extras.extracted); }
 
   // In the zone, with half a vertex each.
   double per_held() const {
-    return simplifies ? 160 + (normals ? 6 : 0) + 10 * static_cast<double>(levels) + (bounded ? kBounded : 0) : 0;
+    if (!simplifies) return 0;
+    const double extra = static_cast<double>(extras.held) / 2 + 10 * static_cast<double>(levels);
+    return 160 + extra + (bounded ? kBounded : 0);
   }
 };
 

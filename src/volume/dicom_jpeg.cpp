@@ -11,6 +11,7 @@
 #include <string>
 
 #include "volume/dicom_file.hpp"
+#include "volume/dicom_packed.hpp"
 #include "volume/input_file.hpp"
 #include "volume/printable.hpp"
 
@@ -47,17 +48,10 @@ bool decodes(gdcm::JPEGCodec& codec, const gdcm::DataElement& packed, gdcm::Data
   }
 }
 
-// A decoder that has come to the end of its data without the mark that ends an image waits for more, and would never be
-// freed: this ends it.
-void end_decoding(gdcm::JPEGCodec& codec) {
-  constexpr std::array<std::byte, 2> kEndOfImage{std::byte{0xff}, std::byte{0xd9}};
-  gdcm::DataElement ignored;
-  decodes(codec, pixel_data(kEndOfImage), ignored);
-}
-
 }  // namespace
 
 std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes) {
+  check_jpeg_ends(slice, packed);
   keep_gdcm_quiet();
   const gdcm::TransferSyntax syntax(gdcm::TransferSyntax::GetTSType(slice.syntax.c_str()));
   gdcm::JPEGCodec codec;
@@ -74,7 +68,6 @@ std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std:
   gdcm::DataElement unpacked;
   const bool decoded = decodes(codec, pixel_data(packed), unpacked);
   const gdcm::ByteValue* value = decoded ? unpacked.GetByteValue() : nullptr;
-  end_decoding(codec);
   if (value == nullptr) bad_input(slice.path, "decodable DICOM samples", "damaged data");
   if (value->GetLength() != bytes) {
     bad_input(slice.path, std::to_string(bytes) + " bytes of samples once unpacked",

@@ -90,19 +90,18 @@ class GlbSink final : public MeshFileSink {
 
   std::vector<std::uint64_t> state() const override { return bounds_.state(); }
 
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override {
-    check_glb_fits(path(), this->vertices() + vertices.size(), this->triangles() + triangles.size(), options().normals,
-                   data_begin());
-    bounds_.add(vertices);
-    write_records(file(), records_, vertices.size(), kPointBytes,
-                  [&](std::byte*& out, std::size_t n) { store_point(out, vertices[n]); });
+  void write_piece(const MeshPiece& piece) override {
+    check_glb_fits(path(), this->vertices() + piece.vertices.size(), this->triangles() + piece.triangles.size(),
+                   options().normals, data_begin());
+    bounds_.add(piece.vertices);
+    write_records(file(), records_, piece.vertices.size(), kPointBytes,
+                  [&](std::byte*& out, std::size_t n) { store_point(out, piece.vertices[n]); });
     if (normals_ != nullptr) {
-      write_records(*normals_, records_, normals.size(), kPointBytes,
-                    [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(normals[n])); });
+      write_records(*normals_, records_, piece.normals.size(), kPointBytes,
+                    [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(piece.normals[n])); });
     }
-    write_records(faces_, records_, triangles.size(), kTriangleBytes,
-                  [&](std::byte*& out, std::size_t n) { store_indices(out, triangles[n]); });
+    write_records(faces_, records_, piece.triangles.size(), kTriangleBytes,
+                  [&](std::byte*& out, std::size_t n) { store_indices(out, piece.triangles[n]); });
   }
 
   void complete() override {

@@ -127,29 +127,34 @@ void MeshFileSink::require_open() const {
   if (state_ == State::kFailed) throw std::logic_error(path() + ": an earlier write failed, the mesh cannot go on");
 }
 
-void MeshFileSink::check_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                               std::span<const Triangle64> triangles) const {
-  const bool normals_match = normals.size() == vertices.size() || (normals.empty() && !options_.normals);
-  if (!normals_match) throw std::invalid_argument("expected one normal for each vertex");
-  if (!all_finite(vertices) || !all_finite(normals)) {
+void MeshFileSink::check_piece(const MeshPiece& piece) const {
+  const std::size_t vertices = piece.vertices.size();
+  const auto matches = [&](std::size_t found, bool wanted) { return found == vertices || (found == 0 && !wanted); };
+  if (!matches(piece.normals.size(), options_.normals)) {
+    throw std::invalid_argument("expected one normal for each vertex");
+  }
+  if (!matches(piece.values.size(), options_.values)) throw std::invalid_argument("expected one value for each vertex");
+  if (!all_finite(piece.vertices) || !all_finite(piece.normals)) {
     throw std::invalid_argument("a vertex or normal has a coordinate that is not finite");
   }
-  const std::uint64_t count = vertices_ + vertices.size();
-  for (const Triangle64& triangle : triangles) {
+  const std::uint64_t count = vertices_ + vertices;
+  for (const Triangle64& triangle : piece.triangles) {
     if (std::max({triangle[0], triangle[1], triangle[2]}) >= count) {
       throw std::invalid_argument("a triangle refers to a vertex that was not appended");
     }
   }
 }
 
-void MeshFileSink::append(std::span<const Point> vertices, std::span<const Point> normals,
-                          std::span<const Triangle64> triangles) {
+void MeshFileSink::append(const MeshPiece& piece) {
   require_open();
-  check_piece(vertices, normals, triangles);
+  check_piece(piece);
   state_ = State::kFailed;  // until all is written
-  write_piece(vertices, options_.normals ? normals : std::span<const Point>{}, triangles);
-  vertices_ += vertices.size();
-  triangles_ += triangles.size();
+  MeshPiece wanted = piece;
+  if (!options_.normals) wanted.normals = {};
+  if (!options_.values) wanted.values = {};
+  write_piece(wanted);
+  vertices_ += piece.vertices.size();
+  triangles_ += piece.triangles.size();
   state_ = State::kOpen;
 }
 

@@ -32,8 +32,7 @@ class MeshFileSink : public MeshSink {
  public:
   // Throws std::invalid_argument for an index of no vertex, a coordinate that is not finite, or missing normals:
   // a file with those could not be read back. Nothing may follow a failed call.
-  void append(std::span<const Point> vertices, std::span<const Point> normals,
-              std::span<const Triangle64> triangles) final;
+  void append(const MeshPiece& piece) final;
   void finish() final;
   std::string mark() final;
 
@@ -54,10 +53,9 @@ class MeshFileSink : public MeshSink {
   virtual std::vector<std::uint64_t> state() const { return {}; }
   std::vector<std::uint64_t> saved_state(std::size_t count);
 
-  // Writes a checked piece; `normals` is empty unless the options ask for them. vertices() and triangles() still
-  // count what came before it.
-  virtual void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                           std::span<const Triangle64> triangles) = 0;
+  // Writes a checked piece; normals and values are empty unless the options ask for them. vertices() and triangles()
+  // still count what came before it.
+  virtual void write_piece(const MeshPiece& piece) = 0;
 
   // Writes what pieces have left in buffers of the format's own.
   virtual void write_held_back() {}
@@ -83,8 +81,7 @@ class MeshFileSink : public MeshSink {
   void open_file();
   int open_side_scratch() const;
   std::uint64_t next_saved();
-  void check_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) const;
+  void check_piece(const MeshPiece& piece) const;
   void require_open() const;
 
   MeshTarget target_;

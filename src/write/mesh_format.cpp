@@ -42,6 +42,9 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
   if (options.segment != 1 && format != MeshFormat::kPrecomputed) {
     throw CannotWrite(path + ": expected a name that ends in .precomputed for an object with a number");
   }
+  if (options.values && format != MeshFormat::kPly && format != MeshFormat::kVtp) {
+    throw CannotWrite(path + ": expected a name that ends in .ply or .vtp for a mesh with values at its vertices");
+  }
   if (options.segment == 0) throw CannotWrite(path + ": expected a number of 1 or more for the object, found 0");
 }
 
@@ -117,10 +120,28 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
   return options.compress ? open_packed_precomputed(folder, options) : open_precomputed(folder, options);
 }
 
+void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 16;
+  const std::unique_ptr<MeshSink> sink = open_mesh_file(path, options);
+  sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .values = mesh.values});
+  std::vector<Triangle64> block;
+  for (std::size_t first = 0; first < mesh.triangles.size(); first += kAtOnce) {
+    block.clear();
+    for (std::size_t t = first; t < std::min(first + kAtOnce, mesh.triangles.size()); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      block.push_back({a, b, c});
+    }
+    sink->append({.triangles = block});
+  }
+  sink->finish();
+}
+
 std::unique_ptr<MeshSink> open_mesh_stream(int descriptor, const std::string& name, const std::string& format,
                                            const MeshFileOptions& options) {
   const MeshTarget stream{name, MeshTarget::Kind::kStream, descriptor};
   if (format == "ply") return open_ply(stream, options);
+  if (options.values)
+    throw std::invalid_argument("expected ply as the format of a stream with values, found '" + format + "'");
   if (format == "stl") return open_stl(stream, options);
   throw std::invalid_argument("expected ply or stl as the format of a stream, found '" + format + "'");
 }
@@ -131,7 +152,7 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
   constexpr std::uint64_t kTextVertex = 32, kObjFace = 24, kOffFace = 22, k3mfVertex = 14, k3mfTriangle = 7;
   const MeshFormat format = checked_mesh_format(path, options);
   if (options.compress) return packed_bytes(path, format, vertices, triangles, options.normals);
-  const std::uint64_t raw_vertex = options.normals ? 24 : 12;
+  const std::uint64_t raw_vertex = std::uint64_t{12} + (options.normals ? 12 : 0) + (options.values ? 4 : 0);
   switch (format) {
     case MeshFormat::kPly:
       check_count_fits(path, "vertices", 0, vertices);

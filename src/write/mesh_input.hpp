@@ -127,7 +127,7 @@ inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t
 // Fails when a coordinate is not finite, or when a triangle refers to a vertex that is not there.
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
-TriangleMesh read_ply(MeshInput& input, std::vector<float>* quality = nullptr);
+TriangleMesh read_ply(MeshInput& input);
 TriangleMesh read_off(MeshInput& input);
 TriangleMesh read_vtp(MeshInput& input);
 TriangleMesh read_glb(MeshInput& input);

@@ -17,10 +17,7 @@ class LevelSink final : public MeshSink {
  public:
   LevelSink(std::shared_ptr<LevelFile> file, std::size_t level) : file_(std::move(file)), level_(level) {}
 
-  void append(std::span<const Point> vertices, std::span<const Point> normals,
-              std::span<const Triangle64> triangles) override {
-    file_->level(level_).append(vertices, normals, triangles);
-  }
+  void append(const MeshPiece& piece) override { file_->level(level_).append(piece); }
   void finish() override { file_->finish(level_); }
   std::string mark() override { return file_->level(level_).mark(); }
   std::vector<std::string> notes() const override {
@@ -57,18 +54,17 @@ LevelParts::LevelParts(LevelFile& file, const std::string& path, const MeshFileO
   if (continued()) bounds_.load(saved_state(6));
 }
 
-void LevelParts::write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                             std::span<const Triangle64> triangles) {
-  file_.check_room(*this, vertices.size(), triangles.size());
-  bounds_.add(vertices);
-  write_records(positions_, records_, vertices.size(), kRecordBytes,
-                [&](std::byte*& out, std::size_t n) { store_point(out, vertices[n]); });
+void LevelParts::write_piece(const MeshPiece& piece) {
+  file_.check_room(*this, piece.vertices.size(), piece.triangles.size());
+  bounds_.add(piece.vertices);
+  write_records(positions_, records_, piece.vertices.size(), kRecordBytes,
+                [&](std::byte*& out, std::size_t n) { store_point(out, piece.vertices[n]); });
   if (normals_ != nullptr) {
-    write_records(*normals_, records_, normals.size(), kRecordBytes,
-                  [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(normals[n])); });
+    write_records(*normals_, records_, piece.normals.size(), kRecordBytes,
+                  [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(piece.normals[n])); });
   }
-  write_records(faces_, records_, triangles.size(), kRecordBytes,
-                [&](std::byte*& out, std::size_t n) { store_indices(out, triangles[n]); });
+  write_records(faces_, records_, piece.triangles.size(), kRecordBytes,
+                [&](std::byte*& out, std::size_t n) { store_indices(out, piece.triangles[n]); });
 }
 
 void LevelParts::append_to(AtomicFile& target) {

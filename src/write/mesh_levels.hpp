@@ -35,8 +35,7 @@ class LevelParts final : public MeshFileSink {
 
  private:
   std::vector<std::uint64_t> state() const override { return bounds_.state(); }
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override;
+  void write_piece(const MeshPiece& piece) override;
   void complete() override {}
 
   LevelFile& file_;

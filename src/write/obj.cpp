@@ -14,11 +14,10 @@ class ObjSink final : public MeshFileSink {
   }
 
  private:
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override {
-    for (const Point& vertex : vertices) print_line("v", vertex);
-    for (const Point& normal : normals) print_line("vn", normal);
-    for (const Triangle64& triangle : triangles) print_face(triangle);
+  void write_piece(const MeshPiece& piece) override {
+    for (const Point& vertex : piece.vertices) print_line("v", vertex);
+    for (const Point& normal : piece.normals) print_line("vn", normal);
+    for (const Triangle64& triangle : piece.triangles) print_face(triangle);
   }
 
   void print_line(const char* keyword, const Point& point) {

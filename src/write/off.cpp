@@ -24,14 +24,13 @@ class OffSink final : public MeshFileSink {
   }
 
  private:
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override {
-    for (std::size_t n = 0; n < vertices.size(); ++n) {
-      print_numbers(vertex_text_, vertices[n]);
-      if (!normals.empty()) print_point(vertex_text_, normals[n]);
+  void write_piece(const MeshPiece& piece) override {
+    for (std::size_t n = 0; n < piece.vertices.size(); ++n) {
+      print_numbers(vertex_text_, piece.vertices[n]);
+      if (!piece.normals.empty()) print_point(vertex_text_, piece.normals[n]);
       end_line(vertex_text_, file());
     }
-    for (const Triangle64& triangle : triangles) {
+    for (const Triangle64& triangle : piece.triangles) {
       face_text_ += '3';
       for (const std::uint64_t index : triangle) {
         face_text_ += ' ';

@@ -19,6 +19,7 @@ std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, 
   text += "comment padding " + std::string(kDigits - vertex_count.size() - face_count.size(), '.') + "\n";
   text += "element vertex " + vertex_count + "\nproperty float x\nproperty float y\nproperty float z\n";
   if (options.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (options.values) text += "property float quality\n";
   text += "element face " + face_count + "\nproperty list uchar uint vertex_indices\nend_header\n";
   return text;
 }
@@ -33,18 +34,20 @@ class PlySink final : public MeshFileSink {
   }
 
  private:
-  std::size_t vertex_bytes() const { return options().normals ? 24 : 12; }
+  std::size_t vertex_bytes() const {
+    return std::size_t{12} + (options().normals ? 12 : 0) + (options().values ? 4 : 0);
+  }
 
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override {
-    check_count_fits(path(), "vertices", this->vertices(), vertices.size());
-    write_records(file(), records_, vertices.size(), vertex_bytes(), [&](std::byte*& out, std::size_t n) {
-      store_point(out, vertices[n]);
-      if (!normals.empty()) store_point(out, normals[n]);
+  void write_piece(const MeshPiece& piece) override {
+    check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size());
+    write_records(file(), records_, piece.vertices.size(), vertex_bytes(), [&](std::byte*& out, std::size_t n) {
+      store_point(out, piece.vertices[n]);
+      if (!piece.normals.empty()) store_point(out, piece.normals[n]);
+      if (!piece.values.empty()) store_u32(out, std::bit_cast<std::uint32_t>(piece.values[n]));
     });
-    write_records(faces_, records_, triangles.size(), kFaceBytes, [&](std::byte*& out, std::size_t n) {
+    write_records(faces_, records_, piece.triangles.size(), kFaceBytes, [&](std::byte*& out, std::size_t n) {
       *out++ = std::byte{3};
-      store_indices(out, triangles[n]);
+      store_indices(out, piece.triangles[n]);
     });
   }
 

@@ -24,13 +24,12 @@ class PrecomputedSink final : public MeshFileSink {
   }
 
  private:
-  void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
-                   std::span<const Triangle64> triangles) override {
-    check_count_fits(path(), "vertices", this->vertices(), vertices.size());
-    write_records(positions_, records_, vertices.size(), 12,
-                  [&](std::byte*& out, std::size_t n) { store_point(out, scaled(vertices[n])); });
-    write_records(faces_, records_, triangles.size(), 12,
-                  [&](std::byte*& out, std::size_t n) { store_indices(out, triangles[n]); });
+  void write_piece(const MeshPiece& piece) override {
+    check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size());
+    write_records(positions_, records_, piece.vertices.size(), 12,
+                  [&](std::byte*& out, std::size_t n) { store_point(out, scaled(piece.vertices[n])); });
+    write_records(faces_, records_, piece.triangles.size(), 12,
+                  [&](std::byte*& out, std::size_t n) { store_indices(out, piece.triangles[n]); });
   }
 
   Point scaled(const Point& point) const {

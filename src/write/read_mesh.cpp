@@ -36,13 +36,14 @@ bool looks_like_obj(std::string_view head) {
   return false;
 }
 
-// `quality`: where that of a PLY file goes, or nowhere.
-TriangleMesh read_file(const std::string& path, std::vector<float>* quality) {
+}  // namespace
+
+TriangleMesh read_mesh(const std::string& path) {
   MeshInput input(path);
   if (input.size() == 0) input.fail("is empty, expected a mesh file");
   const std::string head = input.head(4096);
   const bool named_obj = has_ending(path, ".obj");
-  if (starts_with_word(head, "ply")) return mesh_io::read_ply(input, quality);
+  if (starts_with_word(head, "ply")) return mesh_io::read_ply(input);
   if (head.starts_with("glTF")) return mesh_io::read_glb(input);
   if (head.starts_with("PK\3\4")) return mesh_io::read_3mf(input);
   if (head.find("<VTKFile") != std::string::npos) return mesh_io::read_vtp(input);
@@ -57,15 +58,6 @@ TriangleMesh read_file(const std::string& path, std::vector<float>* quality) {
   if (has_ending(path, ".off")) input.fail("does not begin with the line 'OFF' or 'NOFF'");
   if (named_obj || looks_like_obj(head)) return mesh_io::read_obj(input);
   input.fail("is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
-}
-
-}  // namespace
-
-TriangleMesh read_mesh(const std::string& path) { return read_file(path, nullptr); }
-
-TriangleMesh read_mesh_with_quality(const std::string& path, std::vector<float>& quality) {
-  quality.clear();
-  return read_file(path, &quality);
 }
 
 }  // namespace isoweave

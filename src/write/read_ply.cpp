@@ -47,9 +47,7 @@ std::string text_of(double value) {
 
 class PlyReader {
  public:
-  // `quality`: where the numbers of that name go, or nowhere.
-  PlyReader(MeshInput& input, std::vector<float>* quality)
-      : input_(input), header_(read_ply_header(input)), quality_(quality) {}
+  explicit PlyReader(MeshInput& input) : input_(input), header_(read_ply_header(input)) {}
 
   TriangleMesh read() {
     check_size();
@@ -146,7 +144,7 @@ class PlyReader {
       std::array<float, 6> values{};
       for (std::size_t i = 0; i < slots.size(); ++i) {
         if (slots[i] == kQualitySlot) {
-          quality_->push_back(next_quality(element.properties[i]));
+          mesh_.values.push_back(next_quality(element.properties[i]));
         } else if (slots[i] < 0) {
           skip_value(element.properties[i]);
         } else {
@@ -158,14 +156,14 @@ class PlyReader {
     }
   }
 
-  // Where each property belongs among x y z nx ny nz, or that it is the quality asked for; -1 for all others.
+  // Where each property belongs among x y z nx ny nz, or that it is the quality; -1 for all others.
   std::vector<int> coordinate_slots(const PlyElement& element) const {
     constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
     std::vector<int> slots;
     for (const PlyProperty& property : element.properties) {
       const auto found = std::find(kNames.begin(), kNames.begin() + (header_.has_normals ? 6 : 3), property.name);
       const bool used = found != kNames.begin() + (header_.has_normals ? 6 : 3);
-      const bool is_quality = quality_ != nullptr && property.name == "quality" && !property.length_type;
+      const bool is_quality = property.name == "quality" && !property.length_type;
       slots.push_back(used ? static_cast<int>(found - kNames.begin()) : is_quality ? kQualitySlot : -1);
     }
     return slots;
@@ -228,12 +226,11 @@ class PlyReader {
 
   MeshInput& input_;
   PlyHeader header_;
-  std::vector<float>* quality_;
   TriangleMesh mesh_;
 };
 
 }  // namespace
 
-TriangleMesh read_ply(MeshInput& input, std::vector<float>* quality) { return PlyReader(input, quality).read(); }
+TriangleMesh read_ply(MeshInput& input) { return PlyReader(input).read(); }
 
 }  // namespace isoweave::mesh_io

@@ -52,13 +52,12 @@ class StlSink final : public MeshFileSink {
   }
 
  private:
-  void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
-                   std::span<const Triangle64> triangles) override {
-    check_count_fits(path(), "triangles", this->triangles(), triangles.size());
-    positions_.insert(positions_.end(), vertices.begin(), vertices.end());
-    if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(vertices));
-    write_records(file(), records_, triangles.size(), kTriangleBytes,
-                  [&](std::byte*& out, std::size_t n) { store_triangle(out, triangles[n]); });
+  void write_piece(const MeshPiece& piece) override {
+    check_count_fits(path(), "triangles", this->triangles(), piece.triangles.size());
+    positions_.insert(positions_.end(), piece.vertices.begin(), piece.vertices.end());
+    if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(piece.vertices));
+    write_records(file(), records_, piece.triangles.size(), kTriangleBytes,
+                  [&](std::byte*& out, std::size_t n) { store_triangle(out, piece.triangles[n]); });
   }
 
   void store_triangle(std::byte*& out, const Triangle64& triangle) const {

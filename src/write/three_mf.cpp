@@ -126,14 +126,13 @@ class ThreeMfSink final : public MeshFileSink {
     return {vertex_text_.crc, vertex_text_.bytes, face_text_.crc, face_text_.bytes};
   }
 
-  void write_piece(std::span<const Point> vertices, std::span<const Point> /*normals*/,
-                   std::span<const Triangle64> triangles) override {
-    check_count_fits(path(), "vertices", this->vertices(), vertices.size(), kMost3mfVertices);
-    for (const Point& vertex : vertices) {
+  void write_piece(const MeshPiece& piece) override {
+    check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size(), kMost3mfVertices);
+    for (const Point& vertex : piece.vertices) {
       print_element(vertex_text_.text, "<vertex x=\"", vertex, "\" y=\"", "\" z=\"");
       vertex_text_.end_line();
     }
-    for (const Triangle64& triangle : triangles) {
+    for (const Triangle64& triangle : piece.triangles) {
       print_element(face_text_.text, "<triangle v1=\"", triangle, "\" v2=\"", "\" v3=\"");
       face_text_.end_line();
     }

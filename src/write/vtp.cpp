@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint64_t kWord = 8;
 constexpr std::uint64_t kPointBytes = 12;
+constexpr std::uint64_t kValueBytes = 4;
 constexpr std::uint64_t kTriangleBytes = 24;
 
 // VTK writes strings as the numbers of their characters, and a 0.
@@ -33,9 +34,18 @@ std::string head_text(const MeshFileOptions& options, std::uint64_t vertices, st
           "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
           std::to_string(triangles) + "\">\n";
   std::uint64_t at = kWord + vertices * kPointBytes;
-  if (options.normals) {
-    text += "<PointData Normals=\"Normals\">\n" + data_array("\"Float32\" Name=\"Normals\"", 3, at) + "</PointData>\n";
-    at += kWord + vertices * kPointBytes;
+  if (options.normals || options.values) {
+    text += std::string("<PointData") + (options.normals ? " Normals=\"Normals\"" : "") +
+            (options.values ? " Scalars=\"value\"" : "") + ">\n";
+    if (options.normals) {
+      text += data_array("\"Float32\" Name=\"Normals\"", 3, at);
+      at += kWord + vertices * kPointBytes;
+    }
+    if (options.values) {
+      text += data_array("\"Float32\" Name=\"value\"", 1, at);
+      at += kWord + vertices * kValueBytes;
+    }
+    text += "</PointData>\n";
   }
   text += "<Points>\n" + data_array("\"Float32\" Name=\"Points\"", 3, 0) + "</Points>\n<Polys>\n" +
           data_array("\"Int64\" Name=\"connectivity\"", 1, at) +
@@ -57,6 +67,7 @@ class VtpSink final : public MeshFileSink {
   VtpSink(const MeshTarget& target, const MeshFileOptions& options)
       : MeshFileSink(target, options), faces_(open_side("faces.part")) {
     if (options.normals) normals_ = &open_side("normals.part");
+    if (options.values) values_ = &open_side("values.part");
     const std::string head = padded_head(options, 0, 0);
     head_bytes_ = head.size();
     if (continued()) return;
@@ -67,15 +78,16 @@ class VtpSink final : public MeshFileSink {
  private:
   void write_word(std::uint64_t word) { file().write(std::as_bytes(std::span(&word, 1))); }
 
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) override {
-    file().write(std::as_bytes(vertices));
-    if (normals_ != nullptr) normals_->write(std::as_bytes(normals));
-    faces_.write(std::as_bytes(triangles));
+  void write_piece(const MeshPiece& piece) override {
+    file().write(std::as_bytes(piece.vertices));
+    if (normals_ != nullptr) normals_->write(std::as_bytes(piece.normals));
+    if (values_ != nullptr) values_->write(std::as_bytes(piece.values));
+    faces_.write(std::as_bytes(piece.triangles));
   }
 
   void complete() override {
     if (normals_ != nullptr) append_array(*normals_);
+    if (values_ != nullptr) append_array(*values_);
     append_array(faces_);
     write_offsets();
     constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>";
@@ -85,10 +97,10 @@ class VtpSink final : public MeshFileSink {
     const std::uint64_t points = vertices() * kPointBytes;
     file().overwrite(0, std::as_bytes(std::span(head)));
     file().overwrite(head.size(), std::as_bytes(std::span(&points, 1)));
-    const std::uint64_t arrays = options().normals ? 4 : 3;
-    check_written(
-        head_bytes_ + arrays * kWord + (arrays - 2) * points + triangles() * (kTriangleBytes + kWord) + kEnd.size(),
-        std::as_bytes(std::span(head)));
+    std::uint64_t data = 3 * kWord + points + triangles() * (kTriangleBytes + kWord);
+    if (normals_ != nullptr) data += kWord + points;
+    if (values_ != nullptr) data += kWord + vertices() * kValueBytes;
+    check_written(head_bytes_ + data + kEnd.size(), std::as_bytes(std::span(head)));
   }
 
   void append_array(OutputDescriptor& array) {
@@ -110,6 +122,7 @@ class VtpSink final : public MeshFileSink {
 
   OutputDescriptor& faces_;
   OutputDescriptor* normals_ = nullptr;
+  OutputDescriptor* values_ = nullptr;
   std::uint64_t head_bytes_ = 0;
 };
 

@@ -21,18 +21,17 @@ WholeMeshSink::WholeMeshSink(const MeshTarget& target, const MeshFileOptions& op
   if (options.normals) normals_ = &open_side("normals.part");
 }
 
-void WholeMeshSink::write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                                std::span<const Triangle64> triangles) {
-  check_count_fits(path(), "vertices", this->vertices(), vertices.size());
-  check_count_fits(path(), "triangles", this->triangles(), triangles.size(), most_triangles_);
+void WholeMeshSink::write_piece(const MeshPiece& piece) {
+  check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size());
+  check_count_fits(path(), "triangles", this->triangles(), piece.triangles.size(), most_triangles_);
   narrow_.clear();
-  for (const Triangle64& t : triangles) {
+  for (const Triangle64& t : piece.triangles) {
     narrow_.push_back(
         {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
   }
-  positions_.write(std::as_bytes(vertices));
+  positions_.write(std::as_bytes(piece.vertices));
   faces_.write(std::as_bytes(std::span(narrow_)));
-  if (normals_ != nullptr) normals_->write(std::as_bytes(normals));
+  if (normals_ != nullptr) normals_->write(std::as_bytes(piece.normals));
 }
 
 void WholeMeshSink::complete() {

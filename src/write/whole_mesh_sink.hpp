@@ -18,8 +18,7 @@ class WholeMeshSink : public MeshFileSink {
   void note(std::string line) { notes_.push_back(std::move(line)); }
 
  private:
-  void write_piece(std::span<const Point> vertices, std::span<const Point> normals,
-                   std::span<const Triangle64> triangles) final;
+  void write_piece(const MeshPiece& piece) final;
   void complete() final;
 
   std::uint64_t most_triangles_;

@@ -371,7 +371,7 @@ TEST_F(ComponentsAnd, NumbersOfTrianglesAreOfWhatIsKept) {
 TEST_F(ComponentsAnd, NormalsStayWithTheirVertices) {
   const Kept kept = keep(extract_all(scene_, true), rule_);
   MeshOptions options = scene_.options();
-  options.normals = true;
+  options.normals = Normals::kGradient;
   options.error = {0, true};
   TriangleMesh mesh;
   run(scene_, options, &mesh);
@@ -380,6 +380,27 @@ TEST_F(ComponentsAnd, NormalsStayWithTheirVertices) {
   for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
     ASSERT_EQ(mesh.normals[v], world.normal(kept.piece.normals[v])) << v;
   }
+}
+
+TEST_F(ComponentsAnd, ValuesStayWithTheirVertices) {
+  const Scene other = generated("white", scene_.surface.volume.dims);
+  MeshOptions options = scene_.options();
+  options.error = {0, true};
+  const auto run_with = [&](const ComponentChoice* components) {
+    const auto values = other.volume();
+    options.values = values.get();
+    options.components = components;
+    MemorySink sink;
+    mesh_volume(*scene_.volume(), sink, options);
+    return std::move(sink.mesh);
+  };
+  const TriangleMesh all = run_with(nullptr);
+  const ComponentChoice choice = choose(scene_, rule_);
+  const TriangleMesh kept = run_with(&choice);
+  ASSERT_EQ(kept.values.size(), kept.vertices.size());
+  std::map<Point, float> value_at;
+  for (std::size_t v = 0; v < all.vertices.size(); ++v) value_at[all.vertices[v]] = all.values[v];
+  for (std::size_t v = 0; v < kept.vertices.size(); ++v) ASSERT_EQ(kept.values[v], value_at.at(kept.vertices[v]));
 }
 
 TEST_F(ComponentsAnd, LevelsAreOfWhatIsKept) {

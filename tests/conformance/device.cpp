@@ -129,7 +129,7 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
     MeshOptions options;
     options.iso = suggested_iso(volume.kind, volume.type);
     options.inside_above = above;
-    options.normals = true;
+    options.normals = Normals::kGradient;
     options.error = {0.1, true};
     options.slab = 4;
     RunControl control;

@@ -9,12 +9,11 @@ namespace {
 using namespace isoweave;
 
 void check_file(const std::string& path) {
-  std::vector<float> quality;
-  const TriangleMesh mesh = read_mesh_with_quality(path, quality);
+  const TriangleMesh mesh = read_mesh(path);
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
     fuzz::broken_promise("one normal per vertex, or none");
   }
-  if (!quality.empty() && quality.size() != mesh.vertices.size()) {
+  if (!mesh.values.empty() && mesh.values.size() != mesh.vertices.size()) {
     fuzz::broken_promise("one number per vertex, or none");
   }
   check_mesh(mesh);

@@ -235,7 +235,7 @@ void put_meshes(Seeds& seeds) {
     const auto sink = open_mesh_file(folder / ("a." + name), {true, {"a comment"}});
     std::vector<std::array<std::uint64_t, 3>> triangles;
     for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-    sink->append(mesh.vertices, mesh.normals, triangles);
+    sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
     sink->finish();
     seeds.put(name, get(folder / ("a." + name)));
   }

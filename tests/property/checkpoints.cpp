@@ -65,7 +65,8 @@ class InterruptedRun {
     if (resume) checkpoint = read_checkpoint(state_folder());
     if (resume) control.resume = &checkpoint;
     const std::string mark = resume ? checkpoint.marks.at(0) : "";
-    const auto sink = open_mesh_file(mesh_path(), {options_.normals, {"a test"}, state_folder(), mark});
+    const auto sink =
+        open_mesh_file(mesh_path(), {options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark});
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
   }
 
@@ -100,7 +101,7 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
     for (const double error : {0.0, 0.4}) {
       SurfaceCase surface{{GetParam(), {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, closed, error};
       MeshOptions options = mesh_options(surface);
-      options.normals = error == 0;
+      options.normals = error == 0 ? Normals::kGradient : Normals::kAbsent;
       options.max_distance = {closed ? 0.3 : 0, true};
       const MeshReport whole = run_whole(surface, options);
       InterruptedRun run(surface, options);
@@ -138,7 +139,7 @@ TEST(Checkpoints, DroppedComponentsStayDropped) {
 TEST(Checkpoints, EveryFormatGoesOnToTheSameMesh) {
   const SurfaceCase surface{{"noise", {20, 20, 40}, SampleType::kUint8}, true, 0.3};
   MeshOptions options = mesh_options(surface);
-  options.normals = true;
+  options.normals = Normals::kGradient;
   const MeshReport whole = run_whole(surface, options);
   for (const char* name : meshes::kFileNames) {
     InterruptedRun run(surface, options, name);

@@ -249,7 +249,7 @@ TEST(Surface, NormalsPointOutwards) {
   volume.kind = "sphere";
   volume.dims = {40, 40, 40};
   MeshOptions options;
-  options.normals = true;
+  options.normals = Normals::kGradient;
   options.slab = 3;
   const Result result = run(volume, options);
   ASSERT_EQ(result.mesh.normals.size(), result.mesh.vertices.size());
@@ -269,7 +269,7 @@ TEST(Surface, NormalsDoNotChangeTheMesh) {
   volume.dims = {20, 22, 24};
   MeshOptions options;
   const Result without = run(volume, options);
-  options.normals = true;
+  options.normals = Normals::kGradient;
   EXPECT_EQ(run(volume, options).report.digest, without.report.digest);
 }
 

@@ -17,11 +17,10 @@ class SlowSink final : public MeshSink {
  public:
   explicit SlowSink(std::size_t failing = 1000) : failing_(failing) {}
 
-  void append(std::span<const Point> vertices, std::span<const Point>,
-              std::span<const std::array<std::uint64_t, 3>>) override {
+  void append(const MeshPiece& piece) override {
     std::this_thread::sleep_for(5ms);
     if (seen.size() == failing_) throw CannotWrite("full");
-    seen.push_back(vertices[0][0]);
+    seen.push_back(piece.vertices[0][0]);
   }
   void finish() override {}
 
@@ -39,7 +38,7 @@ TEST(OverlappedSink, HandsPiecesOnInOrderFromTwoBuffers) {
     for (std::size_t n = 0; n < 6; ++n) {
       Point& buffer = buffers[n % 2];
       buffer[0] = static_cast<float>(n);
-      sink.append({&buffer, 1}, {}, {});
+      sink.append({.vertices = {&buffer, 1}});
     }
     sink.wait();
     EXPECT_EQ(slow.seen, (std::vector<float>{0, 1, 2, 3, 4, 5}));
@@ -50,9 +49,9 @@ TEST(OverlappedSink, TellsAFailureAtTheNextCall) {
   SlowSink slow(1);
   OverlappedSink sink(slow, true);
   const Point point{};
-  sink.append({&point, 1}, {}, {});
-  sink.append({&point, 1}, {}, {});
-  EXPECT_THROW(sink.append({&point, 1}, {}, {}), CannotWrite);
+  sink.append({.vertices = {&point, 1}});
+  sink.append({.vertices = {&point, 1}});
+  EXPECT_THROW(sink.append({.vertices = {&point, 1}}), CannotWrite);
   EXPECT_THROW(sink.wait(), CannotWrite);
   EXPECT_EQ(slow.seen.size(), 1U);
 }
@@ -60,7 +59,7 @@ TEST(OverlappedSink, TellsAFailureAtTheNextCall) {
 TEST(OverlappedSink, EndsWithWhatItHasInHand) {
   SlowSink slow;
   const Point point{};
-  OverlappedSink(slow, true).append({&point, 1}, {}, {});
+  OverlappedSink(slow, true).append({.vertices = {&point, 1}});
   EXPECT_EQ(slow.seen.size(), 1U);
 }
 

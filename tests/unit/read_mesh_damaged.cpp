@@ -22,7 +22,7 @@ std::string written_by_us(const std::string& name) {
   const auto sink = open_mesh_file(folder / name, {.normals = true, .comments = {"sample"}});
   std::vector<std::array<std::uint64_t, 3>> triangles;
   for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-  sink->append(mesh.vertices, mesh.vertices, triangles);
+  sink->append({.vertices = mesh.vertices, .normals = mesh.vertices, .triangles = triangles});
   sink->finish();
   return files::read_bytes(folder / name);
 }

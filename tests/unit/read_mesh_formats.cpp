@@ -60,8 +60,12 @@ TriangleMesh write_and_read(const TriangleMesh& mesh, const std::string& name) {
   const std::span<const Point> vertices(mesh.vertices);
   const std::span<const Point> normals(mesh.normals);
   const std::size_t normal_cut = normals.empty() ? 0 : cut;
-  sink->append(vertices.first(cut), normals.first(normal_cut), std::span(triangles).first(1));
-  sink->append(vertices.subspan(cut), normals.subspan(normal_cut), std::span(triangles).subspan(1));
+  sink->append({.vertices = vertices.first(cut),
+                .normals = normals.first(normal_cut),
+                .triangles = std::span(triangles).first(1)});
+  sink->append({.vertices = vertices.subspan(cut),
+                .normals = normals.subspan(normal_cut),
+                .triangles = std::span(triangles).subspan(1)});
   sink->finish();
   return read_mesh(folder / name);
 }

@@ -291,20 +291,6 @@ TEST(RenderMesh, NumbersThatAreNotFiniteTakeTheColour) {
   EXPECT_EQ(render_mesh(square(1, 0), front(20, 20), std::vector<float>{none, none, none, none}).pixels, plain.pixels);
 }
 
-TEST(ReadMeshWithQuality, ReadsWhatWasWritten) {
-  const files::Folder folder;
-  const std::vector<float> quality{1.5F, -2, 0, std::numeric_limits<float>::infinity()};
-  write_ply_with_quality(folder / "a.ply", square(1, 0), quality);
-  std::vector<float> found{9};
-  EXPECT_EQ(read_mesh_with_quality(folder / "a.ply", found).vertices, square(1, 0).vertices);
-  ASSERT_EQ(found.size(), 4U);
-  EXPECT_TRUE(std::equal(found.begin(), found.begin() + 3, quality.begin()));
-  EXPECT_TRUE(std::isnan(found[3]));
-  files::write_bytes(folder / "b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(read_mesh_with_quality(folder / "b.obj", found).triangles.size(), 1U);
-  EXPECT_TRUE(found.empty());
-}
-
 TEST(RenderMesh, PicturesThatCannotBeWrittenLeaveNothing) {
   const files::Folder folder;
   const Picture picture = render_mesh(square(1, 0), front(8, 8));

@@ -200,7 +200,7 @@ TEST(AtomicFile, MeshWritersLeaveNothingWhenTheDiskIsFull) {
       EXPECT_THROW(
           {
             const auto sink = open_mesh_file(folder / name);
-            sink->append(mesh.vertices, {}, triangles);
+            sink->append({.vertices = mesh.vertices, .triangles = triangles});
             sink->finish();
           },
           CannotWrite)
@@ -214,7 +214,7 @@ TEST(AtomicFile, MeshWritersLeaveNothingWithoutFinish) {
   const files::Folder folder;
   for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.off", "a.glb", "a.vtp", "a.3mf", "a.precomputed"}) {
     const auto sink = open_mesh_file(folder / name);
-    sink->append(meshes::cube().vertices, {}, {});
+    sink->append({.vertices = meshes::cube().vertices});
   }
   EXPECT_TRUE(folder.entries().empty());
 }
@@ -226,7 +226,7 @@ TEST(AtomicFile, AMeshCannotBeFinishedAfterAFailedWrite) {
   const auto sink = open_mesh_file(folder / "a.ply");
   {
     const FileSizeLimit limit(1 << 10);
-    EXPECT_THROW(sink->append(mesh.vertices, {}, {}), CannotWrite);
+    EXPECT_THROW(sink->append({.vertices = mesh.vertices}), CannotWrite);
   }
   EXPECT_THROW(sink->finish(), std::logic_error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));

@@ -20,7 +20,8 @@ const std::vector<Triangle64> kOneTriangle{{0, 1, 2}};
 
 void write_one_triangle(const std::string& path, const MeshFileOptions& options = {}) {
   const auto sink = open_mesh_file(path, options);
-  sink->append(kCorners, options.normals ? kCorners : std::vector<Point>{}, kOneTriangle);
+  sink->append(
+      {.vertices = kCorners, .normals = options.normals ? kCorners : std::vector<Point>{}, .triangles = kOneTriangle});
   sink->finish();
 }
 
@@ -45,7 +46,7 @@ TEST(WriteMesh, PlyHeaderKeepsItsLengthAsCountsGrow) {
   const auto header_bytes = [&](std::uint32_t n) {
     const TriangleMesh mesh = meshes::grid(n);
     const auto sink = open_mesh_file(folder / "a.ply");
-    sink->append(mesh.vertices, {}, {});
+    sink->append({.vertices = mesh.vertices});
     sink->finish();
     return files::read_bytes(folder / "a.ply").find("end_header");
   };
@@ -68,7 +69,7 @@ TEST(WriteMesh, StlHasCountNormalAndCorners) {
 TEST(WriteMesh, StlNormalOfATriangleWithoutAreaIsZero) {
   const files::Folder folder;
   const auto sink = open_mesh_file(folder / "a.stl");
-  sink->append(kCorners, {}, std::vector<Triangle64>{{0, 1, 1}});
+  sink->append({.vertices = kCorners, .triangles = std::vector<Triangle64>{{0, 1, 1}}});
   sink->finish();
   EXPECT_EQ(files::read_bytes(folder / "a.stl").substr(84, 12), std::string(12, '\0'));
 }
@@ -76,7 +77,8 @@ TEST(WriteMesh, StlNormalOfATriangleWithoutAreaIsZero) {
 TEST(WriteMesh, ObjIsShortestText) {
   const files::Folder folder;
   const auto sink = open_mesh_file(folder / "a.obj", {.normals = false, .comments = {"hello"}});
-  sink->append(std::vector<Point>{{0.1F, -0.0F, 1}, {1, 0, 0}, {0, 1e-10F, 0}}, {}, kOneTriangle);
+  sink->append(
+      {.vertices = std::vector<Point>{{0.1F, -0.0F, 1}, {1, 0, 0}, {0, 1e-10F, 0}}, .triangles = kOneTriangle});
   sink->finish();
   EXPECT_EQ(files::read_bytes(folder / "a.obj"), "# hello\nv 0.1 -0 1\nv 1 0 0\nv 0 1e-10 0\nf 1 2 3\n");
 }
@@ -102,15 +104,16 @@ TEST(WriteMesh, BadArgumentsAreRefused) {
   for (const char* name : meshes::kFileNames) {
     const auto sink = open_mesh_file(folder / name);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_THROW(sink->append({}, {}, kOneTriangle), std::invalid_argument) << "no vertex yet";
-    EXPECT_THROW(sink->append(std::vector<Point>{{0, nan, 0}}, {}, {}), std::invalid_argument);
-    EXPECT_THROW(sink->append(kCorners, std::vector<Point>{{0, 0, 1}}, {}), std::invalid_argument);
-    sink->append(kCorners, {}, kOneTriangle);  // refused arguments wrote nothing, so the mesh can go on
+    EXPECT_THROW(sink->append({.triangles = kOneTriangle}), std::invalid_argument) << "no vertex yet";
+    EXPECT_THROW(sink->append({.vertices = std::vector<Point>{{0, nan, 0}}}), std::invalid_argument);
+    EXPECT_THROW(sink->append({.vertices = kCorners, .normals = std::vector<Point>{{0, 0, 1}}}), std::invalid_argument);
+    sink->append(
+        {.vertices = kCorners, .triangles = kOneTriangle});  // refused arguments wrote nothing, so the mesh can go on
     sink->finish();
-    EXPECT_THROW(sink->append(kCorners, {}, {}), std::logic_error) << "already finished";
+    EXPECT_THROW(sink->append({.vertices = kCorners}), std::logic_error) << "already finished";
   }
   const auto sink = open_mesh_file(folder / "n.ply", {.normals = true, .comments = {}});
-  EXPECT_THROW(sink->append(kCorners, {}, {}), std::invalid_argument) << "normals were promised";
+  EXPECT_THROW(sink->append({.vertices = kCorners}), std::invalid_argument) << "normals were promised";
 }
 
 TEST(WriteMesh, CountsThatDoNotFitAreErrors) {

@@ -38,7 +38,9 @@ MeshFileOptions full_options() {
 
 void write_one_triangle(const std::string& path, const MeshFileOptions& options = full_options()) {
   const auto sink = open_mesh_file(path, options);
-  sink->append(kCorners, options.normals ? std::vector<Point>(3) : std::vector<Point>{}, kOneTriangle);
+  sink->append({.vertices = kCorners,
+                .normals = options.normals ? std::vector<Point>(3) : std::vector<Point>{},
+                .triangles = kOneTriangle});
   sink->finish();
 }
 
@@ -139,8 +141,8 @@ TEST(WriteGlb, PlaceForTheSceneSufficesForLongNumbers) {
   const files::Folder folder;
   const auto sink = open_mesh_file(folder / "a.glb");
   const float tiny = -1.1754944e-38F;
-  sink->append(std::vector<Point>{{tiny, tiny, tiny}, {-3.4028235e38F, 1.1754944e-38F, 0.1F}}, {},
-               std::vector<Triangle64>(100000, {0, 1, 0}));
+  sink->append({.vertices = std::vector<Point>{{tiny, tiny, tiny}, {-3.4028235e38F, 1.1754944e-38F, 0.1F}},
+                .triangles = std::vector<Triangle64>(100000, {0, 1, 0})});
   sink->finish();
   EXPECT_EQ(read_mesh(folder / "a.glb").triangles.size(), 100000U);
 }
@@ -148,7 +150,7 @@ TEST(WriteGlb, PlaceForTheSceneSufficesForLongNumbers) {
 TEST(WriteGlb, PointsAloneArePoints) {
   const files::Folder folder;
   const auto sink = open_mesh_file(folder / "a.glb");
-  sink->append(kCorners, {}, {});
+  sink->append({.vertices = kCorners});
   sink->finish();
   const Json scene = glb_scene(files::read_bytes(folder / "a.glb"));
   EXPECT_EQ(scene["meshes"][0]["primitives"][0]["mode"], 0);
@@ -226,7 +228,7 @@ TEST(Write3mf, ManyBlocksAreOneStream) {
   std::vector<Triangle64> triangles;
   for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
   const auto sink = open_mesh_file(folder / "a.3mf");
-  sink->append(mesh.vertices, {}, triangles);
+  sink->append({.vertices = mesh.vertices, .triangles = triangles});
   sink->finish();
   EXPECT_GT(model_of(folder / "a.3mf").size(), std::size_t{2} << 20);
   EXPECT_EQ(check_mesh(read_mesh(folder / "a.3mf")).digest, check_mesh(mesh).digest);
@@ -362,7 +364,7 @@ TEST(MeshStream, GivesTheBytesOfTheFile) {
     write_one_triangle(folder / ("a." + format));
     Pipe pipe;
     const auto sink = open_mesh_stream(pipe.writer(), "a pipe", format, full_options());
-    sink->append(kCorners, {}, kOneTriangle);
+    sink->append({.vertices = kCorners, .triangles = kOneTriangle});
     sink->finish();
     EXPECT_EQ(pipe.read(), files::read_bytes(folder / ("a." + format)));
   }

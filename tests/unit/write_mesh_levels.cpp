@@ -40,8 +40,8 @@ void append(MeshSink& sink, const TriangleMesh& mesh, std::size_t first, std::si
     const auto& [a, b, c] = mesh.triangles[n];
     triangles.push_back({a, b, c});
   }
-  if (first > 0) return sink.append({}, {}, triangles);
-  sink.append(mesh.vertices, mesh.normals, triangles);
+  if (first > 0) return sink.append({.triangles = triangles});
+  sink.append({mesh.vertices, mesh.normals, {}, triangles});
 }
 
 struct Glb {

@@ -25,13 +25,15 @@ class Pieces {
   }
 
   void first(MeshSink& sink) const {
-    sink.append(std::span(mesh_.vertices).first(400), std::span(normals_).first(400), {});
-    sink.append(std::span(mesh_.vertices).subspan(400, 200), std::span(normals_).subspan(400, 200),
-                std::span(triangles_).first(900));
+    sink.append({.vertices = std::span(mesh_.vertices).first(400), .normals = std::span(normals_).first(400)});
+    sink.append({.vertices = std::span(mesh_.vertices).subspan(400, 200),
+                 .normals = std::span(normals_).subspan(400, 200),
+                 .triangles = std::span(triangles_).first(900)});
   }
   void second(MeshSink& sink) const {
-    sink.append(std::span(mesh_.vertices).subspan(600), std::span(normals_).subspan(600),
-                std::span(triangles_).subspan(900));
+    sink.append({.vertices = std::span(mesh_.vertices).subspan(600),
+                 .normals = std::span(normals_).subspan(600),
+                 .triangles = std::span(triangles_).subspan(900)});
   }
 
  private:

@@ -44,7 +44,7 @@ std::vector<std::string> write(const std::string& path, const TriangleMesh& mesh
   std::vector<Triangle64> triangles;
   for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
   const auto sink = open_mesh_file(path, options);
-  sink->append(mesh.vertices, mesh.normals, triangles);
+  sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
   sink->finish();
   return sink->notes();
 }
@@ -169,7 +169,7 @@ TEST(WritePackedGlb, LevelsAreMeshesInStepsOfTheirOwn) {
   for (const std::size_t level : {1U, 0U}) {
     std::vector<Triangle64> triangles;
     for (const auto& t : levels[level].triangles) triangles.push_back({t[0], t[1], t[2]});
-    sinks[level]->append(levels[level].vertices, {}, triangles);
+    sinks[level]->append({levels[level].vertices, {}, {}, triangles});
     sinks[level]->finish();
   }
   const std::string bytes = files::read_bytes(folder / "a.glb");
@@ -267,7 +267,7 @@ TEST(WritePackedPrecomputed, LevelsAreFragmentsInCellsTwiceAsWide) {
       const TriangleMesh mesh = level == 0 ? fine : level == 1 ? coarse : TriangleMesh{};
       std::vector<Triangle64> triangles;
       for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-      sinks[level]->append(mesh.vertices, {}, triangles);
+      sinks[level]->append({mesh.vertices, {}, {}, triangles});
       EXPECT_TRUE(folder.entries().empty());
       sinks[level]->finish();
     }
