@@ -60,6 +60,22 @@ class MemorySink final : public MeshSink {
   bool finished = false;
 };
 
+// Of what rides on the vertices, in any order of vertices.
+inline std::uint64_t riders_digest(const TriangleMesh& mesh) {
+  std::uint64_t sum = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    std::uint64_t bits = 0;
+    const auto add = [&](float number) { bits = mix_bits(bits + std::bit_cast<std::uint32_t>(number)); };
+    for (const float number : mesh.vertices[v]) add(number);
+    if (!mesh.normals.empty()) {
+      for (const float number : mesh.normals[v]) add(number);
+    }
+    if (!mesh.values.empty()) add(mesh.values[v]);
+    sum += bits;
+  }
+  return sum;
+}
+
 struct SurfaceCase {
   GenerateOptions volume;
   bool closed = true;
@@ -67,6 +83,7 @@ struct SurfaceCase {
   Quality quality = Quality::kNormal;
   bool drop_specks = false;
   double max_distance = 0;  // mean voxels
+  bool normals_count = false;
 
   IsoRule rule() const { return {suggested_iso(volume.kind, volume.type), true, closed}; }
   double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
@@ -75,8 +92,13 @@ struct SurfaceCase {
     const Lattice lattice{volume.dims};
     const double a0 = voxel() * voxel();
     const auto& [x, y, z] = volume.spacing;
-    return {{lattice.row(), lattice.plane()}, a0,       retire_cost(error * voxel(), a0), drop_specks,
-            max_distance * voxel(),           {x, y, z}};
+    return {{lattice.row(), lattice.plane()},
+            a0,
+            retire_cost(error * voxel(), a0),
+            drop_specks,
+            max_distance * voxel(),
+            {x, y, z},
+            normals_count};
   }
 };
 
@@ -90,7 +112,7 @@ template <class Decide>
 SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& executor, Simplifier& simplifier,
                  Decide&& decide) {
   const auto source = generate_volume(surface.volume);
-  MarchingCubes extractor(source->info(), {surface.rule(), false}, executor);
+  MarchingCubes extractor(source->info(), {surface.rule(), surface.normals_count}, executor);
   SliceWindow window(*source);
   MemorySink sink;
   const World world;

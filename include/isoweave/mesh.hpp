@@ -17,7 +17,7 @@ using Point = std::array<float, 3>;
 struct TriangleMesh {
   std::vector<Point> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
-  std::vector<Point> normals;                           // one per vertex, or none
+  std::vector<Point> normals{};                         // one per vertex, or none
   std::vector<float> values{};                          // one per vertex, or none; not finite: unknown
 };
 

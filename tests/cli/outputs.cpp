@@ -248,6 +248,63 @@ TEST(CliLevels, WrongUseIsRefused) {
   expect_failure(folder, mesh({"-o", "a.ply", "--lods", "0.1,0.2", "--report", "a_lod0.ply"}), 2, "a_lod0.ply");
 }
 
+TEST(CliValues, AreInTheFileAndColourAPicture) {
+  const files::Folder folder;
+  const std::string other = "generate:noise:24x24x24:uint8";
+  const auto report = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> options{"--color-by", other, "--report", "r.json"};
+    options.insert(options.end(), more.begin(), more.end());
+    const Result result = run(folder.path(), mesh(options));
+    EXPECT_EQ(result.code, 0) << result.err;
+    return Json::parse(files::read_bytes(folder / "r.json"));
+  };
+  EXPECT_EQ(report({"-o", "a.ply"})["color_by"], other);
+  const std::string ply = files::read_bytes(folder / "a.ply");
+  EXPECT_NE(ply.find("property float quality"), std::string::npos);
+  EXPECT_EQ(report({"-o", "a.vtp"})["color_by"], other);
+  EXPECT_NE(files::read_bytes(folder / "a.vtp").find("Scalars=\"value\""), std::string::npos);
+  EXPECT_EQ(report({"-o", "part.ply", "--roi", "0:12,:,:"})["input"]["dims"], Json({12, 24, 24}));
+#ifdef ISOWEAVE_HAS_PNG
+  const Result picture =
+      run(folder.path(), {"render", "a.ply", "-o", "a.png", "--color-by", "quality", "--size", "9x9"});
+  EXPECT_EQ(picture.code, 0);
+  EXPECT_NE(picture.err.find("colours from"), std::string::npos) << picture.err;
+#endif
+  // A run that can be resumed opens the volume anew.
+  ASSERT_EQ(run(folder.path(), {"generate", "noise", "-o", "n.mha", "--size", "24"}).code, 0);
+  const auto resumable = mesh({"-o", "b.ply", "--color-by", "n.mha", "--checkpoint", "run", "--every", "4layers"});
+  EXPECT_EQ(run(folder.path(), resumable).code, 0);
+  EXPECT_NE(files::read_bytes(folder / "b.ply").find("property float quality"), std::string::npos);
+}
+
+TEST(CliValues, WrongUseIsRefused) {
+  const files::Folder folder;
+  const std::string other = "generate:noise:24x24x24:uint8";
+  expect_failure(folder, mesh({"-o", "a.stl", "--color-by", other}), 4,
+                 "a.stl: expected a name that ends in .ply or .vtp");
+  expect_failure(folder, mesh({"-o", "a.ply", "--color-by", "generate:noise:24x24x25:uint8"}), 3,
+                 "expected 24 x 24 x 24 samples");
+  expect_failure(folder, mesh({"-o", "a.ply", "--color-by", "missing.nii"}), 3, "missing.nii");
+  expect_failure(folder, mesh({"--to-stdout", "stl", "--color-by", other}), 4,
+                 "expected a name that ends in .ply or .vtp");
+}
+
+TEST(CliNormals, AreKeptWhereTheyCount) {
+  const files::Folder folder;
+  std::vector<Json> reports;
+  for (const char* normals : {"none", "gradient", "quadric"}) {
+    ASSERT_EQ(run(folder.path(), mesh({"-o", "a.ply", "--normals", normals, "--report", "r.json"})).code, 0);
+    reports.push_back(Json::parse(files::read_bytes(folder / "r.json")));
+    EXPECT_EQ(reports.back()["normals"], normals);
+    const bool has_normals = files::read_bytes(folder / "a.ply").find("property float nx") != std::string::npos;
+    EXPECT_EQ(has_normals, normals != std::string("none"));
+  }
+  EXPECT_EQ(reports[0]["digest"], reports[1]["digest"]);
+  EXPECT_NE(reports[0]["digest"], reports[2]["digest"]);
+  const Result other = run(folder.path(), mesh({"-o", "b.ply", "--normals", "sobel"}));
+  program::expect_failed(other, 2, "expected one of none, gradient, quadric");
+}
+
 TEST(CliDistance, IsGuaranteedAndIsTheErrorWhereNoneIsGiven) {
   constexpr const char* kSmall = "generate:gyroid:12x12x12:uint8";
   const files::Folder folder;

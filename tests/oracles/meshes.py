@@ -185,6 +185,14 @@ class Checks:
         assert [fields.GetAbstractArray(n).GetValue(0) for n in ("SPACE", "UNIT")] == ["LPS", "mm"]
         normals = vtk_to_numpy(data.GetPointData().GetNormals())
         assert np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5)
+        self.write("v.vtp", "--color-by", self.path("volume.nrrd"))
+        data = with_vtk(vtkXMLPolyDataReader(), self.path("v.vtp"))
+        self.same("v.vtp by VTK", of_poly_data(data))
+        values = vtk_to_numpy(data.GetPointData().GetScalars())
+        assert data.GetPointData().GetScalars().GetName() == "value"
+        assert abs(values.mean() - 127.5) < 3, f"the volume's own values on its surface: {values.mean()}"
+        self.write("v.ply", "--color-by", self.path("volume.nrrd"))
+        self.same("v.ply by VTK", of_poly_data(with_vtk(vtkPLYReader(), self.path("v.ply"))))
         self.write("a.off")
         self.same("a.off by NumPy", read_off(self.path("a.off")))
         self.write("a.3mf")

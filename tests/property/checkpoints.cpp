@@ -27,6 +27,13 @@ MeshReport run_whole(const SurfaceCase& surface, const MeshOptions& options) {
   return mesh_volume(*generate_volume(surface.volume), sink, options);
 }
 
+GenerateOptions values_beside(const SurfaceCase& surface) {
+  GenerateOptions values = surface.volume;
+  values.kind = "noise";
+  values.seed = 77;
+  return values;
+}
+
 // A run that stops after a number of slabs, and goes on as often as it takes; each part has a schedule, a number of
 // threads and a slab of its own.
 class InterruptedRun {
@@ -54,6 +61,7 @@ class InterruptedRun {
   }
 
   int interruptions = 0;
+  bool with_values = false;
 
  private:
   MeshReport run_part(RunControl control, bool resume, int slabs) {
@@ -65,8 +73,11 @@ class InterruptedRun {
     if (resume) checkpoint = read_checkpoint(state_folder());
     if (resume) control.resume = &checkpoint;
     const std::string mark = resume ? checkpoint.marks.at(0) : "";
-    const auto sink =
-        open_mesh_file(mesh_path(), {options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark});
+    MeshFileOptions file{options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark};
+    file.values = with_values;
+    const auto sink = open_mesh_file(mesh_path(), file);
+    const auto values = generate_volume(values_beside(surface_));
+    options_.values = with_values ? values.get() : nullptr;
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
   }
 
@@ -101,7 +112,7 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
     for (const double error : {0.0, 0.4}) {
       SurfaceCase surface{{GetParam(), {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, closed, error};
       MeshOptions options = mesh_options(surface);
-      options.normals = error == 0 ? Normals::kGradient : Normals::kAbsent;
+      options.normals = error == 0 ? Normals::kGradient : closed ? Normals::kQuadric : Normals::kAbsent;
       options.max_distance = {closed ? 0.3 : 0, true};
       const MeshReport whole = run_whole(surface, options);
       InterruptedRun run(surface, options);
@@ -147,6 +158,25 @@ TEST(Checkpoints, EveryFormatGoesOnToTheSameMesh) {
     EXPECT_GE(run.interruptions, 5) << name;
     EXPECT_TRUE(std::filesystem::is_empty(run.state_folder())) << name;
     EXPECT_EQ(check_mesh(read_mesh(run.mesh_path())).digest, whole.digest) << name;
+  }
+}
+
+TEST(Checkpoints, WhatRidesOnVerticesGoesOn) {
+  const SurfaceCase surface{{"noise", {20, 20, 40}, SampleType::kUint8}, true, 0.5};
+  for (const Normals normals : {Normals::kGradient, Normals::kQuadric}) {
+    MeshOptions options = mesh_options(surface);
+    options.normals = normals;
+    const auto values = generate_volume(values_beside(surface));
+    options.values = values.get();
+    testing::MemorySink whole;
+    mesh_volume(*generate_volume(surface.volume), whole, options);
+    InterruptedRun run(surface, options);
+    run.with_values = true;
+    run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, 5);
+    const TriangleMesh mesh = read_mesh(run.mesh_path());
+    ASSERT_EQ(mesh.values.size(), mesh.vertices.size());
+    EXPECT_EQ(testing::riders_digest(mesh), testing::riders_digest(whole.mesh));
   }
 }
 

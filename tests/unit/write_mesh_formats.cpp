@@ -195,6 +195,68 @@ TEST(WriteVtp, OffsetsLeadToTheArrays) {
   EXPECT_TRUE(bytes.ends_with("</AppendedData>\n</VTKFile>"));
 }
 
+TEST(WriteVtp, ValuesStandBehindNormals) {
+  const files::Folder folder;
+  for (const bool normals : {false, true}) {
+    MeshFileOptions options = full_options();
+    options.normals = normals;
+    options.values = true;
+    TriangleMesh mesh{kCorners, {{0, 1, 2}}};
+    if (normals) mesh.normals = kCorners;
+    mesh.values = {1.5F, -2, std::numeric_limits<float>::quiet_NaN()};
+    write_mesh(folder / "a.vtp", mesh, options);
+    const std::string bytes = files::read_bytes(folder / "a.vtp");
+    EXPECT_NE(
+        bytes.find(normals ? "<PointData Normals=\"Normals\" Scalars=\"value\">" : "<PointData Scalars=\"value\">"),
+        std::string::npos);
+    const std::size_t at = bytes.find("offset=\"", bytes.find("Name=\"value\"")) + 8;
+    const std::size_t array = bytes.find("\n_") + 2 + std::stoul(bytes.substr(at, bytes.find('"', at) - at));
+    EXPECT_EQ(word_at(bytes, array), 12U);
+    EXPECT_EQ(float_at(bytes, array + 8), 1.5F);
+    EXPECT_EQ(float_at(bytes, array + 12), -2.0F);
+    EXPECT_EQ(read_mesh(folder / "a.vtp").triangles.size(), 1U);
+    EXPECT_EQ(mesh_file_bytes("a.vtp", 3, 1, options), normals ? 116U : 80U);
+  }
+}
+
+TEST(WritePly, ValuesAreItsQuality) {
+  const files::Folder folder;
+  TriangleMesh mesh{kCorners, {{0, 1, 2}}};
+  mesh.values = {1.5F, -2, std::numeric_limits<float>::infinity()};
+  MeshFileOptions options;
+  write_mesh(folder / "a.ply", mesh, options);
+  EXPECT_TRUE(read_mesh(folder / "a.ply").values.empty()) << "they were not asked for";
+  options.values = true;
+  for (const bool normals : {false, true}) {
+    options.normals = normals;
+    if (normals) mesh.normals = kCorners;
+    write_mesh(folder / "a.ply", mesh, options);
+    const TriangleMesh back = read_mesh(folder / "a.ply");
+    EXPECT_EQ(back.vertices, mesh.vertices);
+    EXPECT_EQ(back.triangles, mesh.triangles);
+    EXPECT_EQ(back.normals, mesh.normals);
+    ASSERT_EQ(back.values.size(), 3U);
+    EXPECT_EQ(back.values[0], 1.5F);
+    EXPECT_EQ(back.values[1], -2.0F);
+    EXPECT_TRUE(std::isnan(back.values[2]));
+  }
+  mesh.values.pop_back();
+  EXPECT_THROW(write_mesh(folder / "b.ply", mesh, options), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
+}
+
+TEST(WriteMesh, ValuesNeedAFormatWithAPlaceForThem) {
+  const files::Folder folder;
+  MeshFileOptions options;
+  options.values = true;
+  for (const char* name : {"a.stl", "a.obj", "a.off", "a.glb", "a.3mf", "a.precomputed"}) {
+    EXPECT_THROW(open_mesh_file(folder / name, options), CannotWrite) << name;
+    EXPECT_THROW(mesh_file_bytes(name, 1, 1, options), CannotWrite) << name;
+  }
+  EXPECT_THROW(open_mesh_stream(1, "out", "stl", options), std::invalid_argument);
+  EXPECT_TRUE(folder.entries().empty());
+}
+
 std::string model_of(const std::string& path) {
   mesh_io::MeshInput input(path);
   mesh_io::ZipText text(input, ".model");

@@ -20,25 +20,33 @@ namespace {
 class Pieces {
  public:
   Pieces() {
-    for (const Point& p : mesh_.vertices) normals_.push_back({std::sin(p[0]), std::cos(p[0]), 0});
+    for (const Point& p : mesh_.vertices) {
+      normals_.push_back({std::sin(p[0]), std::cos(p[0]), 0});
+      values_.push_back(p[0] - p[1]);
+    }
     for (const auto& t : mesh_.triangles) triangles_.push_back({t[0], t[1], t[2]});
   }
 
   void first(MeshSink& sink) const {
-    sink.append({.vertices = std::span(mesh_.vertices).first(400), .normals = std::span(normals_).first(400)});
+    sink.append({.vertices = std::span(mesh_.vertices).first(400),
+                 .normals = std::span(normals_).first(400),
+                 .values = std::span(values_).first(400)});
     sink.append({.vertices = std::span(mesh_.vertices).subspan(400, 200),
                  .normals = std::span(normals_).subspan(400, 200),
+                 .values = std::span(values_).subspan(400, 200),
                  .triangles = std::span(triangles_).first(900)});
   }
   void second(MeshSink& sink) const {
     sink.append({.vertices = std::span(mesh_.vertices).subspan(600),
                  .normals = std::span(normals_).subspan(600),
+                 .values = std::span(values_).subspan(600),
                  .triangles = std::span(triangles_).subspan(900)});
   }
 
  private:
   TriangleMesh mesh_ = meshes::grid(30);
   std::vector<Point> normals_;
+  std::vector<float> values_;
   std::vector<Triangle64> triangles_;
 };
 
@@ -53,9 +61,10 @@ std::string all_bytes(const std::string& path) {
   return bytes;
 }
 
-MeshFileOptions options_for(const files::Folder& parts, bool compress) {
+MeshFileOptions options_for(const files::Folder& parts, const std::string& name, bool compress) {
   MeshFileOptions options;
   options.normals = true;
+  options.values = name == "a.ply" || name == "a.vtp";
   options.comments = {"a test"};
   options.unit = "mm";
   options.parts = parts.path();
@@ -66,7 +75,7 @@ MeshFileOptions options_for(const files::Folder& parts, bool compress) {
 void expect_same_file(const std::string& name, bool compress) {
   const Pieces pieces;
   const files::Folder whole, cut, parts;
-  MeshFileOptions options = options_for(parts, compress);
+  MeshFileOptions options = options_for(parts, name, compress);
   options.parts.clear();
   {
     const auto sink = open_mesh_file(whole / name, options);
@@ -74,7 +83,7 @@ void expect_same_file(const std::string& name, bool compress) {
     pieces.second(*sink);
     sink->finish();
   }
-  options = options_for(parts, compress);
+  options = options_for(parts, name, compress);
   {
     const auto sink = open_mesh_file(cut / name, options);
     pieces.first(*sink);
