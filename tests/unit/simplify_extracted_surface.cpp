@@ -4,6 +4,7 @@
 #include <random>
 
 #include "measure/triangle_tree.hpp"
+#include "sanitized.hpp"
 #include "simplify/extracted_surface.hpp"
 
 namespace isoweave {
@@ -96,7 +97,7 @@ TEST(ExtractedSurface, SaysWhatDistancesSay) {
     Random random(2);
     int within = 0;
     int beyond = 0;
-    for (int trial = 0; trial < 400; ++trial) {
+    for (int trial = 0; trial < (testing::kSanitized ? 60 : 200); ++trial) {
       const Corners triangle = random_triangle(random);
       const double distance = farthest(triangles, triangle);
       const Reach found = reach(surface, triangle);
