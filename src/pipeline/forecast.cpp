@@ -201,7 +201,7 @@ class Forecaster {
   MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
     MeshOptions options = options_;
     options.closed = false;
-    options.normals = Normals::kAbsent;
+    if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
     options.values = nullptr;
     options.levels.clear();
     options.components = nullptr;

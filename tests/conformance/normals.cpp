@@ -44,6 +44,29 @@ TEST_P(NormalsThatCount, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
   }
 }
 
+// Before anything is decided.
+TEST_P(NormalsThatCount, KeysAreCostsOfPlaceAndNormal) {
+  const SurfaceCase surface = this->surface();
+  const Executor executor(1);
+  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
+  std::size_t keys = 0;
+  sweep(surface, kWholeVolume, executor, simplifier, [&] {
+    const Zone& zone = simplifier.zone();
+    for (Index h = 0; h < 4 * zone.triangle_count(); ++h) {
+      if ((h & 3) == 3 || !zone.represents_edge(h)) continue;
+      const auto [first, second] = ends_in_order(zone, zone.origin(h), zone.destination(h));
+      const auto normal_of = [&](const Vertex* v) {
+        return zone.normal_quadrics[static_cast<std::size_t>(v - zone.vertices.data())];
+      };
+      const double cost = collapse_cost(first->quadric, normal_of(first), second->quadric, normal_of(second),
+                                        second->position - first->position);
+      ASSERT_EQ(zone.cost(h), to_cost(cost));
+      ++keys;
+    }
+  });
+  EXPECT_GT(keys, 100U);
+}
+
 TEST_P(NormalsThatCount, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
   SurfaceCase surface = this->surface();
   surface.volume.dims = {10, 12, 11};
