@@ -498,7 +498,8 @@ TEST(ComponentsOfMeshes, AreKeptInTheirOrder) {
     mesh.triangles.assign(piece.triangles.begin(), piece.triangles.end());
     return mesh;
   };
-  for (const ComponentRule& rule : {ComponentRule{9, false}, ComponentRule{0, true}, ComponentRule{100000, false}}) {
+  for (const ComponentRule& rule :
+       {ComponentRule{}, ComponentRule{9, false}, ComponentRule{0, true}, ComponentRule{100000, false}}) {
     const Kept kept = keep(all, rule);
     const TriangleMesh expected = mesh_of(kept.piece);
     TriangleMesh mesh = mesh_of(all);
