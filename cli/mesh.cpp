@@ -185,7 +185,8 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
 
 Normals parse_normals(std::string_view text) {
   return parse_choice<Normals>(
-      "--normals", text, {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
+      "--normals", text,
+      {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
 }
 
 // The volume whose values the vertices get, with what was chosen of the first one; or none.
