@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -124,5 +125,47 @@ std::unique_ptr<SliceSource> crop_volume(std::unique_ptr<SliceSource> volume, co
 // of 8- and 16-bit integers and of float32 are float32, others float64: they are not rounded. For values, not for
 // labels. Holds one slice of sums and one of the volume. Throws std::invalid_argument for a step below 1.
 std::unique_ptr<SliceSource> downsample_volume(std::unique_ptr<SliceSource> volume, std::int64_t step);
+
+inline constexpr int kUsualSmoothing = 4;  // passes; docs/labels.md has the measurements
+inline constexpr int kMostSmoothing = 64;
+
+struct SmoothOptions {
+  double iso = 0.5;          // a value: slope and intercept of the volume are accounted for
+  bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
+  int passes = kUsualSmoothing;
+};
+
+// A mask without its staircase: a float32 volume, above 0 inside and below 0 outside, whose surface at iso 0 has the
+// topology of the mask's and crosses the same edges of the lattice, each at another place. So no vertex is moved by
+// more than half the distance between two samples, and not by less where that makes the surface smooth (after Whitaker,
+// "Reducing aliasing artifacts in iso-surfaces of binary volumes", 2000). In each pass the field f, +1 and -1 at first,
+// becomes 2 B f - B B f, where B takes means of 3 x 3 x 3 samples with the weights 1-2-1 along each axis, and is then
+// clamped to its side, 1/256 or more from 0. Going back what a second blur goes forth keeps round and thin things from
+// shrinking (after Taubin, "A signal processing approach to fair surface design", 1995). Samples beyond the border are
+// as those at the border. The spacing plays no part. Memory: 24 bytes per pass and one slice's samples, but only for
+// rows of samples near the surface. Reads ahead by 2 slices per pass; the same samples for any reads and number of
+// threads (0: one per processor). Throws std::invalid_argument for an iso that is not finite and for passes outside 1
+// to kMostSmoothing.
+std::unique_ptr<SliceSource> smooth_mask(std::unique_ptr<SliceSource> volume, const SmoothOptions& options = {},
+                                         int threads = 0);
+
+// One label of a label map as a mask: uint8, 1 where the sample is the label and 0 elsewhere, to be meshed at iso 0.5.
+// Throws BadInput when the samples are not integers or are scaled (slope and intercept other than 1 and 0).
+std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, std::int64_t label);
+
+// What is known of a label after a look at the volume.
+struct LabelExtent {
+  std::int64_t label = 0;
+  std::uint64_t samples = 0;
+  Region box;  // the smallest that holds them; empty where there are none
+};
+
+inline constexpr std::size_t kMostLabels = 4096;
+
+// Where labels lie in a label map: the `wanted` ones in their order, also those that do not occur, or, where none are
+// named, all that do, ascending, but 0, which is background. Reads the volume once. Throws what label_volume throws;
+// BadInput when all labels are more than kMostLabels; Interrupted when `stop` is set.
+std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const std::int64_t> wanted = {},
+                                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace isoweave
