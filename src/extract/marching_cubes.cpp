@@ -62,7 +62,9 @@ void scan_one(std::uint32_t& count, std::uint64_t& sum) {
 }  // namespace
 
 MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor)
-    : lattice_{volume.dims},
+    : dims_(volume.dims),
+      lattice_{options.part_of.value_or(PartOfLattice{volume.dims, {}}).dims},
+      first_(options.part_of.value_or(PartOfLattice{}).first),
       type_(volume.type),
       spacing_(volume.geometry.spacing),
       options_(options),
@@ -116,7 +118,7 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
   next_layer_ += static_cast<std::int64_t>(count);
   std::swap(slices_.front(), slices_[count]);
   list_front(piece);
-  if (layers_left() > 0) piece.complete_below = static_cast<double>(next_layer_) * spacing_[2];
+  if (layers_left() > 0) piece.complete_below = static_cast<double>(first_[2] + next_layer_) * spacing_[2];
   return static_cast<std::int64_t>(count);
 }
 
@@ -124,12 +126,12 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
 void MarchingCubes::classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const {
   const auto bits = std::span(slice.inside).subspan(row * words_, words_);
   const std::int64_t j = static_cast<std::int64_t>(row) - 1;
-  if (k < 0 || k >= lattice_.dims[2] || j < 0 || j >= lattice_.dims[1]) {
+  if (k < 0 || k >= dims_[2] || j < 0 || j >= dims_[1]) {
     std::fill(bits.begin(), bits.end(), 0);
     return;
   }
-  const std::size_t row_bytes = static_cast<std::size_t>(lattice_.dims[0]) * sample_bytes(type_);
-  classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, lattice_.dims[0], options_.rule, bits);
+  const std::size_t row_bytes = static_cast<std::size_t>(dims_[0]) * sample_bytes(type_);
+  classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, dims_[0], options_.rule, bits);
 }
 
 // Crossing bits of one row of layer n of the slab and of the slice above it; returns how many there are.
@@ -139,8 +141,8 @@ std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
   const std::int64_t j = static_cast<std::int64_t>(row) - 1;
   const bool closed = options_.rule.closed;
-  const bool has_y = row + 1 < rows_ && (closed || (j >= 0 && j + 1 < lattice_.dims[1]));
-  const bool has_z = closed || (k >= 0 && k + 1 < lattice_.dims[2]);
+  const bool has_y = row + 1 < rows_ && (closed || (j >= 0 && j + 1 < dims_[1]));
+  const bool has_z = closed || (k >= 0 && k + 1 < dims_[2]);
   std::uint32_t count = 0;
   for (std::size_t w = 0; w < words_; ++w) {
     const std::uint64_t bits = slice.inside[begin + w];
@@ -156,8 +158,8 @@ std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
 // Crossings in the faces of an open volume: each is the end of two open edges, and has one to its name.
 std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row) const {
   const auto is_end = [](std::int64_t at, std::int64_t size) { return at == 0 || at == size - 1; };
-  const bool end_slice = is_end(next_layer_ + static_cast<std::int64_t>(n) + 1, lattice_.dims[2]);
-  const bool end_row = is_end(static_cast<std::int64_t>(row) - 1, lattice_.dims[1]);
+  const bool end_slice = is_end(next_layer_ + static_cast<std::int64_t>(n) + 1, dims_[2]);
+  const bool end_row = is_end(static_cast<std::int64_t>(row) - 1, dims_[1]);
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
   std::uint32_t count = 0;
   for (std::size_t w = 0; w < words_; ++w) {
@@ -267,9 +269,9 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
                               std::uint64_t crossings, std::uint64_t inside, std::uint32_t number,
                               SurfacePiece& piece) const {
   if (crossings == 0) return;
-  const auto j = static_cast<double>(edges.j);
-  const auto k = static_cast<double>(edges.k);
-  const std::uint64_t first_id = lattice_.edge_id(-1, edges.j, edges.k, Axis);
+  const auto j = static_cast<double>(first_[1] + edges.j);
+  const auto k = static_cast<double>(first_[2] + edges.k);
+  const std::uint64_t first_id = lattice_.edge_id(first_[0] - 1, first_[1] + edges.j, first_[2] + edges.k, Axis);
   Vec3* position = piece.positions.data() + (number - front_size_);
   std::uint64_t* id = piece.ids.data() + (number - front_size_);
   for_each_bit(crossings, w, [&](std::int64_t bit) {
@@ -278,7 +280,8 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
     const double f1 = edges.high[Axis == 0 ? i + 1 : i];
     const bool low_inside = (inside >> (bit & 63) & 1) != 0;
     const double t = crossing_parameter(f0, f1, options_.rule.iso, low_inside);
-    const double x = Axis == 0 ? static_cast<double>(i) + t : static_cast<double>(i);
+    const auto low = static_cast<double>(first_[0] + i);
+    const double x = Axis == 0 ? low + t : low;
     *position++ = {x * spacing_[0], (Axis == 1 ? j + t : j) * spacing_[1], (Axis == 2 ? k + t : k) * spacing_[2]};
     *id++ = first_id + 3 * static_cast<std::uint64_t>(bit);
     if (options_.normals) {
@@ -291,7 +294,7 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
 bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {
   if (row + 1 >= rows_) return false;
   const std::int64_t j = static_cast<std::int64_t>(row) - 1;
-  return options_.rule.closed || (k >= 0 && k + 1 < lattice_.dims[2] && j >= 0 && j + 1 < lattice_.dims[1]);
+  return options_.rule.closed || (k >= 0 && k + 1 < dims_[2] && j >= 0 && j + 1 < dims_[1]);
 }
 
 // Calls visit(bit, case) for every cell of a cell row that the surface crosses, and enter_word(w) before the first of a

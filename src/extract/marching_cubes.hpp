@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ namespace isoweave {
 struct ExtractOptions {
   IsoRule rule;
   bool normals = false;  // from central differences of the samples; needs one slice more on either side
+  // Where a volume is a part of another one: its vertices have the places and ids that they have in the whole. Beside a
+  // border inside the whole there is nothing, so no sample there may be inside.
+  std::optional<PartOfLattice> part_of{};
 };
 
 class MarchingCubes {
@@ -103,7 +107,9 @@ class MarchingCubes {
   void for_active_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const;
   CellWord cell_word(std::size_t n, std::size_t row, std::size_t w) const;
 
-  Lattice lattice_;
+  std::array<std::int64_t, 3> dims_;
+  Lattice lattice_;                    // of the whole
+  std::array<std::int64_t, 3> first_;  // sample in it
   SampleType type_;
   std::array<double, 3> spacing_;
   ExtractOptions options_;

@@ -49,4 +49,10 @@ struct Lattice {
   static bool fits(const std::array<std::int64_t, 3>& dims);
 };
 
+// Where a box of samples lies in a lattice.
+struct PartOfLattice {
+  std::array<std::int64_t, 3> dims{0, 0, 0};   // of the whole
+  std::array<std::int64_t, 3> first{0, 0, 0};  // sample of it
+};
+
 }  // namespace isoweave

@@ -11,8 +11,9 @@ constexpr std::size_t kRunBytes = std::size_t{8} << 20;
 
 }  // namespace
 
-SliceWindow::SliceWindow(SliceSource& source, std::int64_t first)
+SliceWindow::SliceWindow(SliceSource& source, std::int64_t first, Reading reading)
     : source_(source),
+      how_(reading),
       slice_bytes_(source.info().slice_bytes()),
       slices_(source.info().dims[2]),
       base_(std::clamp<std::int64_t>(first, 0, slices_)),
@@ -33,12 +34,13 @@ SliceWindow::~SliceWindow() {
 std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int64_t ahead) {
   std::unique_lock lock(mutex_);
   const std::int64_t new_end = std::clamp(end, end_, slices_);
-  const std::int64_t last = std::clamp(new_end + ahead, new_end, slices_);
+  const std::int64_t last = how_ == Reading::kAhead ? std::clamp(new_end + ahead, new_end, slices_) : new_end;
   first_ = std::clamp(first, first_, end_);
   if (last - first_ > room_ || buffer_.empty()) make_room(std::max<std::int64_t>(last - first_, 1), lock);
   needed_ = new_end;
   wanted_ = last;
-  if (!reader_.joinable() && filled_ < wanted_) reader_ = std::thread([this] { read_on(); });
+  while (how_ == Reading::kInPlace && can_read()) read_run(lock);
+  if (!reader_.joinable() && filled_ < wanted_ && !failure_) reader_ = std::thread([this] { read_on(); });
   changed_.notify_all();
   changed_.wait(lock, [&] { return filled_ >= new_end || failure_; });
   if (filled_ < new_end) std::rethrow_exception(failure_);

@@ -17,8 +17,10 @@ namespace isoweave {
 // a ring. Memory: bytes().
 class SliceWindow {
  public:
+  enum class Reading : std::uint8_t { kAhead, kInPlace };  // by a thread of its own; by advance(), and nothing ahead
+
   // The source is read from slice `first` on.
-  explicit SliceWindow(SliceSource& source, std::int64_t first = 0);
+  explicit SliceWindow(SliceSource& source, std::int64_t first = 0, Reading reading = Reading::kAhead);
   ~SliceWindow();
   SliceWindow(const SliceWindow&) = delete;
   SliceWindow& operator=(const SliceWindow&) = delete;
@@ -47,6 +49,7 @@ class SliceWindow {
   void read_run(std::unique_lock<std::mutex>& lock);
 
   SliceSource& source_;
+  Reading how_;
   std::size_t slice_bytes_;
   std::int64_t slices_;  // of the volume
 
