@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -97,7 +98,10 @@ struct MeshOptions {
   double iso = 0;            // a value: slope and intercept of the volume are accounted for
   bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
   bool closed = true;        // caps at the volume's border; else the surface ends there
-  Length error{0.2, true};   // root of the largest quadric error of a collapse; 0: no simplification
+  // Passes of smooth_mask: the surface of a mask, a label map say, without its staircase. 0: the surface of the
+  // samples. No vertex leaves its edge of the lattice; min, max and nan of the report are those of the samples.
+  int smooth = 0;
+  Length error{0.2, true};  // root of the largest quadric error of a collapse; 0: no simplification
   // No point of the result is farther than this from the extracted surface; 0: no such guarantee. The other way round
   // nothing is promised. Costs time, and memory for the extracted surface around what is undecided.
   Length max_distance{};
@@ -201,6 +205,38 @@ MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& o
 // The same with levels: a sink for each, in their order, and the last one for the mesh with the largest error.
 MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
                        const RunControl& control = {});
+
+// A label of a label map, and where its mesh goes.
+struct LabelSink {
+  std::int64_t label = 0;
+  MeshSink* sink = nullptr;
+  std::optional<Region> box{};  // that holds every sample of the label, as find_labels tells; none: the whole volume
+};
+
+struct LabelsReport {
+  MeshReport total;                // sums over all labels; warnings are those of the volume
+  std::vector<MeshReport> labels;  // one each, in their order; without threads, range, peak_bytes and sweep
+};
+
+// Meshes labels of a label map in one sweep, each into a sink of its own: bit for bit the mesh that mesh_volume makes
+// of label_volume(label) at iso 0.5 with the same options. Every slice of the volume is read once, whatever the number
+// of labels, and no label costs more than its box. A label that does not occur gives an empty mesh and a warning in its
+// report. Surfaces of neighbouring labels are simplified each for itself: they do not share vertices, and may cross or
+// leave gaps, within the error. iso and inside_above of the options play no part.
+//
+// Labels are worked on side by side, those with large boxes one after the other by all threads, so sinks of different
+// labels are called at the same time. None is finished before the sweep over all of them is done.
+//
+// Memory: two slabs of the volume's slices and 2 more, with `smooth` 2 for each pass besides, and for each label whose
+// box the sweep is in a slab and 2 slices more (4 with normals) of its box, one byte per sample, its undecided zone,
+// and with `smooth` instead of a byte 4, and 24 more per pass for one slice's rows near the surface. Without
+// MeshOptions::slab, slabs are as thick as keeps the slices of all boxes within 64 MB, one layer at least.
+//
+// Throws what mesh_volume throws, BadInput for a volume that label_volume refuses, and std::invalid_argument for a box
+// that is not within the volume and for what takes one surface: a number of triangles, levels, components that are
+// dropped, values of another volume, a device, an observer, a memory cap, checkpoints.
+LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
+                         const RunControl& control = {});
 
 // Triangles of the full surface, without components that are not kept, in a pass over the volume that keeps nothing.
 // Throws what mesh_volume throws.

@@ -141,6 +141,7 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
        << ", quality " << static_cast<int>(options.quality) << ", space " << static_cast<int>(options.space)
        << normals_text(options.normals) << (options.values != nullptr ? ", values" : "")
        << (options.drop_specks ? ", no specks" : "");
+  if (options.smooth > 0) text << ", smooth " << options.smooth;
   if (options.max_distance.value > 0) {
     text << ", distance" << numbers_text(std::array{options.max_distance.value})
          << (options.max_distance.voxels ? " voxels" : "");
@@ -151,6 +152,11 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options) {
   }
   identity.options = text.str();
   return identity;
+}
+
+void require_unchanged(const VolumeInfo& volume, const MeshOptions& options, const RunIdentity& before) {
+  if (identity_of(volume, options).volume == before.volume) return;
+  throw BadInput(volume.path + ": expected a file that stays as it is while it is read, found it changed");
 }
 
 Checkpoint read_checkpoint(const std::string& folder) {

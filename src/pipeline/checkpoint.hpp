@@ -21,6 +21,10 @@ std::string surface_text(const VolumeInfo& volume, const MeshOptions& options);
 
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options);
 
+// What was read of a file that somebody wrote meanwhile may be of two volumes: throws BadInput when the volume is not
+// as it was when the run began.
+void require_unchanged(const VolumeInfo& volume, const MeshOptions& options, const RunIdentity& before);
+
 // Opens a saved state behind its header. Throws BadInput when it was saved by another version or in a run with another
 // identity.
 StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity);

@@ -9,6 +9,7 @@
 #include "parallel/parallel.hpp"
 #include "pipeline/forecast_tile.hpp"
 #include "pipeline/slab_plan.hpp"
+#include "pipeline/surface_field.hpp"
 #include "pipeline/sweep.hpp"
 #include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
@@ -309,8 +310,9 @@ class Forecaster {
 
   // Goes through the slabs of a run.
   double peak(const Profiles& profiles, std::int64_t asked) const {
-    const MemoryModel model{resident_,
-                            info_.slice_bytes(),
+    const VolumeInfo field = SurfaceField::info_of(info_, options_);
+    const MemoryModel model{resident_ + SurfaceField::memory(info_, options_),
+                            field.slice_bytes(),
                             static_cast<std::uint64_t>(info_.slice_samples()),
                             Executor(control_.threads).threads(),
                             error_ > 0,
@@ -328,9 +330,9 @@ class Forecaster {
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       // What is read and classified was planned before it turned out how full it is.
-      const std::int64_t planned = std::min(next_slab(info_, goal, asked, recent, per_layer), info_.dims[2] - done);
+      const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
       const auto ahead =
-          static_cast<double>(std::min(slices_ahead(info_, goal, planned), info_.dims[2] - done - planned));
+          static_cast<double>(std::min(slices_ahead(field, goal, planned), info_.dims[2] - done - planned));
       ring = std::max(ring,
                       MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals != Normals::kAbsent));
       recent = planned;

@@ -82,4 +82,22 @@ void HostSlabs::finish(MeshReport& report) const {
   if (target_) report_target(*target_, options_.triangles, options_.voxel, report);
 }
 
+HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, const MeshOptions& options,
+                                const RunControl& control) {
+  const double voxel = mean_voxel(volume.geometry);
+  const std::vector<double> levels =
+      level_errors(options.levels, length_in(volume, options.error), voxel, options.triangles);
+  HostSlabs::Options host;
+  host.extract = {rule, options.normals != Normals::kAbsent};
+  host.simplify = {zone_options(volume, options), options.quality, control.schedule,
+                   level_costs(levels, voxel * voxel)};
+  host.simplifies = simplifies(volume, options);
+  host.triangles = options.triangles;
+  host.voxel = voxel;
+  host.components = options.components;
+  host.measure = control.measure;
+  host.observer = control.observer;
+  return host;
+}
+
 }  // namespace isoweave

@@ -74,4 +74,8 @@ class HostSlabs final : public SlabEngine {
   SurfacePiece piece_;
 };
 
+// How the surface of a field is extracted and simplified; `volume` is the whole that the options speak of.
+HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, const MeshOptions& options,
+                                const RunControl& control);
+
 }  // namespace isoweave

@@ -13,6 +13,7 @@
 #include "pipeline/device_slabs.hpp"
 #include "pipeline/host_slabs.hpp"
 #include "pipeline/slab_plan.hpp"
+#include "pipeline/surface_field.hpp"
 #include "pipeline/sweep.hpp"
 #include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
@@ -31,20 +32,21 @@ class VolumeSweep {
   // finder: gets the surface, if it is not null, instead of the sinks.
   VolumeSweep(SliceSource& source, std::span<MeshSink* const> sinks, const MeshOptions& options,
               const RunControl& control, ComponentFinder* finder = nullptr)
-      : volume_(checked(source.info())),
+      : volume_(checked_volume(source.info())),
         options_(options),
         control_(control),
         executor_(control.threads),
+        field_(source, options, executor_, control.measure),
         voxel_(mean_voxel(volume_.geometry)),
         world_(volume_.geometry, options.space),
-        simplifies_(options.error.value > 0 || !has_cells()),
+        simplifies_(simplifies(volume_, options)),
         level_errors_(level_errors(options.levels, error(), voxel_, options.triangles)),
         sinks_(sinks.begin(), sinks.end()),
         engine_(make_engine(finder)),
         layers_(engine_->layers_left()) {
     if (saves()) folder_.emplace(control.checkpoint.folder);
     if (control.resume != nullptr) load_state();
-    window_.emplace(source, engine_->slices_for(1).first);
+    window_.emplace(field_.source(), engine_->slices_for(1).first);
     if (options.values != nullptr) values_window_.emplace(*options.values, engine_->slices_for(1).first);
   }
 
@@ -59,7 +61,7 @@ class VolumeSweep {
       if (state_is_due()) save_state();
     }
     finish_report();
-    check_unchanged();
+    require_unchanged(volume_, options_, identity_);
     Stopwatch finishing;
     engine_->wait_for_sink();
     for (MeshSink* sink : sinks_) sink->finish();
@@ -90,52 +92,26 @@ class VolumeSweep {
                                " by its spacing, origin or axes; sample by sample it is taken for the same place");
   }
 
-  static const VolumeInfo& checked(const VolumeInfo& volume) {
-    if (!Lattice::fits(volume.dims)) {
-      throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + std::to_string(volume.dims[0]) +
-                     " x " + std::to_string(volume.dims[1]) + " x " + std::to_string(volume.dims[2]));
-    }
-    return volume;
-  }
-
   bool normals() const { return options_.normals != Normals::kAbsent; }
 
-  double error() const { return options_.error.value * (options_.error.voxels ? voxel_ : 1); }
-
-  ZoneOptions zone_options() const {
-    const Lattice lattice{volume_.dims};
-    const double a0 = voxel_ * voxel_;
-    return {{lattice.row(), lattice.plane()},
-            a0,
-            retire_cost(error(), a0, options_.triangles),
-            options_.drop_specks,
-            most_distance(options_.max_distance, voxel_),
-            {volume_.geometry.spacing[0], volume_.geometry.spacing[1], volume_.geometry.spacing[2]},
-            options_.normals == Normals::kQuadric};
-  }
+  double error() const { return length_in(volume_, options_.error); }
 
   std::unique_ptr<SlabEngine> make_engine(ComponentFinder* finder) const {
     check_sinks(sinks_.size(), level_errors_.size());
     check_components();
-    const IsoRule rule = stored_rule(volume_, options_);
-    if (finder != nullptr) return std::make_unique<ComponentSlabs>(volume_, rule, *finder, executor_);
+    if (finder != nullptr) {
+      return std::make_unique<ComponentSlabs>(field_.info(), field_.rule(), *finder, executor_);
+    }
     if (control_.device == Device::kCuda) {
       check_device_options();
-      return std::make_unique<DeviceSlabs>(
-          make_cuda_engine({volume_, rule, normals(), zone_options(), options_.quality}), normals(), world_,
-          *sinks_.back(), executor_, control_.measure);
+      return std::make_unique<DeviceSlabs>(make_cuda_engine({field_.info(), field_.rule(), normals(),
+                                                             zone_options(volume_, options_), options_.quality}),
+                                           normals(), world_, *sinks_.back(), executor_, control_.measure);
     }
-    HostSlabs::Options host;
-    host.extract = {rule, normals()};
-    host.simplify = {zone_options(), options_.quality, control_.schedule, level_costs(level_errors_, voxel_ * voxel_)};
-    host.simplifies = simplifies_;
-    host.triangles = options_.triangles;
-    host.voxel = voxel_;
-    host.components = options_.components;
-    host.measure = control_.measure;
-    host.observer = control_.observer;
+    const HostSlabs::Options host = host_options(volume_, field_.rule(), options_, control_);
     // A zone that has been left in the middle cannot be saved.
-    return std::make_unique<HostSlabs>(volume_, host, world_, sinks_, executor_, saves() ? nullptr : control_.stop);
+    return std::make_unique<HostSlabs>(field_.info(), host, world_, sinks_, executor_,
+                                       saves() ? nullptr : control_.stop);
   }
 
   void check_components() const {
@@ -171,14 +147,8 @@ class VolumeSweep {
     report_.error = error();
     report_.levels.resize(level_errors_.size());
     for (std::size_t n = 0; n < level_errors_.size(); ++n) report_.levels[n].error = level_errors_[n];
-    const bool turned = options_.space == OutputSpace::kLps || options_.space == OutputSpace::kRas;
-    if (turned && volume_.geometry.space == Space::kUnknown) {
-      report_.warnings.push_back(volume_.path + ": the file does not say which space it is in; coordinates are kept");
-    }
+    warn_of_space(volume_, options_, report_);
   }
-
-  // An open volume of one sample along an axis has crossings and no triangles.
-  bool has_cells() const { return options_.closed || std::ranges::min(volume_.dims) > 1; }
 
   // What the next slab may be: layers, going by the one before and by the memory there is, slices to be read ahead, and
   // vertices that it may turn out to hold.
@@ -193,9 +163,9 @@ class VolumeSweep {
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
     const SlabGoal& goal = slab_goal(simplifies_, report_.device == Device::kCuda);
     SlabPlan plan;
-    plan.layers =
-        std::min(isoweave::next_slab(volume_, goal, options_.slab, recent_layers_, per_layer), engine_->layers_left());
-    plan.ahead = slices_ahead(volume_, goal, plan.layers);
+    plan.layers = std::min(isoweave::next_slab(field_.info(), goal, options_.slab, recent_layers_, per_layer),
+                           engine_->layers_left());
+    plan.ahead = slices_ahead(field_.info(), goal, plan.layers);
     plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : goal.most_vertices;
     plan.most_vertices = std::min(plan.most_vertices, engine_->room_for_vertices(control_.memory));
     if (control_.memory > 0) fit_into_cap(plan, per_layer);
@@ -204,8 +174,8 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{resident_ + engine_->other_bytes(),
-                            volume_.slice_bytes(),
+    const MemoryModel model{resident_ + SurfaceField::memory(volume_, options_) + engine_->other_bytes(),
+                            field_.info().slice_bytes(),
                             static_cast<std::uint64_t>(volume_.slice_samples()),
                             executor_.threads(),
                             simplifies_,
@@ -298,8 +268,10 @@ class VolumeSweep {
   void measure_samples(std::int64_t slices) {
     std::vector<SampleRange> ranges(static_cast<std::size_t>(slices));
     executor_.for_each(slices, 1, [&](std::int64_t n) {
+      const std::int64_t k = window_->end() - slices + n;
+      const SampleRange* const known = field_.range(k);
       ranges[static_cast<std::size_t>(n)] =
-          sample_range(window_->slice(window_->end() - slices + n), volume_.type, volume_.slice_samples());
+          known != nullptr ? *known : sample_range(window_->slice(k), volume_.type, volume_.slice_samples());
     });
     for (const SampleRange& range : ranges) range_.merge(range);
   }
@@ -337,12 +309,6 @@ class VolumeSweep {
     const bool same = report_.triangles_dropped == choice.triangles_dropped &&
                       report_.triangles_extracted == choice.triangles + choice.triangles_dropped;
     if (!same) refuse_components(volume_.path);
-  }
-
-  // What was read of a file that somebody wrote meanwhile may be of two volumes.
-  void check_unchanged() const {
-    if (identity_of(volume_, options_).volume == identity_.volume) return;
-    throw BadInput(volume_.path + ": expected a file that stays as it is while it is read, found it changed");
   }
 
   bool saves() const { return !control_.checkpoint.folder.empty(); }
@@ -410,7 +376,7 @@ class VolumeSweep {
   std::optional<std::uint32_t> crc_of_next_slice() const {
     const std::int64_t k = std::max<std::int64_t>(engine_->slices_for(1).first, 0);
     if (!window_ || k >= window_->end()) return std::nullopt;
-    return add_to_crc(0, {window_->slice(k), volume_.slice_bytes()});
+    return add_to_crc(0, {window_->slice(k), field_.info().slice_bytes()});
   }
 
   // The slice where the sweep was cut off must be the same as then.
@@ -428,6 +394,7 @@ class VolumeSweep {
   const RunIdentity identity_ = identity_of(volume_, options_);  // when the run begins: a file may change meanwhile
   const std::uint64_t resident_ = resident_process_bytes();
   const Executor executor_;
+  SurfaceField field_;
   double voxel_;  // mean side of a voxel
   World world_;
   bool simplifies_;
@@ -487,6 +454,7 @@ std::uint64_t count_triangles(SliceSource& volume, const MeshOptions& options, c
   full.levels.clear();
   full.normals = Normals::kAbsent;
   full.values = nullptr;
+  full.smooth = 0;  // it has as many
   RunControl counting = control;
   counting.measure = false;
   counting.checkpoint = {};

@@ -3,12 +3,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <string>
 
 #include "isoweave/error.hpp"
+#include "slab/lattice.hpp"
 
 namespace isoweave {
 
@@ -42,6 +44,36 @@ double mean_voxel(const Geometry& geometry) {
   return cube_root(geometry.spacing[0] * geometry.spacing[1] * geometry.spacing[2]);
 }
 
+double length_in(const VolumeInfo& volume, const Length& length) {
+  return length.value * (length.voxels ? mean_voxel(volume.geometry) : 1);
+}
+
+const VolumeInfo& checked_volume(const VolumeInfo& volume) {
+  if (!Lattice::fits(volume.dims)) {
+    throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + std::to_string(volume.dims[0]) + " x " +
+                   std::to_string(volume.dims[1]) + " x " + std::to_string(volume.dims[2]));
+  }
+  return volume;
+}
+
+bool simplifies(const VolumeInfo& volume, const MeshOptions& options) {
+  const bool has_cells = options.closed || std::ranges::min(volume.dims) > 1;
+  return options.error.value > 0 || !has_cells;
+}
+
+ZoneOptions zone_options(const VolumeInfo& volume, const MeshOptions& options) {
+  const Lattice lattice{volume.dims};
+  const double voxel = mean_voxel(volume.geometry);
+  const double a0 = voxel * voxel;
+  return {{lattice.row(), lattice.plane()},
+          a0,
+          retire_cost(length_in(volume, options.error), a0, options.triangles),
+          options.drop_specks,
+          most_distance(options.max_distance, voxel),
+          {volume.geometry.spacing[0], volume.geometry.spacing[1], volume.geometry.spacing[2]},
+          options.normals == Normals::kQuadric};
+}
+
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
   if (!std::isfinite(options.iso)) throw std::invalid_argument("iso: expected a finite number");
   IsoRule rule;
@@ -67,6 +99,12 @@ void report_target(const CountTarget& target, std::uint64_t asked, double unit, 
   if (met) return;
   report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " + std::to_string(asked) +
                             " were asked for: no other collapse keeps the topology and the sides of faces");
+}
+
+void warn_of_space(const VolumeInfo& volume, const MeshOptions& options, MeshReport& report) {
+  const bool turned = options.space == OutputSpace::kLps || options.space == OutputSpace::kRas;
+  if (!turned || volume.geometry.space != Space::kUnknown) return;
+  report.warnings.push_back(volume.path + ": the file does not say which space it is in; coordinates are kept");
 }
 
 VertexExtras vertex_extras(const MeshOptions& options) {

@@ -40,6 +40,12 @@ double cube_root(double x);
 // Mean side of a voxel.
 double mean_voxel(const Geometry& geometry);
 
+// A length of the options in the volume's unit.
+double length_in(const VolumeInfo& volume, const Length& length);
+
+// Throws BadInput when a volume has more samples than can be numbered.
+const VolumeInfo& checked_volume(const VolumeInfo& volume);
+
 // The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument
 // for an iso-value that is not finite.
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
@@ -47,6 +53,16 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
 // The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN,
 // and for an infinite one where no number of triangles stops the run.
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
+
+// Whether the surface goes through the simplifier. An open volume of one sample along an axis has crossings and no
+// triangles, which only the simplifier can stand.
+bool simplifies(const VolumeInfo& volume, const MeshOptions& options);
+
+// What the simplifier has to know of a volume and of the error asked for.
+ZoneOptions zone_options(const VolumeInfo& volume, const MeshOptions& options);
+
+// A warning when coordinates cannot be turned into the space that is asked for.
+void warn_of_space(const VolumeInfo& volume, const MeshOptions& options, MeshReport& report);
 
 void check_stop(const RunControl& control);
 

@@ -129,6 +129,21 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Resumed, ::testing::Values("noise", "gyroid", "box", "specks", "white"));
 
+// What is smoothed is read again where the run goes on, and some slices below.
+TEST(Checkpoints, ASmoothedMaskGoesOnToTheSameMesh) {
+  for (const int passes : {1, 6}) {
+    const SurfaceCase surface{{"noise", {20, 20, 40}, SampleType::kUint8}, true, 0.3};
+    MeshOptions options = mesh_options(surface);
+    options.smooth = passes;
+    InterruptedRun run(surface, options);
+    const MeshReport resumed = run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, 5);
+    expect_same_result(resumed, run_whole(surface, options));
+    options.smooth = 0;
+    EXPECT_NE(resumed.digest, run_whole(surface, options).digest);
+  }
+}
+
 TEST(Checkpoints, DroppedComponentsStayDropped) {
   for (const double error : {0.0, 0.4}) {
     const SurfaceCase surface{{"noise", {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, false, error};

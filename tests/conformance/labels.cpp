@@ -1,0 +1,235 @@
+// The meshes of the labels of a map out of one sweep are those of a run on each label's mask.
+#include <gtest/gtest.h>
+
+#include "label_maps.hpp"
+#include "surfaces.hpp"
+
+namespace isoweave::testing {
+namespace {
+
+constexpr std::array<std::int64_t, 3> kDims{18, 15, 18};
+constexpr std::array<std::int64_t, 6> kLabels{1, 2, 7, 300, 9, 44};  // the last one does not occur
+
+std::unique_ptr<LabelMap> make_map() {
+  auto map = std::make_unique<LabelMap>(kDims, touching_blobs(kDims));
+  map->info().geometry.spacing = {0.7, 0.9, 1.6};
+  map->info().geometry.origin = {-3, 40, 1000};
+  map->info().geometry.direction = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  return map;
+}
+
+struct LabelRun {
+  std::vector<TriangleMesh> meshes;
+  std::vector<MeshReport> reports;
+  MeshReport total;
+};
+
+LabelRun run_labels(const MeshOptions& options, const RunControl& control, bool boxes) {
+  std::vector<MemorySink> sinks(kLabels.size());
+  std::vector<LabelSink> labels;
+  const std::vector<LabelExtent> extents = find_labels(*make_map(), kLabels);
+  for (std::size_t n = 0; n < kLabels.size(); ++n) {
+    labels.push_back({kLabels[n], &sinks[n], boxes ? std::optional(extents[n].box) : std::nullopt});
+  }
+  const auto map = make_map();
+  LabelsReport report = mesh_labels(*map, labels, options, control);
+  EXPECT_EQ(map->slices_read, kDims[2]);
+  LabelRun run{{}, std::move(report.labels), std::move(report.total)};
+  for (MemorySink& sink : sinks) {
+    EXPECT_TRUE(sink.finished);
+    run.meshes.push_back(std::move(sink.mesh));
+  }
+  return run;
+}
+
+LabelRun run_each(MeshOptions options) {
+  options.iso = 0.5;
+  LabelRun run;
+  for (const std::int64_t label : kLabels) {
+    MemorySink sink;
+    run.reports.push_back(mesh_volume(*label_volume(make_map(), label), sink, options));
+    run.meshes.push_back(std::move(sink.mesh));
+  }
+  return run;
+}
+
+// Places and normals, in an order of their own.
+std::vector<std::array<float, 6>> sorted_vertices(const TriangleMesh& mesh) {
+  std::vector<std::array<float, 6>> list;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Point& p = mesh.vertices[v];
+    const Point n = mesh.normals.empty() ? Point{} : mesh.normals[v];
+    list.push_back({p[0], p[1], p[2], n[0], n[1], n[2]});
+  }
+  std::ranges::sort(list);
+  return list;
+}
+
+void expect_same(const LabelRun& found, const LabelRun& expected) {
+  std::uint64_t triangles = 0;
+  for (std::size_t n = 0; n < kLabels.size(); ++n) {
+    SCOPED_TRACE(::testing::Message() << "label " << kLabels[n]);
+    const MeshReport& a = found.reports[n];
+    const MeshReport& b = expected.reports[n];
+    triangles += b.triangles;
+    EXPECT_EQ(a.error, b.error);
+    EXPECT_EQ(a.triangles_extracted, b.triangles_extracted);
+    EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
+    EXPECT_EQ(a.cells_crossed, b.cells_crossed);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.vertices, b.vertices);
+    EXPECT_EQ(a.collapses, b.collapses);
+    EXPECT_EQ(a.open_edges, b.open_edges);
+    EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
+    EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
+    EXPECT_EQ(a.components, b.components);
+    EXPECT_EQ(a.euler, b.euler);
+    EXPECT_EQ(digest_text(a.digest), digest_text(b.digest));
+    EXPECT_EQ(a.warnings.empty(), kLabels[n] != 44);
+    EXPECT_EQ(check_mesh(found.meshes[n]).digest, b.digest);
+    EXPECT_EQ(sorted_vertices(found.meshes[n]), sorted_vertices(expected.meshes[n]));
+  }
+  EXPECT_EQ(found.total.triangles, triangles);
+  EXPECT_EQ(found.total.sweep.back().final_triangles, triangles);
+}
+
+struct LabelCase {
+  const char* name;
+  bool closed;
+  int smooth;
+  double error;
+};
+
+class LabelSweeps : public ::testing::TestWithParam<LabelCase> {};
+
+TEST_P(LabelSweeps, GiveTheMeshesOfRunsOnTheMasks) {
+  MeshOptions options;
+  options.closed = GetParam().closed;
+  options.smooth = GetParam().smooth;
+  options.error = {GetParam().error, true};
+  options.normals = options.closed ? Normals::kGradient : Normals::kQuadric;
+  options.quality = options.closed ? Quality::kNormal : Quality::kFine;
+  options.drop_specks = !options.closed;
+  const LabelRun expected = run_each(options);
+  ASSERT_GT(expected.reports[0].triangles, 100U);
+  for (const std::int64_t slab : {1, 3, 0, 1000}) {
+    if (kSanitized && slab != 3) continue;
+    options.slab = slab;
+    for (const bool boxes : {true, false}) {
+      const auto same = [&](Schedule schedule, int threads) {
+        SCOPED_TRACE(::testing::Message() << "slab " << slab << ", boxes " << boxes << ", schedule "
+                                          << static_cast<int>(schedule) << ", threads " << threads);
+        RunControl control;
+        control.schedule = schedule;
+        control.threads = threads;
+        expect_same(run_labels(options, control, boxes), expected);
+      };
+      same(Schedule::kLocal, 4);
+      boxes ? same(Schedule::kQueue, 1) : same(Schedule::kRounds, 2);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, LabelSweeps,
+                         ::testing::Values(LabelCase{"Closed", true, 0, 0.2}, LabelCase{"Open", false, 0, 0.2},
+                                           LabelCase{"Full", true, 0, 0}, LabelCase{"SmoothClosed", true, 3, 0.2},
+                                           LabelCase{"SmoothOpen", false, 2, 0.2}, LabelCase{"SmoothFull", true, 1, 0}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(LabelSweepOptions, WithADistanceTheyAreTheSameToo) {
+  MeshOptions options;
+  options.smooth = 2;
+  options.error = {0.5, true};
+  options.max_distance = {0.3, true};
+  options.space = OutputSpace::kIndex;
+  const LabelRun expected = run_each(options);
+  options.slab = 4;
+  expect_same(run_labels(options, {}, true), expected);
+}
+
+TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
+  MemorySink sink;
+  const LabelSink labels[] = {{1, &sink, {}}};
+  const auto refused = [&](const MeshOptions& options, const RunControl& control) {
+    EXPECT_THROW(mesh_labels(*make_map(), labels, options, control), std::invalid_argument);
+    EXPECT_FALSE(sink.finished);
+  };
+  MeshOptions options;
+  options.triangles = 100;
+  refused(options, {});
+  options = {};
+  options.levels = {{0.1, true}};
+  refused(options, {});
+  options = {};
+  options.error = {-1, true};
+  refused(options, {});
+  options = {};
+  options.smooth = -1;
+  refused(options, {});
+  options.smooth = kMostSmoothing + 1;
+  refused(options, {});
+  RunControl control;
+  control.memory = 1'000'000'000;
+  refused({}, control);
+  control = {};
+  control.device = Device::kCuda;
+  refused({}, control);
+  control = {};
+  control.checkpoint.folder = "/tmp";
+  refused({}, control);
+  const LabelSink outside[] = {{1, &sink, Region{{0, 0, 0}, {19, 15, 18}}}};
+  EXPECT_THROW(mesh_labels(*make_map(), outside, {}), std::invalid_argument);
+  const auto scaled = make_map();
+  scaled->info().slope = 2;
+  EXPECT_THROW(mesh_labels(*scaled, labels, {}), BadInput);
+}
+
+// What goes wrong in one label ends the run, and no label is finished.
+class FailingSink final : public MeshSink {
+ public:
+  void append(const MeshPiece& piece) override {
+    if (!piece.triangles.empty()) throw CannotWrite("full");
+  }
+  void finish() override {}
+};
+
+TEST(LabelSweepOptions, AnErrorInOneLabelEndsAll) {
+  for (const int threads : {1, 4}) {
+    for (const bool large : {true, false}) {
+      MemorySink sinks[3];
+      FailingSink failing;
+      std::vector<LabelSink> labels{{1, &sinks[0], {}}, {2, &failing, {}}, {300, &sinks[1], {}}, {7, &sinks[2], {}}};
+      if (!large) labels.insert(labels.end(), 3, labels[3]);
+      RunControl control;
+      control.threads = threads;
+      MeshOptions options;
+      options.error = {0, true};
+      options.slab = 2;
+      EXPECT_THROW(mesh_labels(*make_map(), labels, options, control), CannotWrite);
+      for (const MemorySink& sink : sinks) EXPECT_FALSE(sink.finished);
+    }
+  }
+}
+
+TEST(LabelSweepOptions, StopsWhenAsked) {
+  MemorySink sink;
+  const LabelSink labels[] = {{1, &sink, {}}};
+  std::atomic<bool> stop = false;
+  RunControl control;
+  control.stop = &stop;
+  MeshOptions options;
+  options.slab = 2;
+  std::int64_t last = 0;
+  control.progress = [&](const Progress& progress) {
+    EXPECT_EQ(progress.layers, kDims[2]);
+    EXPECT_GT(progress.layer, last);
+    last = progress.layer;
+    stop = progress.layer >= 6;
+  };
+  EXPECT_THROW(mesh_labels(*make_map(), labels, options, control), Interrupted);
+  EXPECT_EQ(last, 6);
+  EXPECT_FALSE(sink.finished);
+}
+
+}  // namespace
+}  // namespace isoweave::testing
