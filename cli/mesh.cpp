@@ -12,6 +12,7 @@
 #include "components.hpp"
 #include "evidence.hpp"
 #include "isoweave/error.hpp"
+#include "labels.hpp"
 #include "lods.hpp"
 #include "memory_sink.hpp"
 #include "mesh_output.hpp"
@@ -40,6 +41,7 @@ Examples:
   isoweave mesh brain.nii.gz -o brain.ply --iso 40 --lods 0.1vox,0.3vox,1vox
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
   isoweave mesh ct.nii.gz -o bone.ply --iso 300 --watch
+  isoweave mesh segmentation.nii.gz -o seg.ply --labels all --smooth
 
 Without --error, --lods, --max-distance, --triangles and --ratio the error is 0.2vox. The result does not depend on
 --threads, --schedule and --slab.)";
@@ -55,8 +57,8 @@ struct MeshArguments {
   PageOptions page;
   WatchOptions watch;
   std::string iso, quality = "normal", slab, inside = "above", normals = "none";
-  std::string color_by, space, memory, checkpoint, every, resume;
-  bool open = false, closed = false, dry_run = false;
+  std::string color_by, space, memory, checkpoint, every, resume, labels, smooth;
+  bool open = false, closed = false, dry_run = false, numbered = false;
 };
 
 // What a saved state keeps of the command line: the task, with paths that hold wherever it is resumed.
@@ -90,6 +92,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"quality", arguments.quality},
           {"slab", arguments.slab},
           {"inside", arguments.inside},
+          {"smooth", arguments.smooth},
           {"normals", arguments.normals},
           {"color_by", arguments.color_by.empty() ? "" : absolute_path(arguments.color_by)},
           {"space", arguments.space},
@@ -113,6 +116,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.quality = task.at("quality");
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
+  arguments.smooth = task.at("smooth");
   arguments.normals = task.at("normals");
   arguments.color_by = task.at("color_by");
   arguments.space = task.at("space");
@@ -208,9 +212,11 @@ OutputSpace parse_space(std::string_view text) {
 // All that needs no volume.
 MeshOptions mesh_options(const MeshArguments& arguments) {
   MeshOptions options;
-  if (arguments.iso != "auto") options.iso = parse_number("--iso", arguments.iso);
+  const bool known = arguments.iso != "auto" && arguments.labels.empty();
+  if (known) options.iso = parse_number("--iso", arguments.iso);
   options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
   options.closed = !arguments.open;
+  options.smooth = parse_smooth(arguments.smooth);
   options.quality = parse_quality(arguments.quality);
   options.normals = parse_normals(arguments.normals);
   options.drop_specks = drops_specks(arguments.stop);
@@ -225,11 +231,15 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
   return *iso;
 }
 
+std::string smooth_text(const MeshOptions& options) {
+  return options.smooth > 0 ? fmt::format(" smooth {}", options.smooth) : "";
+}
+
 std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
           fmt::format("iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside,
                       options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
-                      arguments.quality, component_text(component_rule(arguments.components)))};
+                      arguments.quality, smooth_text(options) + component_text(component_rule(arguments.components)))};
 }
 
 // How the mesh of a level is to be written.
@@ -286,6 +296,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
   json["closed"] = options.closed;
+  json["smooth"] = options.smooth;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
@@ -352,6 +363,42 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   return contents;
 }
 
+// Refuses what is known to be wrong with --labels before any file is looked at.
+void check_labels(const MeshArguments& arguments, const RunControl& control) {
+  if (arguments.labels.empty()) return;
+  parse_labels(arguments.labels);
+  if (control.device == Device::kCuda) wrong_value("--labels", "a run on processors", "--device cuda");
+}
+
+// One mesh for each label.
+void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, SliceSource& volume,
+                 const RunControl& control) {
+  const VolumeInfo& info = volume.info();
+  Evidence evidence(arguments.run, arguments.page);
+  LabelsTask task{arguments.input,
+                  arguments.output,
+                  arguments.run,
+                  options,
+                  parse_labels(arguments.labels),
+                  arguments.numbered,
+                  {},
+                  {}};
+  task.file = [&](std::int64_t label) {
+    MeshFileOptions file = file_options(arguments, arguments.stop, options, info.geometry);
+    file.comments = {"isoweave " ISOWEAVE_VERSION,
+                     fmt::format("label {} {} {} quality {}{}", label, options.closed ? "closed" : "open",
+                                 stop_text(arguments.stop, kUsualError, 0), arguments.quality, smooth_text(options))};
+    return file;
+  };
+  task.describe = [&](Json& json) {
+    json["closed"] = options.closed;
+    json["smooth"] = options.smooth;
+    json["quality"] = arguments.quality;
+    json["space"] = space_text(info.geometry, options.space);
+  };
+  mesh_label_files(task, volume, control, evidence);
+}
+
 void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   const RunOptions& run = arguments.run;
   MeshOptions options = mesh_options(arguments);
@@ -362,6 +409,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   check_watch(arguments.watch, control.device);
   const ComponentRule rule = component_rule(arguments.components);
   check_components(rule, control.device);
+  check_labels(arguments, control);
   if (control.device == Device::kCuda && !arguments.checkpoint.empty()) {
     throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
   }
@@ -383,6 +431,7 @@ void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
   if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
 
   control.stop = &stop_on_signal();
+  if (!arguments.labels.empty()) return mesh_labels(arguments, options, *volume, control);
   Evidence evidence(run, arguments.page);
   if (arguments.iso == "auto") {
     open_output(outputs.back(),
@@ -475,7 +524,7 @@ void run_mesh(MeshArguments arguments) {
   if (arguments.resume.empty()) {
     if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
     if (!arguments.output.given()) throw CLI::RequiredError("--output");
-    if (arguments.iso.empty()) throw CLI::RequiredError("--iso");
+    if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
     return mesh(arguments, nullptr);
@@ -514,6 +563,9 @@ void add_mesh_verb(CLI::App& app) {
   verb->add_flag("--closed", arguments->closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb->add_option("--inside", arguments->inside, "Side of --iso that is inside: above or below")
       ->capture_default_str();
+  // A flag, as a value that stands apart would be taken for the volume.
+  verb->add_flag(fmt::format("--smooth{{{}}}", kUsualSmoothing), arguments->smooth,
+                 "Smooth the mask of what is inside, each vertex within its edge of the lattice; --smooth=N: passes");
   verb->add_option("--normals", arguments->normals,
                    "none, gradient, or quadric: gradients that the simplification keeps as well as the places")
       ->capture_default_str();
@@ -532,9 +584,18 @@ void add_mesh_verb(CLI::App& app) {
   add_watch_option(*verb, arguments->watch);
   CLI::Option* resume =
       verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
+  verb->add_option(
+          "--labels", arguments->labels,
+          "Labels 1,2,5 of a label map, or all: one surface each from one sweep, -o a.ply makes a_label1.ply, ...")
+      ->excludes("--iso", "--inside", "--lods", "--triangles", "--ratio", "--step", "--to-stdout", "--memory",
+                 "--dry-run", "--checkpoint", "--every", "--color-by", "--min-component", "--largest", "--one-file",
+                 "--html", "--page-triangles", "--watch");
   exclude_task_options(*verb, *resume);
   verb->footer(kExamples);
-  verb->callback([arguments] { run_mesh(*arguments); });
+  verb->callback([arguments, verb] {
+    arguments->numbered = verb->count("--segment") > 0;
+    run_mesh(*arguments);
+  });
 }
 
 }  // namespace isoweave::cli

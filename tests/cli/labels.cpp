@@ -1,0 +1,213 @@
+// mesh --labels and --smooth: a file for each label, like those of runs on masks; and what is refused.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace isoweave {
+namespace {
+
+using nlohmann::json;
+using program::listing;
+using program::Result;
+using program::run;
+
+constexpr const char* kMap = "map_24x22x20_uint8.raw";
+
+// Two balls that touch, 3 and 8, and a slab of label 200 at the border.
+std::string map_bytes() {
+  std::string bytes;
+  for (int k = 0; k < 20; ++k) {
+    for (int j = 0; j < 22; ++j) {
+      for (int i = 0; i < 24; ++i) {
+        const auto is_in = [&](int x, int r) {
+          return (i - x) * (i - x) + (j - 10) * (j - 10) + (k - 9) * (k - 9) < r * r;
+        };
+        bytes += static_cast<char>(j > 18 ? 200 : is_in(7, 7) ? 3 : is_in(16, 6) ? 8 : 0);
+      }
+    }
+  }
+  return bytes;
+}
+
+std::string mask_bytes(int label) {
+  std::string bytes = map_bytes();
+  for (char& sample : bytes) sample = static_cast<char>(static_cast<unsigned char>(sample) == label);
+  return bytes;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+json report_of(const files::Folder& folder, const std::vector<std::string>& arguments) {
+  const Result result = run(folder.path(), joined(arguments, {"--report", "r.json"}));
+  EXPECT_EQ(result.code, 0) << result.err;
+  return json::parse(files::read_bytes(folder / "r.json"));
+}
+
+void expect_refused(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
+                    const std::string& says, const program::Setup& setup = {}) {
+  SCOPED_TRACE(says);
+  const std::vector<std::string> before = listing(folder);
+  program::expect_failed(run(folder.path(), arguments, setup), code, says);
+  EXPECT_EQ(listing(folder), before);
+}
+
+class CliLabels : public ::testing::Test {
+ protected:
+  CliLabels() { files::write_bytes(folder_ / kMap, map_bytes()); }
+
+  std::vector<std::string> mesh(const std::vector<std::string>& more) const {
+    return joined({"mesh", kMap, "-o", "seg.ply"}, more);
+  }
+
+  files::Folder folder_;
+};
+
+TEST_F(CliLabels, AreFilesLikeThoseOfRunsOnMasks) {
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{}, {"--smooth", "--open"}, {"--smooth=2", "--error", "0"}}) {
+    const json report = report_of(folder_, mesh(joined({"--labels", "all", "--slab", "3"}, how)));
+    ASSERT_EQ(report.at("labels").size(), 3U);
+    std::uint64_t triangles = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const int label = std::array{3, 8, 200}.at(n);
+      const json& entry = report.at("labels").at(n);
+      files::write_bytes(folder_ / "mask_24x22x20_uint8.raw", mask_bytes(label));
+      const json direct =
+          report_of(folder_, joined({"mesh", "mask_24x22x20_uint8.raw", "-o", "mask.ply", "--iso", "0.5"}, how));
+      EXPECT_EQ(entry.at("label"), label);
+      const std::string name = "seg_label" + std::to_string(label) + ".ply";
+      EXPECT_EQ(entry.at("output"), name);
+      for (const char* key : {"error", "triangles", "vertices", "components", "euler", "open_edges", "digest",
+                              "triangles_extracted", "collapses"}) {
+        EXPECT_EQ(entry.at(key), direct.at(key)) << name << ' ' << key;
+      }
+      const json check = json::parse(run(folder_.path(), {"check", name, "--json"}).out);
+      EXPECT_EQ(check.at("digest"), direct.at("digest"));
+      triangles += entry.at("triangles").get<std::uint64_t>();
+    }
+    EXPECT_EQ(report.at("triangles"), triangles);
+    EXPECT_EQ(report.at("input").at("max"), 200);
+    EXPECT_EQ(report.at("smooth"), how.empty() ? 0 : how[0] == "--smooth" ? 4 : 2);
+  }
+}
+
+TEST_F(CliLabels, OnlyThoseNamedInTheirOrder) {
+  const json report = report_of(folder_, mesh({"--labels", "200,3"}));
+  ASSERT_EQ(report.at("labels").size(), 2U);
+  EXPECT_EQ(report.at("labels").at(0).at("label"), 200);
+  EXPECT_EQ(listing(folder_), (std::vector<std::string>{kMap, "r.json", "seg_label200.ply", "seg_label3.ply"}));
+}
+
+TEST_F(CliLabels, OneThatDoesNotOccurIsAnEmptyMeshAndAWarning) {
+  const Result result = run(folder_.path(), mesh({"--labels", "3,77", "--progress", "always"}));
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.err.find("label 77 does not occur"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("layer 20 of 20"), std::string::npos) << result.err;
+  const json check = json::parse(run(folder_.path(), {"check", "seg_label77.ply", "--json"}).out);
+  EXPECT_EQ(check.at("triangles"), 0);
+  EXPECT_EQ(run(folder_.path(), mesh({"--labels", "3", "--quiet"})).err, "");
+}
+
+TEST_F(CliLabels, ObjectsOfNeuroglancerHaveTheLabelsNumber) {
+  ASSERT_EQ(run(folder_.path(), {"mesh", kMap, "-o", "seg.precomputed", "--labels", "8"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "seg_label8.precomputed/8:0"));
+  ASSERT_EQ(run(folder_.path(), {"mesh", kMap, "-o", "own.precomputed", "--labels", "8", "--segment", "5"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "own_label8.precomputed/5:0"));
+  expect_refused(folder_, {"mesh", kMap, "-o", "n.precomputed", "--labels=-8"}, 2,
+                 "--labels: expected labels of 0 or more");
+}
+
+TEST_F(CliLabels, WrongUseIsRefused) {
+  for (const std::string labels : {"", "some", "1,,2", "1,", "1.5", "1,2,1", "99999999999999999999"}) {
+    expect_refused(folder_, mesh({"--labels=" + labels}), 2, "--labels");
+  }
+  const std::vector<std::vector<std::string>> together{
+      {"--iso", "0.5"},        {"--inside", "below"},    {"--lods", "0.1,0.2"}, {"--triangles", "9"},
+      {"--ratio", "0.5"},      {"--step", "2"},          {"--memory", "1G"},    {"--dry-run"},
+      {"--checkpoint", "run"}, {"--html", "a.html"},     {"--watch"},           {"--color-by", kMap},
+      {"--largest"},           {"--min-component", "9"}, {"--one-file"},        {"--device", "cuda"},
+      {"--every", "9s"}};
+  for (const std::vector<std::string>& more : together) {
+    expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, "--labels");
+  }
+  expect_refused(folder_, {"mesh", kMap, "--to-stdout", "ply", "--labels", "3"}, 2, "--labels");
+  expect_refused(folder_, mesh({"--labels", "3", "--report", "seg_label3.ply"}), 2, "seg_label3.ply");
+  expect_refused(folder_, mesh({"--labels", "3", "--error", "much"}), 2, "much");
+  expect_refused(folder_, {"mesh", kMap, "-o", "none/seg.ply", "--labels", "all"}, 4, "none/seg_label1.ply");
+}
+
+TEST_F(CliLabels, MapsThatAreNoneAreRefused) {
+  const auto refused = [&](const std::string& volume, const std::string& says) {
+    expect_refused(folder_, {"mesh", volume, "-o", "seg.ply", "--labels", "all"}, 3, says);
+  };
+  refused("generate:sphere:8x8x8", "expected labels as integers, found float32");
+  files::write_bytes(folder_ / "empty_4x4x4_uint8.raw", std::string(64, '\0'));
+  refused("empty_4x4x4_uint8.raw", "found none");
+  std::string many;
+  for (int n = 0; n < 32 * 32 * 8; ++n) many += std::string{static_cast<char>(n & 255), static_cast<char>(n >> 8)};
+  files::write_bytes(folder_ / "many_32x32x8_uint16.raw", many);
+  refused("many_32x32x8_uint16.raw", "expected a label map of at most 4096 labels, found 8191");
+  EXPECT_EQ(run(folder_.path(), {"mesh", "many_32x32x8_uint16.raw", "-o", "s.ply", "--labels", "5000"}).code, 0);
+}
+
+TEST_F(CliLabels, NothingIsLeftOfARunThatFails) {
+  program::Setup small;
+  small.file_limit = 2000;
+  expect_refused(folder_, mesh({"--labels", "all", "--error", "0"}), 4, "seg_label", small);
+  program::Setup stopped;
+  stopped.signal = SIGINT;
+  stopped.ready = [&](pid_t process) { return program::has_file_open_in(process, folder_); };
+  expect_refused(folder_, {"mesh", "generate:smooth:64x64x2000000:uint8", "-o", "seg.ply", "--labels", "100"}, 130,
+                 "interrupted", stopped);
+}
+
+TEST_F(CliLabels, APartIsWhereItIsInTheWhole) {
+  const json whole = report_of(folder_, mesh({"--labels", "8", "--error", "0"}));
+  const json part = report_of(folder_, mesh({"--labels", "8", "--error", "0", "--roi", "2:,1:,1:"}));
+  EXPECT_EQ(part.at("labels").at(0).at("digest"), whole.at("labels").at(0).at("digest"));
+}
+
+TEST(CliSmooth, WrongUseIsRefused) {
+  const files::Folder folder;
+  const auto mesh = [](const std::string& smooth) {
+    return std::vector<std::string>{"mesh", "generate:sphere:8x8x8", "-o", "a.ply", "--iso", "0", smooth};
+  };
+  for (const char* smooth : {"--smooth=0", "--smooth=-1", "--smooth=65", "--smooth=much", "--smooth=1.5"}) {
+    expect_refused(folder, mesh(smooth), 2, "--smooth");
+  }
+}
+
+TEST(CliSmooth, IsReportedAndSavedWithTheTask) {
+  const files::Folder folder;
+  const auto mesh = [](const std::vector<std::string>& more) {
+    return joined({"mesh", "generate:noise:24x24x24:uint8", "-o", "a.ply", "--iso", "127.5", "--smooth=3"}, more);
+  };
+  const json whole = report_of(folder, mesh({}));
+  EXPECT_EQ(whole.at("iso"), 127.5);
+  EXPECT_EQ(whole.at("smooth"), 3);
+  EXPECT_LE(whole.at("input").at("max"), 255);
+  EXPECT_GT(whole.at("input").at("max"), 127.5);
+  program::Setup setup;
+  setup.signal = SIGINT;
+  setup.ready = [&](pid_t) { return std::filesystem::exists(folder / "run/state-1"); };
+  const Result stopped = run(folder.path(),
+                             {"mesh", "generate:noise:24x24x20000:uint8", "-o", "b.ply", "--iso", "127.5", "--smooth=3",
+                              "--checkpoint", "run", "--every", "1layers", "--slab", "2"},
+                             setup);
+  EXPECT_EQ(stopped.code, 130) << stopped.err;
+  const std::string state = files::read_bytes(folder / "run/state-0");
+  EXPECT_NE(state.find("\"smooth\":\"3\""), std::string::npos);
+  EXPECT_NE(state.find(", smooth 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isoweave
