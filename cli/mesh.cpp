@@ -1,11 +1,9 @@
 // isoweave mesh: volume in, simplified surface out.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <system_error>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -15,20 +13,21 @@
 #include "labels.hpp"
 #include "lods.hpp"
 #include "memory_sink.hpp"
+#include "mesh_arguments.hpp"
+#include "mesh_forecast.hpp"
+#include "mesh_options.hpp"
 #include "mesh_output.hpp"
+#include "mesh_state.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "stop.hpp"
 #include "verbs.hpp"
-#include "volume/histogram.hpp"
 #include "watch.hpp"
 
 namespace isoweave::cli {
 namespace {
-
-constexpr const char* kUsualError = "0.2vox";
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -45,243 +44,6 @@ Examples:
 
 Without --error, --lods, --max-distance, --triangles and --ratio the error is 0.2vox. The result does not depend on
 --threads, --schedule and --slab.)";
-
-std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
-
-struct MeshArguments {
-  InputOptions input;
-  RunOptions run;
-  OutputOptions output;
-  StopOptions stop;
-  ComponentOptions components;
-  PageOptions page;
-  WatchOptions watch;
-  std::string iso, quality = "normal", slab, inside = "above", normals = "none";
-  std::string color_by, space, memory, checkpoint, every, resume, labels, smooth;
-  bool open = false, closed = false, dry_run = false, numbered = false;
-};
-
-// What a saved state keeps of the command line: the task, with paths that hold wherever it is resumed.
-Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
-  return {{"volume", generated_input(arguments.input) ? arguments.input.path : absolute_path(arguments.input.path)},
-          {"raw", arguments.input.raw},
-          {"spacing", arguments.input.spacing},
-          {"origin", arguments.input.origin},
-          {"series", arguments.input.series},
-          {"dataset", arguments.input.dataset},
-          {"level", arguments.input.level},
-          {"channel", arguments.input.channel},
-          {"time", arguments.input.time},
-          {"roi", arguments.input.roi},
-          {"step", arguments.input.step},
-          {"output", absolute_path(arguments.output.path)},
-          {"compress", arguments.output.compress},
-          {"one_file", arguments.output.one_file},
-          {"segment", arguments.output.segment},
-          {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
-          {"html", arguments.page.given() ? absolute_path(arguments.page.path) : ""},
-          {"page_triangles", arguments.page.triangles},
-          {"iso", fmt::format("{}", options.iso)},
-          {"error", arguments.stop.error},
-          {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
-          {"specks", arguments.stop.specks},
-          {"min_component", arguments.components.min_component},
-          {"largest", arguments.components.largest},
-          {"lods", arguments.stop.lods},
-          {"max_distance", arguments.stop.max_distance},
-          {"quality", arguments.quality},
-          {"slab", arguments.slab},
-          {"inside", arguments.inside},
-          {"smooth", arguments.smooth},
-          {"normals", arguments.normals},
-          {"color_by", arguments.color_by.empty() ? "" : absolute_path(arguments.color_by)},
-          {"space", arguments.space},
-          {"open", arguments.open},
-          {"memory", arguments.memory},
-          {"every", arguments.every}};
-}
-
-// The task of a saved state, and how it was to run where nothing else is said now.
-void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
-  arguments.input = {task.at("volume"), task.at("raw"),     task.at("spacing"), task.at("origin"),
-                     task.at("series"), task.at("dataset"), task.at("level"),   task.at("channel"),
-                     task.at("time"),   task.at("roi"),     task.at("step")};
-  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment"), task.at("one_file")};
-  if (now.run.report.empty()) arguments.run.report = task.at("report");
-  if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
-  arguments.iso = task.at("iso");
-  arguments.stop = {task.at("error"),  task.at("triangles"), "",
-                    task.at("specks"), task.at("lods"),      task.at("max_distance")};
-  arguments.components = {task.at("min_component"), task.at("largest")};
-  arguments.quality = task.at("quality");
-  if (now.slab.empty()) arguments.slab = task.at("slab");
-  arguments.inside = task.at("inside");
-  arguments.smooth = task.at("smooth");
-  arguments.normals = task.at("normals");
-  arguments.color_by = task.at("color_by");
-  arguments.space = task.at("space");
-  arguments.open = task.at("open");
-  if (now.memory.empty()) arguments.memory = task.at("memory");
-  if (now.every.empty()) arguments.every = task.at("every");
-}
-
-[[noreturn]] void refuse_state(const Checkpoint& checkpoint) {
-  throw BadInput(checkpoint.path + ": expected a state saved by this isoweave mesh, found another");
-}
-
-// The arguments of a run that goes on: the task as it was, and how to run as it is said now.
-MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint) {
-  MeshArguments arguments = now;
-  try {
-    set_task(arguments, now, Json::parse(checkpoint.note));
-  } catch (const Json::exception&) {
-    refuse_state(checkpoint);
-  }
-  arguments.checkpoint = now.resume;
-  return arguments;
-}
-
-// "16layers", "90s", "5min" or "2h".
-void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
-  constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{{{"s", 1}, {"min", 60}, {"h", 3600}}};
-  const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
-  const std::string_view number = text.substr(0, digits);
-  const std::string_view unit = text.substr(digits);
-  if (unit == "layers") checkpoint.layers = parse_count("--every", number);
-  for (const auto& [name, seconds] : kUnits) {
-    if (unit == name) checkpoint.seconds = seconds * parse_number("--every", number);
-  }
-  const bool known = unit == "layers" || std::ranges::any_of(kUnits, [&](const auto& u) { return u.first == unit; });
-  if (!known || !(checkpoint.seconds > 0)) {
-    wrong_value("--every", "a number of layers or a time such as 16layers, 90s, 5min or 2h", text);
-  }
-}
-
-// Makes the folder for the states of a new run. Another run's are never overwritten.
-void make_checkpoint_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  const std::filesystem::path path(folder);
-  if (std::filesystem::exists(path / "state-0") || std::filesystem::exists(path / "state-1")) {
-    throw CannotWrite(
-        fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
-  }
-}
-
-// Makes the folder of the parts of a mesh. Without a state there is nothing to go on with: what is there is of a run
-// that ended before its first one.
-void make_part_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part", "values.part"})
-    std::filesystem::remove(std::filesystem::path(folder) / part, error);
-}
-
-// A whole volume is one layer thicker than its slices when it is closed.
-std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
-  const std::int64_t whole = slices + 2;
-  if (text == "auto") return 0;
-  if (text == "whole") return whole;
-  return std::min(parse_count("--slab", text), whole);
-}
-
-Normals parse_normals(std::string_view text) {
-  return parse_choice<Normals>(
-      "--normals", text,
-      {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
-}
-
-// The volume whose values the vertices get, with what was chosen of the first one; or none.
-std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
-  if (arguments.color_by.empty()) return nullptr;
-  InputOptions input;
-  input.path = arguments.color_by;
-  input.roi = arguments.input.roi;
-  input.step = arguments.input.step;
-  return open_input(input);
-}
-
-OutputSpace parse_space(std::string_view text) {
-  if (text.empty()) return OutputSpace::kAsVolume;
-  return parse_choice<OutputSpace>(
-      "--space", text, {{"lps", OutputSpace::kLps}, {"ras", OutputSpace::kRas}, {"index", OutputSpace::kIndex}});
-}
-
-// All that needs no volume.
-MeshOptions mesh_options(const MeshArguments& arguments) {
-  MeshOptions options;
-  const bool known = arguments.iso != "auto" && arguments.labels.empty();
-  if (known) options.iso = parse_number("--iso", arguments.iso);
-  options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
-  options.closed = !arguments.open;
-  options.smooth = parse_smooth(arguments.smooth);
-  options.quality = parse_quality(arguments.quality);
-  options.normals = parse_normals(arguments.normals);
-  options.drop_specks = drops_specks(arguments.stop);
-  options.space = parse_space(arguments.space);
-  return options;
-}
-
-// Reads the volume once more, by itself, as slices cannot be read twice.
-double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
-  const std::optional<double> iso = otsu_threshold(read_histogram(*open_input(input), &stop));
-  if (!iso) throw BadInput(input.path + ": --iso auto expects at least two different values, found one or none");
-  return *iso;
-}
-
-std::string smooth_text(const MeshOptions& options) {
-  return options.smooth > 0 ? fmt::format(" smooth {}", options.smooth) : "";
-}
-
-std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
-  return {"isoweave " ISOWEAVE_VERSION,
-          fmt::format("iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside,
-                      options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
-                      arguments.quality, smooth_text(options) + component_text(component_rule(arguments.components)))};
-}
-
-// How the mesh of a level is to be written.
-MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
-                             const Geometry& geometry) {
-  MeshFileOptions file;
-  file.normals = options.normals != Normals::kAbsent;
-  file.values = !arguments.color_by.empty();
-  file.comments = comments(arguments, stop, options);
-  file.unit = geometry.unit;
-  file.space = space_text(geometry, options.space);
-  return mesh_file_options(arguments.output, std::move(file));
-}
-
-std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
-  return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
-}
-
-std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int threads) {
-  return fmt::format(
-      "triangles  about {}, {} of them left\noutput     about {}\nmemory     about {}, with --memory at least {}\n"
-      "time       about {:.2g} s on {} thread{}\n",
-      short_count(static_cast<double>(forecast.triangles_extracted)),
-      short_count(static_cast<double>(forecast.triangles)), byte_text(bytes), byte_text(forecast.peak_bytes),
-      byte_text(forecast.least_bytes), forecast.seconds, threads, threads == 1 ? "" : "s");
-}
-
-// What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
-Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
-                          const RunControl& control) {
-  Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
-  output_bytes(forecast, arguments, file);
-  const std::uint64_t beside =
-      output_memory(arguments.output, forecast.vertices, forecast.triangles, file) + watch_memory(arguments.watch);
-  forecast.peak_bytes += beside;
-  forecast.least_bytes += beside;
-  if (control.memory > 0 && forecast.least_bytes > control.memory) {
-    throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more, found {}", arguments.input.path,
-                                 std::ceil(static_cast<double>(forecast.least_bytes) * 1e-6), arguments.memory));
-  }
-  return forecast;
-}
 
 Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
                  const MeshOptions& options, const MeshFileOptions& file, const std::optional<Forecast>& forecast) {
@@ -305,38 +67,6 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["space"] = space_text(info.geometry, options.space);
   return json;
-}
-
-void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles) {
-  if (!arguments.page.given() || cap == 0 || page_memory(triangles) <= cap) return;
-  throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more for --html, found {}", arguments.input.path,
-                               std::ceil(static_cast<double>(page_memory(triangles)) * 1e-6), arguments.memory));
-}
-
-// What the finest level will take in its file, or all levels in one; refuses what its format cannot hold. `last`: of
-// the coarsest level.
-void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
-                 const RunControl& control, const Forecast& last) {
-  Forecast sum;
-  if (arguments.output.one_file) sum = last;
-  for (const Length& error : options.levels) {
-    MeshOptions level = options;
-    level.error = error;
-    level.levels.clear();
-    const Forecast forecast = forecast_mesh(*open_input(arguments.input), level, control);
-    sum.vertices += forecast.vertices;
-    sum.triangles += forecast.triangles;
-    output_bytes(sum, arguments, file);
-    if (!arguments.output.one_file) return;
-  }
-}
-
-// What of a cap is left for the run.
-std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t cap) {
-  const std::uint64_t held = watch_memory(arguments.watch);
-  if (held < cap) return cap - held;
-  throw OverMemory(fmt::format("{}: expected more than --memory {:.0f}M for --watch, found {}", arguments.input.path,
-                               static_cast<double>(held) * 1e-6, arguments.memory));
 }
 
 // The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
@@ -399,126 +129,189 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, Sli
   mesh_label_files(task, volume, control, evidence);
 }
 
-void mesh(const MeshArguments& arguments, const Checkpoint* resume) {
-  const RunOptions& run = arguments.run;
-  MeshOptions options = mesh_options(arguments);
-  RunControl control = run_control(run);
-  const ProgressMode mode = progress_mode(run.progress, run.quiet);
-  parse_slab(arguments.slab, 1);
-  check_page(arguments.page, arguments.output);
-  check_watch(arguments.watch, control.device);
-  const ComponentRule rule = component_rule(arguments.components);
-  check_components(rule, control.device);
-  check_labels(arguments, control);
-  if (control.device == Device::kCuda && !arguments.checkpoint.empty()) {
-    throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
-  }
-  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
-  for (const OutputOptions& output : outputs) {
-    check_different({arguments.input.path, output.path, run.report, arguments.page.path});
-    check_different({arguments.color_by, output.path});
-  }
+// One run, step by step.
+class MeshJob {
+ public:
+  // resume: a saved state to go on from, or null.
+  MeshJob(const MeshArguments& arguments, const Checkpoint* resume)
+      : arguments_(arguments),
+        resume_(resume),
+        rule_(component_rule(arguments.components)),
+        outputs_(level_outputs(arguments.output, arguments.stop)),
+        options_(mesh_options(arguments)),
+        control_(run_control(arguments.run)) {}
 
-  const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
-  const VolumeInfo info = volume->info();
-  const std::unique_ptr<SliceSource> values = open_values(arguments);
-  options.values = values.get();
-  options.error = stop_error(arguments.stop, kUsualError, info.geometry.unit);
-  options.max_distance = stop_distance(arguments.stop, info.geometry.unit);
-  options.levels = finer_levels(arguments.stop, info.geometry.unit);
-  options.slab = parse_slab(arguments.slab, info.dims[2]);
-
-  if (!arguments.memory.empty()) control.memory = parse_bytes("--memory", arguments.memory);
-
-  control.stop = &stop_on_signal();
-  if (!arguments.labels.empty()) return mesh_labels(arguments, options, *volume, control);
-  Evidence evidence(run, arguments.page);
-  if (arguments.iso == "auto") {
-    open_output(outputs.back(),
-                mesh_file_options(arguments.output, {}));  // finds out now what would stop the run after the first pass
-    options.iso = automatic_iso(arguments.input, *control.stop);
-    if (!run.quiet) print_note(fmt::format("--iso {} (Otsu's threshold)", options.iso));
-  }
-  std::optional<ComponentChoice> components;
-  const auto choose = [&] {
-    if (rule.keeps_all() || components) return;
-    components = choose_components(*open_input(arguments.input), options, rule, control);
-    options.components = &*components;
-  };
-  options.triangles = stop_triangles(arguments.stop, [&] {
+  void run() {
+    const ProgressMode mode = progress_mode(arguments_.run.progress, quiet());
+    check();
+    open();
+    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, *volume_, control_);
+    Evidence evidence(arguments_.run, arguments_.page);
+    if (arguments_.iso == "auto") find_iso();
+    find_target();
+    file_ = file_options(arguments_, arguments_.stop, options_, info_.geometry);
+    if (resume_ == nullptr) foresee();
+    if (arguments_.dry_run) return tell_forecast(evidence);
     choose();
-    return components ? components->triangles : count_triangles(*open_input(arguments.input), options, control);
-  });
-  const MeshFileOptions file = file_options(arguments, arguments.stop, options, info.geometry);
-  std::optional<Forecast> forecast;
-  if (resume == nullptr) {
-    forecast = checked_forecast(arguments, options, file, control);
-    check_finer(arguments, options, file, control, *forecast);
+    prepare_states();
+    sweep(mode, evidence);
   }
-  if (forecast) check_page_memory(arguments, control.memory, forecast->triangles);
-  if (arguments.dry_run) {
-    const std::uint64_t bytes = output_bytes(*forecast, arguments, file);
-    const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
-    print_out(forecast_text(*forecast, bytes, threads));
-    if (!rule.keeps_all()) print_out("components that --largest or --min-component drops are counted in\n");
-    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast, bytes)}});
-    return;
-  }
-  choose();
-  if (!arguments.checkpoint.empty()) {
-    parse_every(arguments.every, control.checkpoint);
-    if (resume == nullptr) make_checkpoint_folder(arguments.checkpoint);
-    control.checkpoint.folder = arguments.checkpoint;
-    control.checkpoint.note = task_json(arguments, options).dump();
-  }
-  control.resume = resume;
-  if (control.memory > 0) control.memory = memory_beside_watch(arguments, control.memory);
-  const std::vector<std::string> folders = level_folders(arguments.checkpoint, outputs.size());
-  if (resume != nullptr && resume->marks.size() != outputs.size()) refuse_state(*resume);
-  const LevelSinks sinks(outputs, [&](std::size_t level) {
-    MeshFileOptions level_file = file_options(arguments, stop_levels(arguments.stop)[level], options, info.geometry);
-    level_file.parts = folders[level];
-    if (resume != nullptr) {
-      level_file.mark = resume->marks[level];
-    } else if (!level_file.parts.empty()) {
-      make_part_folder(level_file.parts);
+
+ private:
+  bool quiet() const { return arguments_.run.quiet; }
+
+  // What needs no file.
+  void check() const {
+    parse_slab(arguments_.slab, 1);
+    check_page(arguments_.page, arguments_.output);
+    check_watch(arguments_.watch, control_.device);
+    check_components(rule_, control_.device);
+    check_labels(arguments_, control_);
+    if (control_.device == Device::kCuda && !arguments_.checkpoint.empty()) {
+      throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
     }
-    return level_file;
-  });
-  if (!run.quiet) {
-    for (const std::string& note : info.notes) print_note("warning: " + note);
+    for (const OutputOptions& output : outputs_) {
+      check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
+      check_different({arguments_.color_by, output.path});
+    }
   }
-  const std::unique_ptr<Watch> watch =
-      start_watch(arguments.watch,
-                  {info, options, arguments.input.path, outputs.back().name(), resume == nullptr ? 0 : resume->layer});
-  ProgressPrinter printer(mode);
-  control.progress = [&](const Progress& progress) { printer.show(progress); };
-  control.observer = watch.get();
-  const MeshReport report = mesh_volume(*volume, sinks.pointers(), options, control);
-  remove_level_folders(folders);
-  if (watch) watch->complete(report);
-  printer.finish();
-  Json json = report_json(report, info, arguments, options, file, forecast);
-  json["notes"] = sinks.last().notes();
-  evidence.write(std::move(json), control, [&](const RunControl& quiet) {
-    std::uint64_t triangles = report.triangles;
-    for (const SurfaceReport& level : report.levels) triangles += level.triangles;
-    check_page_memory(arguments, control.memory, triangles);
-    return page_contents(arguments, options, report, quiet);
-  });
-  if (run.quiet) return;
-  for (const std::string& warning : report.warnings) print_note("warning: " + warning);
-  print_notes(sinks.last());
-  print_dropped(report);
-  print_levels(report, outputs);
-  if (options.triangles > 0)
-    print_note(fmt::format("error reached: {:.4g}{}{}", report.error, info.geometry.unit.empty() ? "" : " ",
-                           info.geometry.unit));
-  const auto slices = static_cast<double>(info.dims[2]);
-  print_summary(report, outputs.back().name(), static_cast<double>(info.slice_samples()) * slices,
-                forecast ? &*forecast : nullptr);
-  if (watch) watch->deliver(*control.stop);
-}
+
+  // The volumes, and the options that depend on their units and sizes.
+  void open() {
+    volume_ = open_input(arguments_.input);
+    info_ = volume_->info();
+    values_ = open_values(arguments_);
+    options_.values = values_.get();
+    options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
+    options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
+    options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
+    options_.slab = parse_slab(arguments_.slab, info_.dims[2]);
+    if (!arguments_.memory.empty()) control_.memory = parse_bytes("--memory", arguments_.memory);
+    control_.stop = &stop_on_signal();
+  }
+
+  void find_iso() {
+    // Finds out now what would stop the run after the first pass.
+    open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
+    options_.iso = automatic_iso(arguments_.input, *control_.stop);
+    if (!quiet()) print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
+  }
+
+  // Once, in a pass of its own.
+  void choose() {
+    if (rule_.keeps_all() || components_) return;
+    components_ = choose_components(*open_input(arguments_.input), options_, rule_, control_);
+    options_.components = &*components_;
+  }
+
+  // The number of triangles to stop at. A part of all takes their number first.
+  void find_target() {
+    options_.triangles = stop_triangles(arguments_.stop, [&] {
+      choose();
+      return components_ ? components_->triangles : count_triangles(*open_input(arguments_.input), options_, control_);
+    });
+  }
+
+  void foresee() {
+    forecast_ = checked_forecast(arguments_, options_, file_, control_);
+    check_finer(arguments_, options_, file_, control_, *forecast_);
+    check_page_memory(arguments_, control_.memory, forecast_->triangles);
+  }
+
+  void tell_forecast(Evidence& evidence) const {
+    const std::uint64_t bytes = output_bytes(*forecast_, arguments_, file_);
+    const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    print_out(forecast_text(*forecast_, bytes, threads));
+    if (!rule_.keeps_all()) print_out("components that --largest or --min-component drops are counted in\n");
+    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
+  }
+
+  void prepare_states() {
+    control_.resume = resume_;
+    if (resume_ != nullptr && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
+    if (arguments_.checkpoint.empty()) return;
+    parse_every(arguments_.every, control_.checkpoint);
+    if (resume_ == nullptr) make_checkpoint_folder(arguments_.checkpoint);
+    control_.checkpoint.folder = arguments_.checkpoint;
+    control_.checkpoint.note = task_json(arguments_, options_).dump();
+  }
+
+  // How a level is to be written, with its unfinished parts in a folder if there is one.
+  MeshFileOptions level_file(std::size_t level, const std::string& folder) const {
+    MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_.geometry);
+    file.parts = folder;
+    if (resume_ != nullptr) {
+      file.mark = resume_->marks[level];
+    } else if (!folder.empty()) {
+      make_part_folder(folder);
+    }
+    return file;
+  }
+
+  void sweep(ProgressMode mode, Evidence& evidence) {
+    if (control_.memory > 0) control_.memory = memory_beside_watch(arguments_, control_.memory);
+    const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
+    const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
+    print_volume_notes();
+    const std::unique_ptr<Watch> watch = start_watch(
+        arguments_.watch,
+        {info_, options_, arguments_.input.path, outputs_.back().name(), resume_ == nullptr ? 0 : resume_->layer});
+    ProgressPrinter printer(mode);
+    control_.progress = [&](const Progress& progress) { printer.show(progress); };
+    control_.observer = watch.get();
+    const MeshReport report = mesh_volume(*volume_, sinks.pointers(), options_, control_);
+    remove_level_folders(folders);
+    if (watch) watch->complete(report);
+    printer.finish();
+    write_evidence(report, sinks, evidence);
+    if (quiet()) return;
+    print_result(report, sinks);
+    if (watch) watch->deliver(*control_.stop);
+  }
+
+  void print_volume_notes() const {
+    if (quiet()) return;
+    for (const std::string& note : info_.notes) print_note("warning: " + note);
+    if (values_ == nullptr) return;
+    for (const std::string& note : values_->info().notes) print_note("warning: " + note);
+  }
+
+  void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
+    Json json = report_json(report, info_, arguments_, options_, file_, forecast_);
+    json["notes"] = sinks.last().notes();
+    evidence.write(std::move(json), control_, [&](const RunControl& control) {
+      std::uint64_t triangles = report.triangles;
+      for (const SurfaceReport& level : report.levels) triangles += level.triangles;
+      check_page_memory(arguments_, control_.memory, triangles);
+      return page_contents(arguments_, options_, report, control);
+    });
+  }
+
+  void print_result(const MeshReport& report, const LevelSinks& sinks) const {
+    for (const std::string& warning : report.warnings) print_note("warning: " + warning);
+    print_notes(sinks.last());
+    print_dropped(report);
+    print_levels(report, outputs_);
+    if (options_.triangles > 0) {
+      const std::string& unit = info_.geometry.unit;
+      print_note(fmt::format("error reached: {:.4g}{}{}", report.error, unit.empty() ? "" : " ", unit));
+    }
+    const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
+    print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
+  }
+
+  const MeshArguments& arguments_;
+  const Checkpoint* resume_;
+  const ComponentRule rule_;
+  const std::vector<OutputOptions> outputs_;
+  MeshOptions options_;
+  RunControl control_;
+  std::unique_ptr<SliceSource> volume_, values_;
+  VolumeInfo info_;
+  std::optional<ComponentChoice> components_;
+  MeshFileOptions file_;
+  std::optional<Forecast> forecast_;  // of a run that is not resumed
+};
 
 void run_mesh(MeshArguments arguments) {
   if (arguments.resume.empty()) {
@@ -527,12 +320,12 @@ void run_mesh(MeshArguments arguments) {
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
-    return mesh(arguments, nullptr);
+    return MeshJob(arguments, nullptr).run();
   }
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);
   arguments = resumed_arguments(arguments, checkpoint);
   if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
-  mesh(arguments, &checkpoint);
+  MeshJob(arguments, &checkpoint).run();
 }
 
 // The task of a run that goes on is known; how it runs may be said anew.

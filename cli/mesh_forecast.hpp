@@ -1,0 +1,33 @@
+// What a run of isoweave mesh will take, and the limits that are known before it starts.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+#include "mesh_arguments.hpp"
+
+namespace isoweave::cli {
+
+// Of the file that is forecast. Throws CannotWrite where its format cannot hold the counts.
+std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file);
+
+std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int threads);
+
+// What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
+Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                          const RunControl& control);
+
+// Throws OverMemory where a page for so many triangles does not fit into the cap.
+void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles);
+
+// What the finest level will take in its file, or all levels in one; refuses what its format cannot hold. `last`: of
+// the coarsest level.
+void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                 const RunControl& control, const Forecast& last);
+
+// What of a cap is left for the run.
+std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t cap);
+
+}  // namespace isoweave::cli
