@@ -81,7 +81,7 @@ def read_3mf(path):
     return np.array(points).astype(np.float32)[np.array(cells).astype(np.int64)], model
 
 
-def read_glb(path):
+def read_glb(path, mesh=0):
     data = open(path, "rb").read()
     magic, version, length, json_length, _ = struct.unpack_from("<4sIIII", data)
     assert magic == b"glTF" and version == 2 and length == len(data)
@@ -93,7 +93,7 @@ def read_glb(path):
         at = begin + view["byteOffset"]
         return np.frombuffer(data[at : at + view["byteLength"]], kind)
 
-    primitive = scene["meshes"][0]["primitives"][0]
+    primitive = scene["meshes"][mesh]["primitives"][0]
     points = accessor(primitive["attributes"]["POSITION"], "<f4").reshape(-1, 3)
     return points[accessor(primitive["indices"], "<u4").reshape(-1, 3)], scene
 
@@ -217,6 +217,26 @@ class Checks:
         assert far < 1e-7, f"a.glb by VTK: {far} from where the node puts it"
         print(f"{'a.glb by VTK':28} {len(in_place)} triangles, within {far:.2g} m")
 
+    def levels(self):
+        """All levels in one file: each node the mesh of its own file, the finest names the others."""
+        for name, more in (("l.glb", ["--one-file"]), ("l.ply", [])):
+            subprocess.run(
+                [self.program, "mesh", self.path("volume.nrrd"), "-o", self.path(name), "--iso", "127.5", "--quiet",
+                 "--lods", "0.1vox,0.5vox,2vox", *more],
+                check=True,
+            )
+        _, scene = read_glb(self.path("l.glb"))
+        assert scene["extensionsUsed"] == ["MSFT_lod"]
+        (finest,) = [node for node in scene["nodes"] if "MSFT_lod" in node.get("extensions", {})]
+        coarser = finest["extensions"]["MSFT_lod"]["ids"]
+        for level, node in enumerate([finest] + [scene["nodes"][n] for n in coarser]):
+            corners, _ = read_glb(self.path("l.glb"), node["mesh"])
+            alone = of_poly_data(with_vtk(vtkPLYReader(), self.path(f"l_lod{level}.ply")))
+            found, expected = (canonical(np.asarray(c, np.float32)) for c in (corners, alone))
+            assert (found.view(np.uint32) == expected.view(np.uint32)).all(), f"l.glb: level {level} is another mesh"
+            print(f"{f'l.glb, level {level}':28} {len(found)} triangles, equal bit for bit")
+        assert level == 2
+
     def precomputed(self):
         corners = self.reference.reshape(-1, 3, 3).astype(float)
         self.write("a.precomputed", "--segment", "9")
@@ -244,6 +264,7 @@ def main():
         checks = Checks(os.path.abspath(sys.argv[1]), folder)
         checks.lossless()
         checks.glb()
+        checks.levels()
         checks.precomputed()
 
 
