@@ -147,10 +147,11 @@ class LabelsSweep {
     if (options_.slab > 0) return std::min(options_.slab, volume_.dims[2] - done_);
     const SlabGoal& goal = slab_goal(simplifies_);
     const std::int64_t doubled = recent_layers_ > 0 ? 2 * recent_layers_ : 8;
+    constexpr double kFloatBytes = sizeof(float);
     double slice = 2 * static_cast<double>(volume_.slice_bytes());
     for (const Lane& lane : lanes_) {
       const bool is_on = lane.box.first[2] < done_ + doubled && done_ < lane.box.end[2];
-      if (is_on) slice += slice_area(lane.box) * (options_.smooth > 0 ? sizeof(float) : 1);
+      if (is_on) slice += slice_area(lane.box) * (options_.smooth > 0 ? kFloatBytes : 1);
     }
     const double recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;

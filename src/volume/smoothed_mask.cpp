@@ -149,7 +149,9 @@ void SmoothedMask::read_row(std::int64_t j, Slice& out) const {
   std::int64_t inside = 0;
   for (std::int64_t i = 0; i < nx; ++i) inside += is_inside(samples[i]) ? 1 : 0;
   std::int8_t& mark = out.marks[static_cast<std::size_t>(j)];
-  mark = inside == 0 ? -1 : static_cast<std::int8_t>(inside == nx);
+  mark = 0;
+  if (inside == 0) mark = -1;
+  if (inside == nx) mark = 1;
   if (mark != 0) return;
   for (std::int64_t i = 0; i < nx; ++i) to[i] = is_inside(samples[i]) ? 1.0F : -1.0F;
 }
@@ -194,7 +196,7 @@ SmoothedMask::Rows SmoothedMask::rows_around(Ring& ring, std::int64_t k, std::in
     const std::int64_t at = std::clamp<std::int64_t>(j + n % 3 - 1, 0, info_.dims[1] - 1);
     const std::int8_t mark = slice.marks[static_cast<std::size_t>(at)];
     rows.samples[static_cast<std::size_t>(n)] = row(slice, at);
-    rows.mark = n == 0 || mark == rows.mark ? mark : 0;
+    rows.mark = n == 0 || mark == rows.mark ? mark : std::int8_t{0};
   }
   return rows;
 }
