@@ -30,8 +30,7 @@ endmacro()
 # Messages of libtiff are taken per file since 4.5.
 isoweave_reader(TIFF "tiff.cpp;tiff_file.cpp;tiff_pages.cpp;tiff_stream.cpp" TIFF::TIFF TIFF 4.5)
 isoweave_reader(PNG "png.cpp;write_png.cpp" PNG::PNG PNG)
-# Plain DICOM samples need no library.
-isoweave_reader(DICOM dicom_jpeg.cpp IsoweaveGdcm::IsoweaveGdcm IsoweaveGdcm)
+# Of DICOM, two kinds of packed samples need a library.
 isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)
 isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
 # Loaded when it is needed; headers only.
@@ -66,8 +65,11 @@ function(isoweave_select_reader_tests sources)
   if(NOT ISOWEAVE_HAS_PNG)
     list(FILTER left EXCLUDE REGEX "/volume_png\\.cpp$")
   endif()
-  if(NOT (ISOWEAVE_HAS_DICOM AND ISOWEAVE_HAS_JPEGLS AND ISOWEAVE_HAS_JPEG2000))
+  if(NOT (IsoweaveGdcm_FOUND AND ISOWEAVE_HAS_JPEGLS AND ISOWEAVE_HAS_JPEG2000))
     list(FILTER left EXCLUDE REGEX "/volume_dicom\\.cpp$")
+  endif()
+  if(NOT IsoweaveGdcm_FOUND)
+    list(FILTER left EXCLUDE REGEX "/volume_jpeg\\.cpp$")
   endif()
   if(NOT ISOWEAVE_HAS_HDF5)
     list(FILTER left EXCLUDE REGEX "/volume_hdf5\\.cpp$")

@@ -56,8 +56,7 @@ std::vector<DicomSlice> read_dicom_header(const std::string& path);
 // The samples, in the machine's byte order. Throws BadInput unless they are `bytes` of `type`.
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes);
 
-// Unpack samples after check_frame_header. Throw BadInput when they do not decode to `bytes`. The first takes JPEG-LS
-// too.
+// Unpack samples after check_frame_header. Throw BadInput when they do not decode to `bytes`.
 std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
 std::vector<std::byte> unpack_jpegls(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);
 std::vector<std::byte> unpack_jpeg2000(const DicomSlice& slice, std::span<const std::byte> packed, std::size_t bytes);

@@ -81,31 +81,7 @@ std::optional<FrameHeader> jpeg_header(Packed packed) {
   return std::nullopt;
 }
 
-// Marks that stand alone: TEM and the restarts.
-bool has_no_length(std::uint32_t marker) { return marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7); }
-
-// Whether the segments of a JPEG stream, and what lies between them, come to the mark of its end.
-bool comes_to_an_end(Packed packed) {
-  constexpr std::uint32_t kStuffed = 0, kFilling = 0xff, kEnd = 0xd9;
-  std::size_t at = 2;
-  while (at < packed.size()) {
-    const std::uint32_t marker = number(packed, at + 1, 1);
-    if (number(packed, at, 1) != 0xff || marker == kStuffed || marker == kFilling) {
-      ++at;
-    } else if (marker == kEnd) {
-      return true;
-    } else {
-      at += 2 + (has_no_length(marker) ? 0 : number(packed, at + 2, 2));
-    }
-  }
-  return false;
-}
-
 }  // namespace
-
-void check_jpeg_ends(const DicomSlice& slice, Packed packed) {
-  if (!comes_to_an_end(packed)) bad_input(slice.path, "the mark that ends a JPEG frame", "none");
-}
 
 std::vector<std::byte> unpack_run_lengths(const DicomSlice& slice, Packed packed, std::size_t bytes) {
   constexpr std::size_t kHeader = 64;

@@ -17,8 +17,4 @@ std::vector<std::byte> unpack_run_lengths(const DicomSlice& slice, std::span<con
 // decoders fill what the stream says.
 void check_frame_header(const DicomSlice& slice, std::span<const std::byte> packed);
 
-// Throws BadInput unless a JPEG stream comes to the mark of its end: a decoder that runs out of data waits for more,
-// and is never freed.
-void check_jpeg_ends(const DicomSlice& slice, std::span<const std::byte> packed);
-
 }  // namespace isoweave

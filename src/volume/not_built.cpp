@@ -24,12 +24,6 @@ OpenedVolume open_tiff(const FilePtr& file, bool) { not_built(file->path(), "TIF
 OpenedVolume open_png(const FilePtr& file) { not_built(file->path(), "PNG", "libpng", "ISOWEAVE_PNG"); }
 #endif
 
-#ifndef ISOWEAVE_HAS_DICOM
-std::vector<std::byte> unpack_jpeg(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
-  not_built(slice.path, "DICOM with JPEG samples", "GDCM", "ISOWEAVE_DICOM");
-}
-#endif
-
 #ifndef ISOWEAVE_HAS_JPEGLS
 std::vector<std::byte> unpack_jpegls(const DicomSlice& slice, std::span<const std::byte>, std::size_t) {
   not_built(slice.path, "DICOM with JPEG-LS samples", "CharLS", "ISOWEAVE_JPEGLS");

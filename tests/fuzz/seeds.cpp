@@ -12,7 +12,7 @@
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
 #include "vti_helpers.hpp"
-#ifdef ISOWEAVE_HAS_DICOM
+#ifdef ISOWEAVE_HAS_GDCM
 #include "dicom_helpers.hpp"
 #endif
 #ifdef ISOWEAVE_HAS_PNG
@@ -193,7 +193,7 @@ void put_png(Seeds& seeds) {
 }
 #endif
 
-#ifdef ISOWEAVE_HAS_DICOM
+#ifdef ISOWEAVE_HAS_GDCM
 void put_dicom(Seeds& seeds) {
   using namespace dicom_files;
   const TempFolder folder;
@@ -223,6 +223,11 @@ void put_dicom(Seeds& seeds) {
                             gdcm::TransferSyntax::JPEGLosslessProcess14_1, gdcm::TransferSyntax::JPEGLSLossless,
                             gdcm::TransferSyntax::JPEG2000Lossless, gdcm::TransferSyntax::RLELossless}) {
     if (transcode(folder / "a", folder / "b", syntax)) seeds.put("dicom", get(folder / "b"));
+  }
+  fields.bits = 8;
+  folder.put("a", dicom(fields, stored(ramp<std::uint8_t>(32 * 32))));
+  if (transcode(folder / "a", folder / "b", gdcm::TransferSyntax::JPEGBaselineProcess1)) {
+    seeds.put("dicom", get(folder / "b"));
   }
 }
 #endif
@@ -297,7 +302,7 @@ int main(int argc, char** argv) {
 #ifdef ISOWEAVE_HAS_PNG
   put_png(seeds);
 #endif
-#ifdef ISOWEAVE_HAS_DICOM
+#ifdef ISOWEAVE_HAS_GDCM
   put_dicom(seeds);
 #endif
 #ifdef ISOWEAVE_HAS_ZARR

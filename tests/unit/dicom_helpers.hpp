@@ -123,6 +123,23 @@ inline std::string packed_frames(const std::vector<std::string>& frames, const s
          bytes_of(0xffffffffU) + content + std::string("\xfe\xff\xdd\xe0\0\0\0\0", 8);
 }
 
+// One image whose samples are one packed stream.
+inline std::string packed_image(const DicomFields& fields, const std::string& syntax, std::string stream) {
+  if (stream.size() % 2 != 0) stream += '\0';
+  std::string file = dicom(fields, "");
+  file.resize(file.size() - element(0x7fe0, 0x10, "OW", "").size());
+  const std::string plain = element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+  const std::string packed = element(2, 0x10, "UI", syntax);
+  file.replace(file.find(plain), plain.size(), packed);
+  const std::string meta = element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(2, 3, "UI", "1.9");
+  const auto size = [&](const std::string& last) {
+    return element(2, 0, "UL", bytes_of(static_cast<std::uint32_t>(meta.size() + last.size())));
+  };
+  file.replace(file.find(size(plain)), size(plain).size(), size(packed));
+  return file + bytes_of(std::uint16_t{0x7fe0}) + bytes_of(std::uint16_t{0x10}) + std::string("OB\0\0", 4) +
+         bytes_of(0xffffffffU) + item("") + item(stream) + std::string("\xfe\xff\xdd\xe0\0\0\0\0", 8);
+}
+
 // A slice as run lengths: the more significant bytes of its samples, then the less significant, all literal.
 inline std::string run_lengths(const std::string& slice) {
   std::string high;

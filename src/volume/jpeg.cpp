@@ -1,0 +1,203 @@
+#include "volume/jpeg.hpp"
+
+#include <optional>
+
+#include "volume/input_file.hpp"
+#include "volume/jpeg_scans.hpp"
+
+namespace isoweave {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+// Second bytes of the marks of segments.
+enum Mark : std::uint32_t {
+  kBaseline = 0xc0,
+  kExtended = 0xc1,
+  kLossless = 0xc3,
+  kCodes = 0xc4,
+  kLastFrame = 0xcf,
+  kStart = 0xd8,
+  kScan = 0xda,
+  kDivisors = 0xdb,
+  kRestarts = 0xdd,
+  kApplication = 0xe0,
+  kLastApplication = 0xef,
+  kComment = 0xfe,
+  kFilling = 0xff,
+};
+
+std::uint32_t byte_at(Bytes bytes, std::size_t at) { return std::to_integer<std::uint32_t>(bytes[at]); }
+std::uint32_t pair_at(Bytes bytes, std::size_t at) { return byte_at(bytes, at) << 8 | byte_at(bytes, at + 1); }
+
+std::string hexadecimal(std::uint32_t mark) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  return std::string("FF") + kDigits[mark >> 4] + kDigits[mark & 15];
+}
+
+// Goes through the segments of a stream up to its first scan, and decodes that.
+class JpegReader {
+ public:
+  JpegReader(const std::string& path, Bytes stream, int used) : path_(path), stream_(stream), used_(used) {}
+
+  std::vector<std::uint16_t> samples(std::int64_t columns, std::int64_t rows) {
+    if (stream_.size() < 2 || pair_at(stream_, 0) != (kFilling << 8 | kStart)) damaged("no mark of a start");
+    at_ = 2;
+    for (;;) {
+      const std::uint32_t mark = next_mark();
+      const Bytes segment = next_segment();
+      if (mark == kScan) return scan(segment);
+      if (mark == kCodes) {
+        read_codes(segment);
+      } else if (mark == kDivisors) {
+        read_divisors(segment);
+      } else if (mark == kRestarts) {
+        read_restart(segment);
+      } else if (mark >= kBaseline && mark <= kLastFrame) {
+        read_frame(mark, segment, columns, rows);
+      } else if (mark != kComment && (mark < kApplication || mark > kLastApplication)) {
+        damaged("the mark " + hexadecimal(mark));
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kTables = 4;
+
+  [[noreturn]] void damaged(const std::string& found) const { bad_input(path_, "decodable JPEG samples", found); }
+
+  std::uint32_t next_mark() {
+    if (at_ >= stream_.size() || byte_at(stream_, at_) != kFilling) damaged("no mark of a segment");
+    while (at_ < stream_.size() && byte_at(stream_, at_) == kFilling) ++at_;
+    if (at_ == stream_.size()) damaged("no segment behind a mark");
+    return byte_at(stream_, at_++);
+  }
+
+  Bytes next_segment() {
+    constexpr std::size_t kLength = 2;
+    const std::size_t left = stream_.size() - at_;
+    const std::size_t length = left < kLength ? 0 : pair_at(stream_, at_);
+    if (length < kLength || length > left) damaged("a segment that ends too early");
+    const Bytes segment = stream_.subspan(at_ + kLength, length - kLength);
+    at_ += length;
+    return segment;
+  }
+
+  void read_codes(Bytes segment) {
+    constexpr std::size_t kHead = 1 + HuffmanCode::kLongest;
+    while (!segment.empty()) {
+      if (segment.size() < kHead) damaged("a table of codes that ends too early");
+      const auto counts = segment.subspan<1, HuffmanCode::kLongest>();
+      std::size_t symbols = 0;
+      for (const std::byte count : counts) symbols += std::to_integer<std::size_t>(count);
+      const std::uint32_t name = byte_at(segment, 0);
+      if (symbols > segment.size() - kHead || (name >> 4) > 1 || (name & 15) >= kTables)
+        damaged("a damaged table of codes");
+      HuffmanCode& code = codes_[name >> 4][name & 15].emplace();
+      if (!code.define(counts, segment.subspan(kHead, symbols))) damaged("a damaged table of codes");
+      segment = segment.subspan(kHead + symbols);
+    }
+  }
+
+  void read_divisors(Bytes segment) {
+    while (!segment.empty()) {
+      const std::uint32_t name = byte_at(segment, 0);
+      const std::size_t width = (name >> 4) + 1;
+      const std::size_t size = 1 + 64 * width;
+      if (width > 2 || (name & 15) >= kTables || segment.size() < size) damaged("a damaged table of divisors");
+      JpegDivisors& divisors = divisors_[name & 15].emplace();
+      for (std::size_t n = 0; n < divisors.size(); ++n) {
+        divisors[n] = static_cast<std::uint16_t>(width == 1 ? byte_at(segment, 1 + n) : pair_at(segment, 1 + 2 * n));
+      }
+      segment = segment.subspan(size);
+    }
+  }
+
+  void read_restart(Bytes segment) {
+    if (segment.size() != 2) damaged("a damaged interval of restarts");
+    restart_ = pair_at(segment, 0);
+  }
+
+  void read_frame(std::uint32_t mark, Bytes segment, std::int64_t columns, std::int64_t rows) {
+    constexpr std::size_t kSize = 6 + 3;
+    lossless_ = mark == kLossless;
+    if (mark != kBaseline && mark != kExtended && !lossless_) {
+      bad_input(path_, "a sequential or lossless JPEG frame with Huffman codes",
+                "one with the mark " + hexadecimal(mark));
+    }
+    if (size_.bits > 0) damaged("a second frame");
+    if (segment.size() != kSize || byte_at(segment, 5) != 1) damaged("a frame that is not of one component");
+    size_ = {pair_at(segment, 3), pair_at(segment, 1), static_cast<int>(byte_at(segment, 0))};
+    component_ = byte_at(segment, 6);
+    table_ = byte_at(segment, 8);
+    const bool depth = lossless_ ? size_.bits >= 2 && size_.bits <= 16 : size_.bits == 8 || size_.bits == 12;
+    if (!depth) damaged("samples of " + std::to_string(size_.bits) + " bits");
+    if (size_.columns != columns || size_.rows != rows || columns == 0 || rows == 0) {
+      damaged(std::to_string(size_.columns) + " x " + std::to_string(size_.rows) + " of them");
+    }
+  }
+
+  const HuffmanCode& code(std::uint32_t kind, std::uint32_t name) const {
+    if (name >= kTables || !codes_[kind][name]) damaged("no table of codes " + std::to_string(name));
+    return *codes_[kind][name];
+  }
+
+  std::vector<std::uint16_t> scan(Bytes segment) const {
+    constexpr std::size_t kSize = 6;
+    if (size_.bits == 0) damaged("a scan without a frame");
+    if (segment.size() != kSize || byte_at(segment, 0) != 1 || byte_at(segment, 1) != component_) {
+      damaged("a scan that is not of the frame's component");
+    }
+    const std::uint32_t names = byte_at(segment, 2);
+    std::vector<std::uint16_t> samples;
+    const JpegBits bits(stream_.subspan(at_));
+    const bool decoded = lossless_ ? lossless_scan(segment, code(0, names >> 4), bits, samples)
+                                   : block_scan(code(0, names >> 4), code(1, names & 15), bits, samples);
+    if (!decoded) damaged("damaged data");
+    return samples;
+  }
+
+  bool lossless_scan(Bytes segment, const HuffmanCode& code, const JpegBits& bits,
+                     std::vector<std::uint16_t>& samples) const {
+    const auto predictor = static_cast<int>(byte_at(segment, 3));
+    const auto shift = static_cast<int>(byte_at(segment, 5) & 15);
+    if (predictor < 1 || predictor > 7) damaged("the predictor " + std::to_string(predictor));
+    if (shift >= size_.bits) damaged("a shift of " + std::to_string(shift) + " bits");
+    expect_bits(size_.samples());
+    return decode_lossless(size_, {code, predictor, shift, restart_}, bits, samples);
+  }
+
+  bool block_scan(const HuffmanCode& first, const HuffmanCode& rest, const JpegBits& bits,
+                  std::vector<std::uint16_t>& samples) const {
+    if (table_ >= kTables || !divisors_[table_]) damaged("no table of divisors " + std::to_string(table_));
+    const auto blocks = [](std::int64_t length) { return static_cast<std::size_t>((length + 7) / 8); };
+    expect_bits(2 * blocks(size_.columns) * blocks(size_.rows));
+    return decode_blocks(size_, {first, rest, *divisors_[table_], used_, restart_}, bits, samples);
+  }
+
+  // Before anything is made as large as a frame says that it is: no code is shorter than a bit.
+  void expect_bits(std::size_t least) const {
+    if (8 * (stream_.size() - at_) < least) damaged(std::to_string(stream_.size() - at_) + " bytes for all of them");
+  }
+
+  const std::string& path_;
+  Bytes stream_;
+  int used_;
+  std::size_t at_ = 0;
+  std::array<std::array<std::optional<HuffmanCode>, kTables>, 2> codes_;
+  std::array<std::optional<JpegDivisors>, kTables> divisors_;
+  JpegSize size_;
+  bool lossless_ = false;
+  std::uint32_t component_ = 0;
+  std::uint32_t table_ = 0;  // of divisors
+  std::uint32_t restart_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint16_t> decode_jpeg(const std::string& path, Bytes stream, std::int64_t columns, std::int64_t rows,
+                                       int used) {
+  return JpegReader(path, stream, used).samples(columns, rows);
+}
+
+}  // namespace isoweave
