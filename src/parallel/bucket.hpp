@@ -18,7 +18,7 @@ struct Buckets {
 // same answer twice. Same result for any number of threads.
 template <class Key>
 void fill_buckets(const Executor& executor, std::uint32_t count, std::size_t buckets, const Key& key, Buckets& out) {
-  constexpr std::int64_t kBlock = 1 << 16;
+  constexpr std::int64_t kBlock = 1 << 13;
   const std::size_t blocks = (static_cast<std::size_t>(count) + kBlock - 1) / kBlock;
   std::vector<std::size_t> position(blocks * buckets, 0);
   executor.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {

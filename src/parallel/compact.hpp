@@ -49,9 +49,16 @@ class Compaction {
         change(array[next++]);
       }
     });
-    for (std::size_t block = 1; block * kBlock < array.size(); ++block) {
-      std::memmove(array.data() + start_[block], array.data() + block * kBlock,
-                   (start_[block + 1] - start_[block]) * sizeof(T));
+    // Side by side go blocks that end up below the first of them.
+    for (std::size_t block = 1; block * kBlock < array.size();) {
+      std::size_t end = block + 1;
+      while (end * kBlock < array.size() && start_[end + 1] <= block * kBlock) ++end;
+      executor_.for_each(static_cast<std::int64_t>(end - block), 1, [&](std::int64_t n) {
+        const std::size_t own = block + static_cast<std::size_t>(n);
+        std::memmove(array.data() + start_[own], array.data() + own * kBlock,
+                     (start_[own + 1] - start_[own]) * sizeof(T));
+      });
+      block = end;
     }
     array.resize(kept());
   }
@@ -62,7 +69,7 @@ class Compaction {
   }
 
  private:
-  static constexpr std::size_t kBlock = 1 << 14;
+  static constexpr std::size_t kBlock = 1 << 12;
 
   template <class Body>
   void blocks(std::size_t size, const Body& body) const {

@@ -118,7 +118,8 @@ SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,
                                    const std::vector<std::uint32_t>& corners) const {
   std::atomic<std::uint64_t> bad_vertices{0};
   std::atomic<std::uint64_t> bad_edges{0};
-  executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t kFew = 256;  // walks take long
+  executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kFew, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Index> neighbours;
     for (std::int64_t n = begin; n < end; ++n) {
       const Index v = vertices[static_cast<std::size_t>(n)];

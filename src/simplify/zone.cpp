@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
 #include "parallel/compact.hpp"
+#include "parallel/touch.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/star.hpp"
 #include "simplify/zone_rules.hpp"
@@ -106,26 +108,27 @@ void Zone::set_limit(CostBits new_limit) {
 
 // The vertices that were incomplete, those beside them, those that were deferred, and the new ones up to `end`.
 void Zone::list_settled(Index end) {
-  settled.old = front_;
+  settled.clear();
+  settled.first_new = static_cast<Index>(vertices.size());
+  settled.end = end;
+  std::vector<std::uint8_t> listed(vertices.size(), 0);
+  const auto list = [&](Index v) {
+    if (std::exchange(listed[v], 1) == 0) settled.old.push_back(v);
+  };
+  for (const Index v : front_) list(v);
+  for (const Index h : unkeyed_edges_) {
+    list(origin(h));
+    list(destination(h));
+  }
   for (Index v = 0; extracted_surface_ && v < vertices.size(); ++v) {
     if (states[v] != VertexState::kDeferred) continue;
     states[v] = VertexState::kComplete;
-    settled.old.push_back(v);
+    list(v);
   }
-  for (const Index h : unkeyed_edges_) {
-    settled.old.push_back(origin(h));
-    settled.old.push_back(destination(h));
+  for (Index v = 0; turns_forgotten_ && v < vertices.size(); ++v) {
+    if (states[v] == VertexState::kComplete) list(v);
   }
-  if (turns_forgotten_) {
-    for (Index v = 0; v < vertices.size(); ++v) {
-      if (states[v] == VertexState::kComplete) settled.old.push_back(v);
-    }
-    turns_forgotten_ = false;
-  }
-  std::sort(settled.old.begin(), settled.old.end());
-  settled.old.erase(std::unique(settled.old.begin(), settled.old.end()), settled.old.end());
-  settled.first_new = static_cast<Index>(vertices.size());
-  settled.end = end;
+  turns_forgotten_ = false;
 }
 
 void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
@@ -140,6 +143,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   value_array_.insert(value_array_.end(), piece.values.begin(), piece.values.end());
   if (options.normals_count) normal_quadric_array_.resize(end);
   show_arrays();
+  touch(vertex_array_, first, executor);
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     const auto from = static_cast<std::size_t>(n);
     Vertex& vertex = vertices[first + from];
@@ -158,6 +162,7 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
   const Index first = triangle_count();
   triangle_array_.resize(first + piece.triangles.size());
   show_arrays();
+  touch(triangle_array_, first, executor);
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
@@ -189,52 +194,55 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
   extracted_surface_->append(corners, piece.complete_below);
 }
 
-// Finds twins: lists every edge side with the end that has the smaller number in the piece, and pairs the sides of each
-// list.
+// Finds twins: puts every side of an edge into the list of the end that has the smaller number in the piece, and pairs
+// the sides of each list. A side of a new triangle has the number of its half-edge, counted from the first of them; the
+// open ones follow.
 void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
   const auto open_sides = open_sides_of(piece);
   const auto open = static_cast<std::int64_t>(open_sides.size());
-  const auto count = open + static_cast<std::int64_t>(piece.triangles.size());
-  const auto each_side = [&](std::int64_t n, const auto& visit) {
-    if (n < open) {
-      const auto& [a, b, h] = open_sides[static_cast<std::size_t>(n)];
-      visit(a, b, h);
-      return;
-    }
-    const auto& corners = piece.triangles[static_cast<std::size_t>(n - open)];
-    for (Index c = 0; c < 3; ++c) {
-      const Index h = half_edge(first_triangle + static_cast<Index>(n - open), c);
-      visit(corners[c], corners[(c + 1) % 3], h);
-    }
+  const auto count = static_cast<std::int64_t>(piece.triangles.size());
+  const Index first_open = half_edge(static_cast<Index>(count), 0);
+  const auto ends_of = [&](Index side) -> std::array<Index, 2> {
+    if (side >= first_open) return {open_sides[side - first_open][0], open_sides[side - first_open][1]};
+    const auto& corners = piece.triangles[side >> 2];
+    return {corners[side & 3], corners[next(side) & 3]};
+  };
+  const auto half_edge_of = [&](Index side) {
+    return side < first_open ? half_edge(first_triangle, 0) + side : open_sides[side - first_open][2];
   };
 
   const std::size_t ends = piece.inherited + piece.positions.size();
-  std::vector<Index> start(ends + 1, 0);
-  executor.for_each(count, kBlock, [&](std::int64_t n) {
-    each_side(n, [&](Index a, Index b, Index) {
-      std::atomic_ref(start[std::min(a, b) + 1]).fetch_add(1, std::memory_order_relaxed);
-    });
+  first_side_.resize(ends);
+  next_side_.resize(first_open + open_sides.size());
+  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::fill(first_side_.data() + begin, first_side_.data() + end, kNone);
   });
-  for (std::size_t n = 0; n < ends; ++n) start[n + 1] += start[n];
-  std::vector<Index> fill(start.begin(), start.end() - 1);
-  Array<EdgeSide> sides;
-  sides.resize(start.back());
-  executor.for_each(count, kBlock, [&](std::int64_t n) {
-    each_side(n, [&](Index a, Index b, Index h) {
-      const Index place = std::atomic_ref(fill[std::min(a, b)]).fetch_add(1, std::memory_order_relaxed);
-      sides[place] = EdgeSide(a, b, h);
-    });
+  const bool alone = executor.threads() == 1;
+  const auto list = [&](Index side, Index a, Index b) {
+    Index& first = first_side_[std::min(a, b)];
+    next_side_[side] =
+        alone ? std::exchange(first, side) : std::atomic_ref(first).exchange(side, std::memory_order_relaxed);
+  };
+  executor.for_each(count + open, kBlock, [&](std::int64_t n) {
+    if (n >= count) {
+      const auto& [a, b, h] = open_sides[static_cast<std::size_t>(n - count)];
+      return list(first_open + static_cast<Index>(n - count), a, b);
+    }
+    const auto& corners = piece.triangles[static_cast<std::size_t>(n)];
+    for (Index c = 0; c < 3; ++c) list(half_edge(static_cast<Index>(n), c), corners[c], corners[(c + 1) % 3]);
   });
-  executor.for_each(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t n) {
-    const auto end = static_cast<std::size_t>(n);
-    pair_sides({sides.data() + start[end], start[end + 1] - start[end]});
+  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<EdgeSide> sides;
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+      sides.clear();
+      for (Index side = first_side_[v]; side != kNone; side = next_side_[side]) {
+        const auto [a, b] = ends_of(side);
+        sides.emplace_back(a, b, half_edge_of(side));
+      }
+      sort_few(std::span(sides), [](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
+      link_sorted(*this, sides);
+    }
   });
-}
-
-// The sides of all edges at one end.
-void Zone::pair_sides(std::span<EdgeSide> sides) {
-  sort_few(sides, [&](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
-  link_sorted(*this, sides);
 }
 
 // Vertices whose faces form more than one fan.
@@ -266,17 +274,16 @@ std::uint32_t Zone::count_fan(Index v) const {
 // The half-edges that a piece can bring a twin for, with the numbers that it gives to their ends: only a triangle
 // between incomplete vertices can.
 std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece) const {
-  std::vector<std::pair<Index, Index>> numbers;  // of the front, by vertex
-  for (Index n = 0; n < piece.inherited; ++n) numbers.emplace_back(front_[n], n);
-  std::sort(numbers.begin(), numbers.end());
-  const auto number = [&](Index v) {
-    return std::lower_bound(numbers.begin(), numbers.end(), std::pair<Index, Index>(v, 0))->second;
-  };
+  Array<Index> number;  // of incomplete vertices
+  number.resize(settled.first_new);
+  for (Index n = 0; n < piece.inherited; ++n) number[front_[n]] = n;
   std::vector<std::array<Index, 3>> sides;
   for (const Index h : unkeyed_edges_) {
-    const bool open = twin(h) == kNone && states[origin(h)] == VertexState::kIncomplete &&
-                      states[destination(h)] == VertexState::kIncomplete;
-    if (open) sides.push_back({number(origin(h)), number(destination(h)), h});
+    const Index a = origin(h);
+    const Index b = destination(h);
+    const bool open =
+        twin(h) == kNone && states[a] == VertexState::kIncomplete && states[b] == VertexState::kIncomplete;
+    if (open) sides.push_back({number[a], number[b], h});
   }
   return sides;
 }
@@ -318,25 +325,34 @@ struct Zone::EdgeBatch {
   std::size_t count = 0;
 };
 
-// Keys of the edges whose two ends are complete now.
+// Keys of the edges whose two ends are complete now: of those that waited, and of those of new triangles.
 void Zone::settle_edges(Index first_triangle, const Executor& executor) {
-  EdgeBatch batch;
-  std::erase_if(unkeyed_edges_, [&](Index h) { return settle_edge(h, batch); });
-  give_keys(batch);
+  std::vector<Index> waiting;
+  collect(
+      executor, static_cast<std::int64_t>(unkeyed_edges_.size()), kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        EdgeBatch batch;
+        for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+          if (!settle_edge(unkeyed_edges_[n], batch)) list.push_back(unkeyed_edges_[n]);
+        }
+        give_keys(batch);
+      },
+      waiting);
   std::vector<Index> unkeyed;
   collect(
       executor, triangle_count() - first_triangle, kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
-        EdgeBatch own;
+        EdgeBatch batch;
         for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
           for (Index c = 0; c < 3; ++c) {
             const Index h = half_edge(t, c);
-            if (represents_edge(h) && !settle_edge(h, own)) list.push_back(h);
+            if (represents_edge(h) && !settle_edge(h, batch)) list.push_back(h);
           }
         }
-        give_keys(own);
+        give_keys(batch);
       },
       unkeyed);
+  unkeyed_edges_ = std::move(waiting);
   unkeyed_edges_.insert(unkeyed_edges_.end(), unkeyed.begin(), unkeyed.end());
 }
 

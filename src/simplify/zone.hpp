@@ -38,8 +38,6 @@ struct LevelVertex {
   bool final = false;                  // no edge has a key within the level's error
 };
 
-struct EdgeSide;
-
 // Owns what its view shows.
 class Zone : public ZoneView {
  public:
@@ -97,7 +95,6 @@ class Zone : public ZoneView {
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
-  void pair_sides(std::span<EdgeSide> sides);
   void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void lock_split_vertices(const Executor& executor);
   std::uint32_t count_fan(Index v) const;
@@ -116,8 +113,9 @@ class Zone : public ZoneView {
   Array<Key> turn_key_array_;
   Array<Turn> turn_array_;
   Array<Triangle> triangle_array_;
-  std::vector<Index> front_;          // incomplete vertices, in the order of the piece that named them
-  std::vector<Index> unkeyed_edges_;  // an end incomplete
+  Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next time
+  std::vector<Index> front_;             // incomplete vertices, in the order of the piece that named them
+  std::vector<Index> unkeyed_edges_;     // an end incomplete
   bool turns_forgotten_ = false;
   std::unique_ptr<ExtractedSurface> extracted_surface_;  // where distances are bounded
 };

@@ -1,6 +1,7 @@
 #include "slab/slice_window.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <span>
 
 namespace isoweave {
@@ -49,13 +50,21 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int
   return count;
 }
 
-// Enlarges the ring in place: two of them would be the peak of a run.
+// Enlarges the ring in place: two of them would be the peak of a run. What had gone on at its beginning goes on behind
+// the rest, as far as there is room now.
 void SliceWindow::make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock) {
   growing_ = true;
   changed_.wait(lock, [&] { return !reading_; });
-  if (filled_ > first_) std::rotate(buffer_.begin(), place(first_), buffer_.end());
-  base_ = first_;
-  buffer_.resize(static_cast<std::size_t>(slices) * slice_bytes_);
+  const std::int64_t at = room_ > 0 ? (first_ - base_) % room_ : 0;
+  const std::int64_t wrapped = std::max<std::int64_t>(at + (filled_ - first_) - room_, 0);
+  const std::int64_t behind = std::min(wrapped, slices - room_);
+  const auto bytes = [&](std::int64_t count) { return static_cast<std::size_t>(count) * slice_bytes_; };
+  buffer_.resize(bytes(slices));
+  if (wrapped > 0) {
+    std::memcpy(buffer_.data() + bytes(room_), buffer_.data(), bytes(behind));
+    std::memmove(buffer_.data(), buffer_.data() + bytes(behind), bytes(wrapped - behind));
+  }
+  base_ = first_ - at;
   room_ = slices;
   growing_ = false;
 }
