@@ -65,6 +65,10 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
   };
   link(piece, first_triangle, executor);
+  if (piece.incomplete.empty()) {  // nothing is left to link to
+    first_side_ = {};
+    next_side_ = {};
+  }
   if (!piece.manifold) lock_split_vertices(executor);
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);

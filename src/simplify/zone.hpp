@@ -113,7 +113,7 @@ class Zone : public ZoneView {
   Array<Key> turn_key_array_;
   Array<Turn> turn_array_;
   Array<Triangle> triangle_array_;
-  Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next time
+  Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next piece
   std::vector<Index> front_;             // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;     // an end incomplete
   bool turns_forgotten_ = false;
