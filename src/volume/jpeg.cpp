@@ -1,6 +1,8 @@
 #include "volume/jpeg.hpp"
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "volume/input_file.hpp"
 #include "volume/jpeg_scans.hpp"
@@ -10,17 +12,17 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Second bytes of the marks of segments.
-enum Mark : std::uint32_t {
+// Second bytes of markers.
+enum Marker : std::uint32_t {
   kBaseline = 0xc0,
   kExtended = 0xc1,
   kLossless = 0xc3,
-  kCodes = 0xc4,
+  kHuffman = 0xc4,
   kLastFrame = 0xcf,
   kStart = 0xd8,
   kScan = 0xda,
-  kDivisors = 0xdb,
-  kRestarts = 0xdd,
+  kQuantization = 0xdb,
+  kRestartInterval = 0xdd,
   kApplication = 0xe0,
   kLastApplication = 0xef,
   kComment = 0xfe,
@@ -30,9 +32,9 @@ enum Mark : std::uint32_t {
 std::uint32_t byte_at(Bytes bytes, std::size_t at) { return std::to_integer<std::uint32_t>(bytes[at]); }
 std::uint32_t pair_at(Bytes bytes, std::size_t at) { return byte_at(bytes, at) << 8 | byte_at(bytes, at + 1); }
 
-std::string hexadecimal(std::uint32_t mark) {
+std::string hexadecimal(std::uint32_t marker) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
-  return std::string("FF") + kDigits[mark >> 4] + kDigits[mark & 15];
+  return std::string("FF") + kDigits[marker >> 4] + kDigits[marker & 15];
 }
 
 // Goes through the segments of a stream up to its first scan, and decodes that.
@@ -41,22 +43,22 @@ class JpegReader {
   JpegReader(const std::string& path, Bytes stream, int used) : path_(path), stream_(stream), used_(used) {}
 
   std::vector<std::uint16_t> samples(std::int64_t columns, std::int64_t rows) {
-    if (stream_.size() < 2 || pair_at(stream_, 0) != (kFilling << 8 | kStart)) damaged("no mark of a start");
+    if (stream_.size() < 2 || pair_at(stream_, 0) != (kFilling << 8 | kStart)) damaged("no start marker");
     at_ = 2;
     for (;;) {
-      const std::uint32_t mark = next_mark();
+      const std::uint32_t marker = next_marker();
       const Bytes segment = next_segment();
-      if (mark == kScan) return scan(segment);
-      if (mark == kCodes) {
+      if (marker == kScan) return scan(segment);
+      if (marker == kHuffman) {
         read_codes(segment);
-      } else if (mark == kDivisors) {
-        read_divisors(segment);
-      } else if (mark == kRestarts) {
+      } else if (marker == kQuantization) {
+        read_quantization(segment);
+      } else if (marker == kRestartInterval) {
         read_restart(segment);
-      } else if (mark >= kBaseline && mark <= kLastFrame) {
-        read_frame(mark, segment, columns, rows);
-      } else if (mark != kComment && (mark < kApplication || mark > kLastApplication)) {
-        damaged("the mark " + hexadecimal(mark));
+      } else if (marker >= kBaseline && marker <= kLastFrame) {
+        read_frame(marker, segment, columns, rows);
+      } else if (marker != kComment && (marker < kApplication || marker > kLastApplication)) {
+        damaged("the marker " + hexadecimal(marker));
       }
     }
   }
@@ -66,10 +68,10 @@ class JpegReader {
 
   [[noreturn]] void damaged(const std::string& found) const { bad_input(path_, "decodable JPEG samples", found); }
 
-  std::uint32_t next_mark() {
-    if (at_ >= stream_.size() || byte_at(stream_, at_) != kFilling) damaged("no mark of a segment");
+  std::uint32_t next_marker() {
+    if (at_ >= stream_.size() || byte_at(stream_, at_) != kFilling) damaged("no marker of a segment");
     while (at_ < stream_.size() && byte_at(stream_, at_) == kFilling) ++at_;
-    if (at_ == stream_.size()) damaged("no segment behind a mark");
+    if (at_ == stream_.size()) damaged("no segment behind a marker");
     return byte_at(stream_, at_++);
   }
 
@@ -86,44 +88,45 @@ class JpegReader {
   void read_codes(Bytes segment) {
     constexpr std::size_t kHead = 1 + HuffmanCode::kLongest;
     while (!segment.empty()) {
-      if (segment.size() < kHead) damaged("a table of codes that ends too early");
+      if (segment.size() < kHead) damaged("a Huffman table that ends too early");
       const auto counts = segment.subspan<1, HuffmanCode::kLongest>();
       std::size_t symbols = 0;
       for (const std::byte count : counts) symbols += std::to_integer<std::size_t>(count);
       const std::uint32_t name = byte_at(segment, 0);
       if (symbols > segment.size() - kHead || (name >> 4) > 1 || (name & 15) >= kTables)
-        damaged("a damaged table of codes");
+        damaged("a damaged Huffman table");
       HuffmanCode& code = codes_[name >> 4][name & 15].emplace();
-      if (!code.define(counts, segment.subspan(kHead, symbols))) damaged("a damaged table of codes");
+      if (!code.define(counts, segment.subspan(kHead, symbols))) damaged("a damaged Huffman table");
       segment = segment.subspan(kHead + symbols);
     }
   }
 
-  void read_divisors(Bytes segment) {
+  void read_quantization(Bytes segment) {
     while (!segment.empty()) {
       const std::uint32_t name = byte_at(segment, 0);
       const std::size_t width = (name >> 4) + 1;
       const std::size_t size = 1 + 64 * width;
-      if (width > 2 || (name & 15) >= kTables || segment.size() < size) damaged("a damaged table of divisors");
-      JpegDivisors& divisors = divisors_[name & 15].emplace();
-      for (std::size_t n = 0; n < divisors.size(); ++n) {
-        divisors[n] = static_cast<std::uint16_t>(width == 1 ? byte_at(segment, 1 + n) : pair_at(segment, 1 + 2 * n));
+      if (width > 2 || (name & 15) >= kTables || segment.size() < size) damaged("a damaged quantization table");
+      JpegQuantization& quantization = quantization_[name & 15].emplace();
+      for (std::size_t n = 0; n < quantization.size(); ++n) {
+        quantization[n] =
+            static_cast<std::uint16_t>(width == 1 ? byte_at(segment, 1 + n) : pair_at(segment, 1 + 2 * n));
       }
       segment = segment.subspan(size);
     }
   }
 
   void read_restart(Bytes segment) {
-    if (segment.size() != 2) damaged("a damaged interval of restarts");
+    if (segment.size() != 2) damaged("a damaged restart interval");
     restart_ = pair_at(segment, 0);
   }
 
-  void read_frame(std::uint32_t mark, Bytes segment, std::int64_t columns, std::int64_t rows) {
+  void read_frame(std::uint32_t marker, Bytes segment, std::int64_t columns, std::int64_t rows) {
     constexpr std::size_t kSize = 6 + 3;
-    lossless_ = mark == kLossless;
-    if (mark != kBaseline && mark != kExtended && !lossless_) {
+    lossless_ = marker == kLossless;
+    if (marker != kBaseline && marker != kExtended && !lossless_) {
       bad_input(path_, "a sequential or lossless JPEG frame with Huffman codes",
-                "one with the mark " + hexadecimal(mark));
+                "one with the marker " + hexadecimal(marker));
     }
     if (size_.bits > 0) damaged("a second frame");
     if (segment.size() != kSize || byte_at(segment, 5) != 1) damaged("a frame that is not of one component");
@@ -138,7 +141,7 @@ class JpegReader {
   }
 
   const HuffmanCode& code(std::uint32_t kind, std::uint32_t name) const {
-    if (name >= kTables || !codes_[kind][name]) damaged("no table of codes " + std::to_string(name));
+    if (name >= kTables || !codes_[kind][name]) damaged("no Huffman table " + std::to_string(name));
     return *codes_[kind][name];
   }
 
@@ -160,19 +163,19 @@ class JpegReader {
   bool lossless_scan(Bytes segment, const HuffmanCode& code, const JpegBits& bits,
                      std::vector<std::uint16_t>& samples) const {
     const auto predictor = static_cast<int>(byte_at(segment, 3));
-    const auto shift = static_cast<int>(byte_at(segment, 5) & 15);
+    const auto point_transform = static_cast<int>(byte_at(segment, 5) & 15);
     if (predictor < 1 || predictor > 7) damaged("the predictor " + std::to_string(predictor));
-    if (shift >= size_.bits) damaged("a shift of " + std::to_string(shift) + " bits");
+    if (point_transform >= size_.bits) damaged("a point transform of " + std::to_string(point_transform) + " bits");
     expect_bits(size_.samples());
-    return decode_lossless(size_, {code, predictor, shift, restart_}, bits, samples);
+    return decode_lossless(size_, {code, predictor, point_transform, restart_}, bits, samples);
   }
 
-  bool block_scan(const HuffmanCode& first, const HuffmanCode& rest, const JpegBits& bits,
+  bool block_scan(const HuffmanCode& dc, const HuffmanCode& ac, const JpegBits& bits,
                   std::vector<std::uint16_t>& samples) const {
-    if (table_ >= kTables || !divisors_[table_]) damaged("no table of divisors " + std::to_string(table_));
+    if (table_ >= kTables || !quantization_[table_]) damaged("no quantization table " + std::to_string(table_));
     const auto blocks = [](std::int64_t length) { return static_cast<std::size_t>((length + 7) / 8); };
     expect_bits(2 * blocks(size_.columns) * blocks(size_.rows));
-    return decode_blocks(size_, {first, rest, *divisors_[table_], used_, restart_}, bits, samples);
+    return decode_blocks(size_, {dc, ac, *quantization_[table_], used_, restart_}, bits, samples);
   }
 
   // Before anything is made as large as a frame says that it is: no code is shorter than a bit.
@@ -185,11 +188,11 @@ class JpegReader {
   int used_;
   std::size_t at_ = 0;
   std::array<std::array<std::optional<HuffmanCode>, kTables>, 2> codes_;
-  std::array<std::optional<JpegDivisors>, kTables> divisors_;
+  std::array<std::optional<JpegQuantization>, kTables> quantization_;
   JpegSize size_;
   bool lossless_ = false;
   std::uint32_t component_ = 0;
-  std::uint32_t table_ = 0;  // of divisors
+  std::uint32_t table_ = 0;  // of quantization
   std::uint32_t restart_ = 0;
 };
 

@@ -59,17 +59,17 @@ int JpegBits::number(int bits) {
 
 void JpegBits::restart(std::uint32_t n) {
   constexpr std::uint32_t kFirstRestart = 0xd0;
-  constexpr std::size_t kMark = 2;
+  constexpr std::size_t kMarker = 2;
   bits_ = 0;
   count_ = 0;
   while (at_ + 1 < stream_.size() && stream_[at_] == kOnes && stream_[at_ + 1] == kOnes) ++at_;  // filling
-  const bool there = stream_.size() - at_ >= kMark && stream_[at_] == kOnes &&
+  const bool there = stream_.size() - at_ >= kMarker && stream_[at_] == kOnes &&
                      std::to_integer<std::uint32_t>(stream_[at_ + 1]) == kFirstRestart + n % 8;
   if (!there) failed_ = true;
-  if (there) at_ += kMark;
+  if (there) at_ += kMarker;
 }
 
-// Up to the next mark. A byte of ones is followed by one of zeros where it is none.
+// Up to the next marker. A byte of ones is followed by one of zeros where it is none.
 void JpegBits::fill() {
   constexpr int kRoom = 64 - 8;
   while (count_ <= kRoom && at_ < stream_.size()) {

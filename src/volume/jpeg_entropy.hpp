@@ -33,7 +33,7 @@ class HuffmanCode {
   std::vector<std::uint8_t> symbols_;
 };
 
-// Bits between two marks of a stream. Whoever reads past their end gets zeros; failed() tells.
+// Bits between two markers of a stream. Whoever reads past their end gets zeros; failed() tells.
 class JpegBits {
  public:
   explicit JpegBits(std::span<const std::byte> stream) : stream_(stream) {}
@@ -44,7 +44,7 @@ class JpegBits {
   // A signed number of `bits` bits, up to 16 (T.81, F.2.2.1).
   int number(int bits);
 
-  // Goes past the n-th mark of a restart, which must be next.
+  // Goes past the n-th restart marker, which must be next.
   void restart(std::uint32_t n);
 
   bool failed() const { return failed_; }

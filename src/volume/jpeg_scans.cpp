@@ -23,7 +23,7 @@ constexpr std::array<std::uint8_t, 64> kZigzag = [] {
   return places;
 }();
 
-// cos(n pi / 16) / 2 for n = 0 ... 8, with the factor sqrt(1/2) of the mean where n = 0 (T.81, A.3.3).
+// cos(n pi / 16) / 2 for n = 0 ... 8, with the factor sqrt(1/2) where n = 0 (T.81, A.3.3).
 constexpr std::array<double, 9> kCosines{0.35355339059327379, 0.49039264020161522,  0.46193976625564337,
                                          0.41573480615127262, 0.35355339059327379,  0.27778511650980109,
                                          0.19134171618254489, 0.097545161008064124, 0};
@@ -43,8 +43,8 @@ constexpr std::array<std::array<double, kSide>, kSide> kWeights = [] {
 
 using Block = std::array<double, kSide * kSide>;
 
-// Along rows, and again along what were columns.
-void from_cosines(Block& block) {
+// Inverse DCT by its definition: along rows, and again along what were columns.
+void inverse_dct(Block& block) {
   for (int pass = 0; pass < 2; ++pass) {
     Block turned;
     for (std::size_t row = 0; row < kSide; ++row) {
@@ -58,19 +58,19 @@ void from_cosines(Block& block) {
   }
 }
 
-// The coefficients of the next block (T.81, F.2.2). mean: of the block before, then of this one.
-bool read_block(const JpegBlockScan& scan, JpegBits& bits, std::int32_t& mean, Block& block) {
+// The coefficients of the next block (T.81, F.2.2). dc: of the block before, then of this one, not yet scaled.
+bool read_block(const JpegBlockScan& scan, JpegBits& bits, std::int32_t& dc, Block& block) {
   constexpr int kMostBits = 15;
-  constexpr std::int32_t kMostMean = 1 << (kMostBits + 1);
+  constexpr std::int32_t kMostDc = 1 << (kMostBits + 1);
   block = {};
-  const int size = bits.symbol(scan.first);
+  const int size = bits.symbol(scan.dc);
   if (size > kMostBits) return false;
-  mean += bits.number(size);
-  if (std::abs(mean) > kMostMean) return false;
-  block[0] = static_cast<double>(mean) * scan.divisors[0];
+  dc += bits.number(size);
+  if (std::abs(dc) > kMostDc) return false;
+  block[0] = static_cast<double>(dc) * scan.quantization[0];
   for (std::size_t n = 1; n < block.size(); ++n) {
     constexpr int kSixteenZeros = 0xf0;
-    const int code = bits.symbol(scan.rest);
+    const int code = bits.symbol(scan.ac);
     if (code == kSixteenZeros) {
       n += 15;
       continue;
@@ -78,7 +78,7 @@ bool read_block(const JpegBlockScan& scan, JpegBits& bits, std::int32_t& mean, B
     if (code % 16 == 0) break;
     n += static_cast<std::size_t>(code / 16);
     if (n >= block.size()) return false;
-    block[kZigzag[n]] = static_cast<double>(bits.number(code % 16)) * scan.divisors[n];
+    block[kZigzag[n]] = static_cast<double>(bits.number(code % 16)) * scan.quantization[n];
   }
   return !bits.failed();
 }
@@ -127,7 +127,7 @@ bool read_row(const JpegSize& size, const JpegLosslessScan& scan, JpegBits& bits
     const int difference = length == kHalfCircle ? 1 << 15 : bits.number(length);
     int expected = 0;
     if (n == 0) {
-      expected = above == nullptr ? 1 << (size.bits - scan.shift - 1) : above[0];
+      expected = above == nullptr ? 1 << (size.bits - scan.point_transform - 1) : above[0];
     } else {
       expected = above == nullptr ? row[n - 1] : predicted(scan.predictor, row[n - 1], above[n], above[n - 1]);
     }
@@ -141,17 +141,17 @@ bool read_row(const JpegSize& size, const JpegLosslessScan& scan, JpegBits& bits
 bool decode_blocks(const JpegSize& size, const JpegBlockScan& scan, JpegBits bits,
                    std::vector<std::uint16_t>& samples) {
   samples.resize(size.samples());
-  std::int32_t mean = 0;
+  std::int32_t dc = 0;
   std::uint32_t count = 0;
   Block block;
   for (std::int64_t row = 0; row < size.rows; row += kLength) {
     for (std::int64_t column = 0; column < size.columns; column += kLength, ++count) {
       if (scan.restart > 0 && count > 0 && count % scan.restart == 0) {
         bits.restart(count / scan.restart - 1);
-        mean = 0;
+        dc = 0;
       }
-      if (!read_block(scan, bits, mean, block)) return false;
-      from_cosines(block);
+      if (!read_block(scan, bits, dc, block)) return false;
+      inverse_dct(block);
       put_block(size, scan.used, block, row, column, samples);
     }
   }
@@ -174,8 +174,8 @@ bool decode_lossless(const JpegSize& size, const JpegLosslessScan& scan, JpegBit
     if (!read_row(size, scan, bits, above, own)) return false;
     above = own;
   }
-  if (scan.shift > 0) {
-    for (std::uint16_t& sample : samples) sample = static_cast<std::uint16_t>(sample << scan.shift);
+  if (scan.point_transform > 0) {
+    for (std::uint16_t& sample : samples) sample = static_cast<std::uint16_t>(sample << scan.point_transform);
   }
   return true;
 }

@@ -1,4 +1,4 @@
-// The scans of a JPEG frame of one component (ITU-T T.81, 1992): of blocks of cosines, or of predicted samples.
+// The scans of a JPEG frame of one component (ITU-T T.81, 1992): of DCT blocks, or of predicted samples.
 #pragma once
 
 #include <array>
@@ -17,22 +17,22 @@ struct JpegSize {
   std::size_t samples() const { return static_cast<std::size_t>(columns * rows); }
 };
 
-// Divisors of the coefficients of a block, in zigzag order.
-using JpegDivisors = std::array<std::uint16_t, 64>;
+// Step of each DCT coefficient, in zigzag order.
+using JpegQuantization = std::array<std::uint16_t, 64>;
 
 struct JpegBlockScan {
-  const HuffmanCode& first;  // of a block's mean
-  const HuffmanCode& rest;
-  const JpegDivisors& divisors;
+  const HuffmanCode& dc;
+  const HuffmanCode& ac;
+  const JpegQuantization& quantization;
   int used = 0;               // bits of a sample: larger numbers are cut off
-  std::uint32_t restart = 0;  // blocks between two marks; 0: no marks
+  std::uint32_t restart = 0;  // blocks between two restart markers; 0: none
 };
 
 struct JpegLosslessScan {
   const HuffmanCode& code;
   int predictor = 1;          // 1 to 7
-  int shift = 0;              // lower bits left out; fewer than a sample has
-  std::uint32_t restart = 0;  // samples between two marks, whole rows; 0: no marks
+  int point_transform = 0;    // lower bits left out; fewer than a sample has
+  std::uint32_t restart = 0;  // samples between two restart markers, whole rows; 0: none
 };
 
 // Samples row by row. False when the bits are damaged or too few.

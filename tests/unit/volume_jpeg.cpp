@@ -130,13 +130,13 @@ class Bits {
     put(static_cast<std::uint32_t>(value < 0 ? value + (1 << length) - 1 : value), length);
   }
 
-  void mark(int n) {
+  void restart(int n) {
     while (filled_ != 0) put(1, 1);
     if (n >= 0) out_ += std::string("\xff") + static_cast<char>(0xd0 + n % 8);
   }
 
   const std::string& finish() {
-    mark(-1);
+    restart(-1);
     return out_;
   }
 
@@ -155,8 +155,8 @@ class Bits {
 
 std::string two_bytes(int value) { return {static_cast<char>(value >> 8), static_cast<char>(value)}; }
 
-std::string segment(int mark, const std::string& content) {
-  return std::string("\xff") + static_cast<char>(mark) + two_bytes(static_cast<int>(content.size()) + 2) + content;
+std::string segment(int marker, const std::string& content) {
+  return std::string("\xff") + static_cast<char>(marker) + two_bytes(static_cast<int>(content.size()) + 2) + content;
 }
 
 // Codes of five bits for all symbols.
@@ -166,23 +166,23 @@ std::string codes(int name, const std::string& symbols) {
   return segment(0xc4, static_cast<char>(name) + counts + symbols);
 }
 
-std::string frame(int mark, const Image& image) {
-  return segment(mark, static_cast<char>(image.bits) + two_bytes(image.rows) + two_bytes(image.columns) +
-                           std::string("\x01\x01\x11\x00", 4));
+std::string frame(int marker, const Image& image) {
+  return segment(marker, static_cast<char>(image.bits) + two_bytes(image.rows) + two_bytes(image.columns) +
+                             std::string("\x01\x01\x11\x00", 4));
 }
 
 struct Lossless {
   int predictor = 1;
-  int shift = 0;
-  int rows_between_marks = 0;
+  int point_transform = 0;
+  int rows_between_restarts = 0;
 };
 
 int expected_sample(const Image& image, const Lossless& how, int x, int y) {
   const auto at = [&](int dx, int dy) {
-    return image.samples[static_cast<std::size_t>((y - dy) * image.columns + x - dx)] >> how.shift;
+    return image.samples[static_cast<std::size_t>((y - dy) * image.columns + x - dx)] >> how.point_transform;
   };
-  const bool fresh = y == 0 || (how.rows_between_marks > 0 && y % how.rows_between_marks == 0);
-  if (fresh) return x == 0 ? 1 << (image.bits - how.shift - 1) : at(1, 0);
+  const bool fresh = y == 0 || (how.rows_between_restarts > 0 && y % how.rows_between_restarts == 0);
+  if (fresh) return x == 0 ? 1 << (image.bits - how.point_transform - 1) : at(1, 0);
   if (x == 0) return at(0, 1);
   const int a = at(1, 0), b = at(0, 1), c = at(1, 1);
   const std::array<int, 8> all{0, a, b, c, a + b - c, a + ((b - c) >> 1), b + ((a - c) >> 1), (a + b) >> 1};
@@ -193,16 +193,16 @@ std::string lossless_stream(const Image& image, const Lossless& how) {
   std::string lengths;
   for (int n = 0; n <= 16; ++n) lengths += static_cast<char>(n);
   std::string stream = "\xff\xd8" + segment(0xe0, "application") + segment(0xfe, "comment") + codes(0, lengths);
-  if (how.rows_between_marks > 0) stream += segment(0xdd, two_bytes(how.rows_between_marks * image.columns));
+  if (how.rows_between_restarts > 0) stream += segment(0xdd, two_bytes(how.rows_between_restarts * image.columns));
   stream += "\xff" + frame(0xc3, image);
-  stream += segment(
-      0xda, std::string("\x01\x01\x00", 3) + static_cast<char>(how.predictor) + '\0' + static_cast<char>(how.shift));
+  stream += segment(0xda, std::string("\x01\x01\x00", 3) + static_cast<char>(how.predictor) + '\0' +
+                              static_cast<char>(how.point_transform));
   Bits bits;
   for (int y = 0; y < image.rows; ++y) {
-    if (how.rows_between_marks > 0 && y > 0 && y % how.rows_between_marks == 0)
-      bits.mark(y / how.rows_between_marks - 1);
+    if (how.rows_between_restarts > 0 && y > 0 && y % how.rows_between_restarts == 0)
+      bits.restart(y / how.rows_between_restarts - 1);
     for (int x = 0; x < image.columns; ++x) {
-      const int sample = image.samples[static_cast<std::size_t>(y * image.columns + x)] >> how.shift;
+      const int sample = image.samples[static_cast<std::size_t>(y * image.columns + x)] >> how.point_transform;
       int difference = static_cast<std::int16_t>(sample - expected_sample(image, how, x, y));
       if (difference == -32768) difference = 32768;
       bits.put_number(difference, [](int length) { return length; });
@@ -211,31 +211,31 @@ std::string lossless_stream(const Image& image, const Lossless& how) {
   return stream + bits.finish() + "\xff\xd9";
 }
 
-// Blocks with a mean and some other coefficients, at any of the 64 places.
-std::string blocks_stream(int columns, int rows, int bits_of_sample, int blocks_between_marks) {
+// Blocks with a DC and some AC coefficients, at any of the 64 places.
+std::string blocks_stream(int columns, int rows, int bits_of_sample, int blocks_between_restarts) {
   std::mt19937 random(7);
   Image size{columns, rows, bits_of_sample, {}};
-  std::string means, others;
-  for (int n = 0; n <= 11; ++n) means += static_cast<char>(n);
-  for (int run = 0; run < 16; ++run) others += static_cast<char>(run << 4 | 2);
-  others += std::string("\x00\xf0", 2);
+  std::string dc_lengths, ac_codes;
+  for (int n = 0; n <= 11; ++n) dc_lengths += static_cast<char>(n);
+  for (int run = 0; run < 16; ++run) ac_codes += static_cast<char>(run << 4 | 2);
+  ac_codes += std::string("\x00\xf0", 2);
   constexpr std::uint32_t kEnd = 16, kSixteenZeros = 17;
-  std::string divisors(1, '\0');
-  for (int n = 0; n < 64; ++n) divisors += static_cast<char>(n == 0 ? 4 : 10 + n);
-  std::string stream = "\xff\xd8" + segment(0xdb, divisors) + codes(0, means) + codes(0x10, others);
-  if (blocks_between_marks > 0) stream += segment(0xdd, two_bytes(blocks_between_marks));
+  std::string quantization(1, '\0');
+  for (int n = 0; n < 64; ++n) quantization += static_cast<char>(n == 0 ? 4 : 10 + n);
+  std::string stream = "\xff\xd8" + segment(0xdb, quantization) + codes(0, dc_lengths) + codes(0x10, ac_codes);
+  if (blocks_between_restarts > 0) stream += segment(0xdd, two_bytes(blocks_between_restarts));
   stream += frame(bits_of_sample == 8 ? 0xc0 : 0xc1, size) + segment(0xda, std::string("\x01\x01\x00\x00\x3f\x00", 6));
   Bits bits;
-  int mean = 0;
+  int dc = 0;
   const int blocks = (columns + 7) / 8 * ((rows + 7) / 8);
   for (int n = 0; n < blocks; ++n) {
-    if (blocks_between_marks > 0 && n > 0 && n % blocks_between_marks == 0) {
-      bits.mark(n / blocks_between_marks - 1);
-      mean = 0;
+    if (blocks_between_restarts > 0 && n > 0 && n % blocks_between_restarts == 0) {
+      bits.restart(n / blocks_between_restarts - 1);
+      dc = 0;
     }
     const int next = static_cast<int>(random() % 400) - 200;
-    bits.put_number(next - mean, [](int length) { return length; });
-    mean = next;
+    bits.put_number(next - dc, [](int length) { return length; });
+    dc = next;
     int place = 1;
     for (; place < 64; ++place) {
       const auto run = static_cast<int>(random() % 24);
@@ -288,14 +288,14 @@ TEST(Jpeg, ReadsBlocksByGdcmAsGdcmDoes) {
   }
 }
 
-TEST(Jpeg, ReadsEveryPredictorShiftAndMark) {
+TEST(Jpeg, ReadsEveryPredictorPointTransformAndRestart) {
   for (const int bits : {8, 12, 16}) {
     const Image made = image(31, 22, bits);
     for (int predictor = 1; predictor <= 7; ++predictor) {
-      for (const int rows_between_marks : {0, 1, 5}) {
+      for (const int rows_between_restarts : {0, 1, 5}) {
         SCOPED_TRACE(std::to_string(bits) + ", " + std::to_string(predictor) + ", " +
-                     std::to_string(rows_between_marks));
-        const std::string stream = lossless_stream(made, {predictor, 0, rows_between_marks});
+                     std::to_string(rows_between_restarts));
+        const std::string stream = lossless_stream(made, {predictor, 0, rows_between_restarts});
         EXPECT_EQ(decode(stream, made), made.samples);
         const TempFolder folder;
         folder.put("a", packed_image(fields_of(made), kLosslessSyntax, stream));
@@ -309,12 +309,12 @@ TEST(Jpeg, ReadsEveryPredictorShiftAndMark) {
   }
 }
 
-TEST(Jpeg, ReadsBlocksWithAndWithoutMarksAsGdcmDoes) {
+TEST(Jpeg, ReadsBlocksWithAndWithoutRestartsAsGdcmDoes) {
   for (const int bits : {8, 12}) {
-    for (const int blocks_between_marks : {0, 1, 7}) {
-      SCOPED_TRACE(std::to_string(bits) + ", " + std::to_string(blocks_between_marks));
+    for (const int blocks_between_restarts : {0, 1, 7}) {
+      SCOPED_TRACE(std::to_string(bits) + ", " + std::to_string(blocks_between_restarts));
       const Image made = image(61, 43, bits);
-      const std::string stream = blocks_stream(made.columns, made.rows, bits, blocks_between_marks);
+      const std::string stream = blocks_stream(made.columns, made.rows, bits, blocks_between_restarts);
       const TempFolder folder;
       folder.put("a", packed_image(fields_of(made), bits == 8 ? kBaselineSyntax : kExtendedSyntax, stream));
       const std::vector<std::uint16_t> ours = decode(stream, made);
@@ -344,18 +344,18 @@ TEST(Jpeg, CutsLossySamplesOff) {
 // A block of one coefficient is one cosine.
 TEST(Jpeg, BlocksAreSumsOfCosines) {
   const Image size{8, 8, 12, {}};
-  constexpr int kDivisor = 100;
-  const std::string divisors = std::string(1, '\0') + std::string(64, static_cast<char>(kDivisor));
+  constexpr int kStep = 100;
+  const std::string quantization = std::string(1, '\0') + std::string(64, static_cast<char>(kStep));
   Bits bits;
   bits.put(0, 5);
   bits.put(0, 5);
   bits.put(5, 4);
   bits.put(1, 5);
-  const std::string stream = "\xff\xd8" + segment(0xdb, divisors) + codes(0, std::string(1, '\0')) +
+  const std::string stream = "\xff\xd8" + segment(0xdb, quantization) + codes(0, std::string(1, '\0')) +
                              codes(0x10, std::string("\x24\x00", 2)) + frame(0xc1, size) +
                              segment(0xda, std::string("\x01\x01\x00\x00\x3f\x00", 6)) + bits.finish() + "\xff\xd9";
   // Two zeros, then a number of four bits at the third place in zigzag order: row 2, column 0.
-  const double value = -10.0 * kDivisor;  // 0101 stands for -10
+  const double value = -10.0 * kStep;  // 0101 stands for -10
   const std::vector<std::uint16_t> samples = decode(stream, size);
   for (std::size_t y = 0; y < 8; ++y) {
     const double wave = std::cos(static_cast<double>(2 * y + 1) * 2 * M_PI / 16);
@@ -376,20 +376,20 @@ TEST(Jpeg, RefusesWhatItCannotRead) {
   const std::size_t codes_at = good.find("\xff\xc4");
   const std::size_t scan_at = good.find("\xff\xda");
   EXPECT_EQ(refused(good, made), "");
-  EXPECT_EQ(with(0, "x"), "a.jpg: expected decodable JPEG samples, found no mark of a start");
-  EXPECT_TRUE(contains(with(codes_at, "xy"), "found no mark of a segment"));
-  EXPECT_TRUE(contains(with(codes_at + 1, "\xcc"), "with Huffman codes, found one with the mark FFCC"));
+  EXPECT_EQ(with(0, "x"), "a.jpg: expected decodable JPEG samples, found no start marker");
+  EXPECT_TRUE(contains(with(codes_at, "xy"), "found no marker of a segment"));
+  EXPECT_TRUE(contains(with(codes_at + 1, "\xcc"), "with Huffman codes, found one with the marker FFCC"));
   EXPECT_TRUE(contains(with(frame_at + 1, "\xc2"), "sequential or lossless JPEG frame"));
-  EXPECT_TRUE(contains(with(frame_at + 1, "\xdc"), "found the mark FFDC"));
+  EXPECT_TRUE(contains(with(frame_at + 1, "\xdc"), "found the marker FFDC"));
   EXPECT_TRUE(contains(with(frame_at + 4, "\x11"), "found samples of 17 bits"));
   EXPECT_TRUE(contains(refused(blocks_stream(16, 9, 16, 0), made), "found samples of 16 bits"));
   EXPECT_TRUE(contains(with(frame_at + 6, "\x0a"), "found 16 x 10 of them"));
   EXPECT_TRUE(contains(with(frame_at + 9, "\x02"), "found a frame that is not of one component"));
-  EXPECT_TRUE(contains(with(codes_at + 5, "\x09"), "found a damaged table of codes"));
-  EXPECT_TRUE(contains(with(codes_at + 4, "\x01"), "found no table of codes 0"));
+  EXPECT_TRUE(contains(with(codes_at + 5, "\x09"), "found a damaged Huffman table"));
+  EXPECT_TRUE(contains(with(codes_at + 4, "\x01"), "found no Huffman table 0"));
   EXPECT_TRUE(contains(with(scan_at + 4, "\x02"), "found a scan that is not of the frame's component"));
   EXPECT_TRUE(contains(with(scan_at + 7, "\x08"), "found the predictor 8"));
-  EXPECT_TRUE(contains(with(scan_at + 9, "\x0c"), "found a shift of 12 bits"));
+  EXPECT_TRUE(contains(with(scan_at + 9, "\x0c"), "found a point transform of 12 bits"));
   const std::size_t data = scan_at + 10;
   EXPECT_TRUE(contains(refused(good.substr(0, data + 40), made), "found damaged data"));
   EXPECT_TRUE(contains(refused(good.substr(0, data + 4), made), "found 4 bytes for all of them"));
