@@ -13,15 +13,16 @@ namespace isoweave {
 // Touches the pages that elements from `first` on begin, each by one thread. The elements are to be filled afterwards.
 template <class T>
 void touch(Array<T>& array, std::size_t first, const Executor& executor) {
-  constexpr std::uintptr_t kPage = std::uintptr_t{2} << 20;
-  const auto begin = reinterpret_cast<std::uintptr_t>(array.data() + first);
-  const auto end = reinterpret_cast<std::uintptr_t>(array.data() + array.size());
-  const std::uintptr_t first_page = (begin + kPage - 1) / kPage;
-  const std::uintptr_t end_page = (end + kPage - 1) / kPage;
-  if (end_page <= first_page + 1) return;
-  executor.for_each(static_cast<std::int64_t>(end_page - first_page), 1, [&](std::int64_t n) {
-    *reinterpret_cast<volatile char*>((first_page + static_cast<std::uintptr_t>(n)) * kPage) = 0;
-  });
+  constexpr std::size_t kPage = std::size_t{2} << 20;
+  auto* const bytes = reinterpret_cast<volatile char*>(array.data());
+  const auto place = reinterpret_cast<std::uintptr_t>(array.data());
+  const std::size_t end = array.size() * sizeof(T);
+  const std::size_t begin = first * sizeof(T);
+  const std::size_t first_page = begin + (kPage - (place + begin) % kPage) % kPage;
+  if (first_page + kPage >= end) return;
+  const std::size_t pages = (end - first_page + kPage - 1) / kPage;
+  executor.for_each(static_cast<std::int64_t>(pages), 1,
+                    [&](std::int64_t n) { bytes[first_page + static_cast<std::size_t>(n) * kPage] = 0; });
 }
 
 }  // namespace isoweave
