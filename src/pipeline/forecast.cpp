@@ -323,12 +323,14 @@ class Forecaster {
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
-    const SlabGoal& goal = slab_goal(error_ > 0);
     double most = model.fixed();
     double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
+      const auto at = static_cast<double>(done);
+      const double undecided = held_before(profiles, at, depth);
+      const SlabGoal goal = beside_zone(slab_goal(error_ > 0), undecided);
       // What is read and classified was planned before it turned out how full it is.
       const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
       const auto ahead =
@@ -336,14 +338,12 @@ class Forecaster {
       ring = std::max(ring,
                       MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals != Normals::kAbsent));
       recent = planned;
-      const auto at = static_cast<double>(done);
       const auto extracted = [&] {
         const double end = at + static_cast<double>(recent);
         return sum(profiles.open, at, end) + sum(profiles.caps, at, end);
       };
       const double fullest = 2 * static_cast<double>(goal.most_vertices);
       while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
-      const double undecided = held_before(profiles, at, depth);
       const double triangles = extracted();
       most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
       per_layer = triangles / static_cast<double>(recent);

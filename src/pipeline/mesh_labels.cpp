@@ -148,6 +148,7 @@ class LabelsSweep {
     const SlabGoal& goal = slab_goal(simplifies_);
     const std::int64_t doubled = recent_layers_ > 0 ? 2 * recent_layers_ : 8;
     constexpr double kFloatBytes = sizeof(float);
+    constexpr double kSliceBytes = 64 << 20;
     double slice = 2 * static_cast<double>(volume_.slice_bytes());
     for (const Lane& lane : lanes_) {
       const bool is_on = lane.box.first[2] < done_ + doubled && done_ < lane.box.end[2];
@@ -155,8 +156,7 @@ class LabelsSweep {
     }
     const double recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
-    const double most =
-        std::min({static_cast<double>(goal.bytes) / slice, goal.triangles / (per_layer + 0.01) + 1, 64.0});
+    const double most = std::min({kSliceBytes / slice, goal.triangles / (per_layer + 0.01) + 1, 64.0});
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(most), 1, std::min(doubled, volume_.dims[2] - done_));
   }
 

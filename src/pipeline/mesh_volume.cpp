@@ -161,7 +161,8 @@ class VolumeSweep {
   SlabPlan next_slab() {
     const auto recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
-    const SlabGoal& goal = slab_goal(simplifies_, report_.device == Device::kCuda);
+    const auto held = static_cast<double>(engine_->held_triangles());
+    const SlabGoal goal = beside_zone(slab_goal(simplifies_, report_.device == Device::kCuda), held);
     SlabPlan plan;
     plan.layers = std::min(isoweave::next_slab(field_.info(), goal, options_.slab, recent_layers_, per_layer),
                            engine_->layers_left());

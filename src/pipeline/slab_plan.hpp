@@ -15,7 +15,7 @@ struct SlabGoal {
   std::int64_t bytes;           // of its slices
   std::uint64_t most_vertices;  // a slab that turns out to be fuller is cut, where no thickness is asked for
 };
-inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{64} << 20, 120000};
+inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{8} << 20, 120000};
 inline constexpr SlabGoal kFullSlab{100000, std::int64_t{4} << 20, 120000};
 
 // A device wants work for all its threads, and has memory of its own.
@@ -24,6 +24,15 @@ inline constexpr SlabGoal kDeviceSlab{4e6, std::int64_t{256} << 20, 3000000};
 inline const SlabGoal& slab_goal(bool simplifies, bool device = false) {
   if (device) return kDeviceSlab;
   return simplifies ? kSimplifiedSlab : kFullSlab;
+}
+
+// The goal beside a zone that holds so many triangles: each slab has passes over all of them, so it is to bring half as
+// many.
+inline SlabGoal beside_zone(SlabGoal goal, double held) {
+  const double factor = std::max(held / 2 / goal.triangles, 1.0);
+  goal.triangles *= factor;
+  goal.most_vertices = static_cast<std::uint64_t>(static_cast<double>(goal.most_vertices) * factor);
+  return goal;
 }
 
 // Of a memory cap, what slabs are planned for: the formula is not exact, and the next layers may be fuller.
