@@ -1,6 +1,6 @@
-// JPEG frames of one component (ITU-T T.81, 1992), as DICOM files hold them: Huffman-coded, sequential DCT (8 or 12 bits)
-// or lossless (2 to 16 bits). Lossy samples are those of the definition in double precision, rounded; other decoders
-// round on the way and differ by 1 here and there.
+// JPEG frames of one component (ITU-T T.81, 1992), as DICOM files hold them: Huffman-coded, sequential DCT (8 or 12
+// bits) or lossless (2 to 16 bits). Lossy samples are those of the definition in double precision, rounded; other
+// decoders round on the way and differ by 1 here and there.
 #pragma once
 
 #include <cstddef>
