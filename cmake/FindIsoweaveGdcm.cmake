@@ -1,4 +1,5 @@
-# GDCM, with which tests write DICOM files. Its own package file stops where its command line tools are not installed beside the libraries.
+# GDCM, with which tests write DICOM files. Its own package file stops where its command line tools are not installed
+# beside the libraries.
 find_path(IsoweaveGdcm_INCLUDE_DIR gdcmImageReader.h PATH_SUFFIXES gdcm-3.2 gdcm-3.0)
 set(IsoweaveGdcm_LIBRARIES)
 set(IsoweaveGdcm_NEEDED IsoweaveGdcm_INCLUDE_DIR)

@@ -156,6 +156,18 @@ TEST(Slabs, GrowByDoublingAtMost) {
   EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 10), 64) << "no more than is worth holding";
   EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 16000), 10);
   EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 1e9), 1);
+  volume.dims = {2048, 1024, 256};
+  EXPECT_EQ(next_slab(volume, kSimplifiedSlab, 0, 64, 10), 4) << "slices of 2 MB";
+}
+
+TEST(Slabs, BringHalfOfWhatIsHeld) {
+  const SlabGoal few = beside_zone(kSimplifiedSlab, 100000);
+  EXPECT_EQ(few.triangles, kSimplifiedSlab.triangles);
+  EXPECT_EQ(few.most_vertices, kSimplifiedSlab.most_vertices);
+  const SlabGoal many = beside_zone(kSimplifiedSlab, 4 * kSimplifiedSlab.triangles);
+  EXPECT_EQ(many.triangles, 2 * kSimplifiedSlab.triangles);
+  EXPECT_EQ(many.most_vertices, 2 * kSimplifiedSlab.most_vertices);
+  EXPECT_EQ(many.bytes, kSimplifiedSlab.bytes);
 }
 
 // A volume of more than 2^32 samples, wider than 2^16: all outside but a few samples far from the corner.
