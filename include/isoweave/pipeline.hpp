@@ -257,6 +257,10 @@ struct SimplifyOptions {
   bool drop_specks = false;      // as in MeshOptions
   std::vector<Length> levels{};  // as in MeshOptions
   Length max_distance{};         // as in MeshOptions: from the mesh that is given
+
+  // Triangles taken in at a time; 0: chosen. A matter of memory and speed, never of the result. Not heeded where a
+  // distance is bounded.
+  std::uint64_t piece = 0;
 };
 
 // What a run will take, from a sample of the volume.
@@ -274,8 +278,10 @@ struct Forecast {
 // the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what mesh_volume throws.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
-// Simplifies a mesh with the same rules. Vertices on non-manifold or badly oriented edges, and vertices whose triangles
-// form more than one fan, are locked: they stay where they are. Normals of the input are not kept.
+// Simplifies a mesh with the same rules, a piece of its triangles after the other: beside the mesh that is given,
+// memory is held for what is undecided, as with a volume, where triangles that share a vertex do not lie far apart in
+// the list, and else for all of it. Vertices on non-manifold or badly oriented edges, and vertices whose triangles form
+// more than one fan, are locked: they stay where they are. Normals of the input are not kept.
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control = {});
 

@@ -58,7 +58,7 @@ struct AppendPasses {
       for (; at > begin && side.other_end() < sides[at - 1].other_end(); --at) sides[at] = sides[at - 1];
       sides[at] = side;
     }
-    link_sorted(zone, {sides + begin, end - begin});
+    link_sorted(zone, {sides + begin, end - begin}, [](Index) {});
   }
 
   // The vertices that were incomplete, and those beside them.

@@ -8,6 +8,7 @@
 
 #include "isoweave/measure.hpp"
 #include "measure/angles.hpp"
+#include "measure/check_around.hpp"
 #include "measure/geometry.hpp"
 
 namespace isoweave {
@@ -85,7 +86,7 @@ SideTable group_sides(const TriangleMesh& mesh) {
   return table;
 }
 
-// Calls visit(sides) for every edge, with the sides of all triangles along it.
+// Calls visit(low, sides) for every edge, with its smaller vertex and the sides of all triangles along it.
 template <class Visit>
 void for_each_edge(SideTable& table, Visit&& visit) {
   for (std::size_t low = 0; low + 1 < table.first.size(); ++low) {
@@ -94,46 +95,43 @@ void for_each_edge(SideTable& table, Visit&& visit) {
     std::sort(group.begin(), group.end());
     for (std::size_t begin = 0, end = 0; begin < group.size(); begin = end) {
       while (end < group.size() && group[end].high == group[begin].high) ++end;
-      visit(group.subspan(begin, end - begin));
+      visit(low, group.subspan(begin, end - begin));
     }
   }
 }
 
-class Checker {
+// How triangles meet, at some vertices and along the edges that end there.
+class Meetings {
  public:
-  explicit Checker(const TriangleMesh& mesh) : mesh_(mesh), corners_(3 * mesh.triangles.size()) {}
+  // among: per vertex, nonzero for those that count; null: all.
+  Meetings(const TriangleMesh& mesh, const std::vector<std::uint8_t>* among)
+      : mesh_(mesh), among_(among), corners_(3 * mesh.triangles.size()) {}
 
-  MeshCheck run() {
-    result_.triangles = mesh_.triangles.size();
-    count_degenerate();
+  AroundCheck count() {
     count_edges();
     count_fans();
-    count_components();
-    result_.euler = static_cast<std::int64_t>(result_.vertices) - static_cast<std::int64_t>(edges_) +
-                    static_cast<std::int64_t>(result_.triangles - result_.degenerate_triangles);
-    measure_surface();
     return result_;
   }
 
+  std::uint64_t vertices() const { return vertices_; }  // named by a triangle
+
  private:
-  void count_degenerate() {
-    const auto count = std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_degenerate);
-    result_.degenerate_triangles = static_cast<std::uint64_t>(count);
-  }
+  bool counts(std::size_t vertex) const { return among_ == nullptr || (*among_)[vertex] != 0; }
 
   void count_edges() {
     SideTable table = group_sides(mesh_);
-    for_each_edge(table, [&](std::span<const Side> sides) {
-      ++edges_;
-      if (sides.size() == 1) {
-        ++result_.open_edges;
-      } else if (sides.size() == 2) {
-        if (sides[0].from_high == sides[1].from_high) ++result_.misoriented_edges;
-        join_corners(sides[0], sides[1]);
-      } else {
-        ++result_.nonmanifold_edges;
-      }
+    for_each_edge(table, [&](std::size_t low, std::span<const Side> sides) {
+      if (sides.size() == 2) join_corners(sides[0], sides[1]);
+      if (counts(low) || counts(sides[0].high)) count_edge(sides);
     });
+  }
+
+  void count_edge(std::span<const Side> sides) {
+    ++result_.edges;
+    result_.sides += sides.size();
+    if (sides.size() == 1) ++result_.open_edges;
+    if (sides.size() == 2 && sides[0].from_high == sides[1].from_high) ++result_.misoriented_edges;
+    if (sides.size() > 2) ++result_.nonmanifold_edges;
   }
 
   // Two triangles that share an edge belong to one fan around each of its ends.
@@ -158,9 +156,48 @@ class Checker {
   void count_fans() {
     const std::vector<std::uint8_t> fans = find_fans();
     for (std::size_t v = 0; v < fans.size(); ++v) {
-      ++(fans[v] > 0 ? result_.vertices : result_.unused_vertices);
-      if (fans[v] > 1) ++result_.nonmanifold_vertices;
+      if (fans[v] > 0) ++vertices_;
+      if (fans[v] > 1 && counts(v)) ++result_.nonmanifold_vertices;
     }
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<std::uint8_t>* among_;
+  DisjointSets<std::uint64_t> corners_;
+  AroundCheck result_;
+  std::uint64_t vertices_ = 0;
+};
+
+class Checker {
+ public:
+  explicit Checker(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+  MeshCheck run() {
+    result_.triangles = mesh_.triangles.size();
+    count_degenerate();
+    count_meetings();
+    count_components();
+    measure_surface();
+    return result_;
+  }
+
+ private:
+  void count_degenerate() {
+    const auto count = std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_degenerate);
+    result_.degenerate_triangles = static_cast<std::uint64_t>(count);
+  }
+
+  void count_meetings() {
+    Meetings meetings(mesh_, nullptr);
+    const AroundCheck all = meetings.count();
+    result_.vertices = meetings.vertices();
+    result_.unused_vertices = mesh_.vertices.size() - meetings.vertices();
+    result_.open_edges = all.open_edges;
+    result_.nonmanifold_edges = all.nonmanifold_edges;
+    result_.misoriented_edges = all.misoriented_edges;
+    result_.nonmanifold_vertices = all.nonmanifold_vertices;
+    result_.euler = static_cast<std::int64_t>(result_.vertices) - static_cast<std::int64_t>(all.edges) +
+                    static_cast<std::int64_t>(result_.triangles - result_.degenerate_triangles);
   }
 
   void count_components() {
@@ -195,8 +232,6 @@ class Checker {
 
   const TriangleMesh& mesh_;
   MeshCheck result_;
-  std::uint64_t edges_ = 0;
-  DisjointSets<std::uint64_t> corners_;
 };
 
 }  // namespace
@@ -204,6 +239,10 @@ class Checker {
 MeshCheck check_mesh(const TriangleMesh& mesh) {
   measure::require_indices_in_range(mesh);
   return Checker(mesh).run();
+}
+
+AroundCheck check_around(const TriangleMesh& mesh, const std::vector<std::uint8_t>& among) {
+  return Meetings(mesh, &among).count();
 }
 
 }  // namespace isoweave

@@ -20,6 +20,7 @@ void FinalOutput::take(Simplifier& simplifier) {
         const Index v = vertex(n, c);
         return OutputCorner{number(zone, v), component(zone, v), zone.vertices[v].position};
       });
+  if (zone.locked > 0) keep_locked(zone, triangles);
   const bool last = simplifier.is_last(level_);
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = triangles[static_cast<std::size_t>(n)];
@@ -59,19 +60,41 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
   });
 }
 
+// Triangles around locked vertices.
+void FinalOutput::keep_locked(Zone& zone, const std::vector<Index>& triangles) {
+  for (const Index t : triangles) {
+    std::array<std::uint64_t, 3> numbers{};
+    std::array<bool, 3> locked{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index v = zone.triangles[t].sides[c].vertex;
+      numbers[c] = number(zone, v);
+      locked[c] = zone.states[v] == VertexState::kLocked;
+    }
+    if (locked[0] || locked[1] || locked[2]) locked_part_.add(numbers, locked);
+  }
+}
+
+void FinalOutput::count_open(const Zone& zone, const HalfEdge& side, const HalfEdge& next_side) {
+  const bool locked =
+      zone.states[side.vertex] == VertexState::kLocked || zone.states[next_side.vertex] == VertexState::kLocked;
+  if (!locked) open_edges_.fetch_add(1, std::memory_order_relaxed);
+}
+
 // The triangle stays for coarser levels.
 void FinalOutput::keep(Zone& zone, Index triangle) {
   ++zone.triangles[triangle].levels;
-  for (const HalfEdge& side : zone.triangles[triangle].sides) {
-    if (side.twin == kNone) open_edges_.fetch_add(1, std::memory_order_relaxed);
+  const auto& sides = zone.triangles[triangle].sides;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (sides[c].twin == kNone) count_open(zone, sides[c], sides[(c + 1) % 3]);
   }
 }
 
 // Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
 void FinalOutput::close_sides(Zone& zone, Index triangle) {
-  for (HalfEdge& side : zone.triangles[triangle].sides) {
-    const Index twin = std::atomic_ref(side.twin).load(std::memory_order_relaxed);
-    if (twin == kNone) open_edges_.fetch_add(1, std::memory_order_relaxed);
+  auto& sides = zone.triangles[triangle].sides;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Index twin = std::atomic_ref(sides[c].twin).load(std::memory_order_relaxed);
+    if (twin == kNone) count_open(zone, sides[c], sides[(c + 1) % 3]);
     if (exists(twin)) std::atomic_ref(zone.half(twin).twin).store(kWritten, std::memory_order_relaxed);
   }
 }

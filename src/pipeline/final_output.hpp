@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pipeline/locked_part.hpp"
 #include "pipeline/surface_output.hpp"
 #include "simplify/simplifier.hpp"
 
@@ -23,6 +24,9 @@ class FinalOutput {
 
   // Fills in what has been written so far: counts, Euler number, components, digest.
   void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
+
+  // Adds what has been written around locked vertices, to a report that has everything else.
+  void report_locked(SurfaceReport& report) const { locked_part_.report(report); }
 
   // Returns when the sink has everything. Throws what it threw.
   void wait() { output_.wait(); }
@@ -45,6 +49,8 @@ class FinalOutput {
   }
 
   void number_vertices(Zone& zone, const std::vector<Index>& triangles);
+  void keep_locked(Zone& zone, const std::vector<Index>& triangles);
+  void count_open(const Zone& zone, const HalfEdge& side, const HalfEdge& next_side);
   void keep(Zone& zone, Index triangle);
   void close_sides(Zone& zone, Index triangle);
   void forget_components(Zone& zone);
@@ -54,7 +60,8 @@ class FinalOutput {
   std::size_t level_;
   std::vector<std::uint8_t> marks_;  // per vertex of the zone: is written with this slab
   std::vector<Index> new_vertices_;
-  std::atomic<std::uint64_t> open_edges_{0};
+  std::atomic<std::uint64_t> open_edges_{0};  // without a locked end
+  LockedPart locked_part_;
 };
 
 }  // namespace isoweave

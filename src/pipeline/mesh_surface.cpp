@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "isoweave/error.hpp"
 #include "measure/geometry.hpp"
+#include "parallel/atomics.hpp"
+#include "parallel/collect.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 4096;
+constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+constexpr std::uint64_t kInheritedPart = 4;  // one vertex in so many may be incomplete between two pieces
 
 Vec3 position_of(const Point& p) { return {p[0], p[1], p[2]}; }
 
@@ -30,29 +36,131 @@ double sum_areas(const TriangleMesh& mesh, std::int64_t begin, std::int64_t end)
 
 }  // namespace
 
-void make_piece(const TriangleMesh& mesh, const Executor& executor, SurfacePiece& piece, std::uint64_t& dropped) {
+MeshSurface::MeshSurface(const TriangleMesh& mesh, const Executor& executor, const Pieces& pieces)
+    : mesh_(mesh), executor_(executor), pieces_(pieces) {
+  if (mesh.triangles.size() > kNoTriangle) {
+    throw OverMemory("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, expected fewer than 2^32");
+  }
   measure::require_indices_in_range(mesh);
-  piece.clear();
-  dropped = 0;
-  piece.manifold = false;
-  piece.positions.resize(mesh.vertices.size());
-  piece.ids.resize(mesh.vertices.size());
-  executor.for_each(static_cast<std::int64_t>(mesh.vertices.size()), kBlock, [&](std::int64_t n) {
-    const auto v = static_cast<std::size_t>(n);
-    piece.positions[v] = position_of(mesh.vertices[v]);
-    piece.ids[v] = v;
+  find_uses();
+  if (pieces_.exactly) return;
+  while (inherited_with(pieces_.triangles) > mesh.vertices.size() / kInheritedPart) pieces_.triangles *= 2;
+}
+
+// The first and the last triangle of every vertex. Each way round most triangles find their vertices named already, and
+// have nothing to write.
+void MeshSurface::find_uses() {
+  first_.resize(mesh_.vertices.size());
+  last_.resize(mesh_.vertices.size());
+  number_.resize(mesh_.vertices.size());
+  std::fill(first_.begin(), first_.end(), kNoTriangle);
+  std::fill(last_.begin(), last_.end(), 0);
+  const bool alone = executor_.threads() == 1;
+  const auto name_first = [&](std::uint32_t v, std::uint32_t t) {
+    alone ? static_cast<void>(first_[v] = std::min(first_[v], t)) : make_least(first_[v], t);
+  };
+  const auto name_last = [&](std::uint32_t v, std::uint32_t t) {
+    alone ? static_cast<void>(last_[v] = std::max(last_[v], t)) : make_largest(last_[v], t);
+  };
+  const auto name_vertices = [&](std::int64_t n, const auto& name) {
+    const auto& triangle = mesh_.triangles[static_cast<std::size_t>(n)];
+    if (repeats_a_vertex(triangle)) return;
+    for (const std::uint32_t v : triangle) name(v, static_cast<std::uint32_t>(n));
+  };
+  const auto count = static_cast<std::int64_t>(mesh_.triangles.size());
+  executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t n = begin; n < end; ++n) name_vertices(n, name_first);
+    for (std::int64_t n = end; n-- > begin;) name_vertices(n, name_last);
   });
-  piece.triangles.resize(mesh.triangles.size());
+}
+
+// Vertices that pieces of so many triangles would have in common with the one before, in all.
+std::uint64_t MeshSurface::inherited_with(std::uint64_t piece) const {
+  std::atomic<std::uint64_t> sum{0};
+  executor_.for_blocks(static_cast<std::int64_t>(mesh_.vertices.size()), kBlock,
+                       [&](std::int64_t begin, std::int64_t end) {
+                         std::uint64_t own = 0;
+                         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+                           if (first_[v] != kNoTriangle) own += last_[v] / piece - first_[v] / piece;
+                         }
+                         sum.fetch_add(own, std::memory_order_relaxed);
+                       });
+  return sum;
+}
+
+void MeshSurface::take(std::uint64_t wanted, SurfacePiece& piece) {
+  piece.clear();
+  piece.inherited = static_cast<std::uint32_t>(incomplete_.size());
+  piece.manifold = false;
+  const std::uint64_t triangles = pieces_.exactly ? pieces_.triangles : std::max(pieces_.triangles, wanted);
+  const std::uint64_t end = next_ + std::min(triangles, mesh_.triangles.size() - next_);
+  add_new_vertices(end, piece);
+  add_triangles(end, piece);
+  list_incomplete(end, piece);
+  next_ = end;
+}
+
+// In the order in which triangles name them.
+void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
+  collect(
+      executor_, static_cast<std::int64_t>(end - next_), kBlock,
+      [&](std::int64_t from, std::int64_t to, std::vector<std::uint32_t>& list) {
+        for (std::uint64_t t = next_ + static_cast<std::uint64_t>(from); t < next_ + static_cast<std::uint64_t>(to);
+             ++t) {
+          for (const std::uint32_t v : mesh_.triangles[t]) {
+            if (first_[v] == t) list.push_back(v);
+          }
+        }
+      },
+      vertices_);
+  piece.positions.resize(vertices_.size());
+  piece.ids.resize(vertices_.size());
+  executor_.for_each(static_cast<std::int64_t>(vertices_.size()), kBlock, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    const std::uint32_t v = vertices_[n];
+    piece.positions[n] = position_of(mesh_.vertices[v]);
+    piece.ids[n] = v;
+    number_[v] = piece.inherited + static_cast<std::uint32_t>(n);
+  });
+}
+
+void MeshSurface::add_triangles(std::uint64_t end, SurfacePiece& piece) {
+  piece.triangles.resize(end - next_);
   std::atomic<bool> any_repeats{false};
-  executor.for_each(static_cast<std::int64_t>(mesh.triangles.size()), kBlock, [&](std::int64_t n) {
-    const auto t = static_cast<std::size_t>(n);
-    piece.triangles[t] = mesh.triangles[t];
-    if (repeats_a_vertex(mesh.triangles[t])) any_repeats.store(true, std::memory_order_relaxed);
+  executor_.for_each(static_cast<std::int64_t>(end - next_), kBlock, [&](std::int64_t n) {
+    const auto& triangle = mesh_.triangles[next_ + static_cast<std::uint64_t>(n)];
+    const bool repeats = repeats_a_vertex(triangle);
+    for (std::size_t c = 0; c < 3; ++c) {
+      piece.triangles[static_cast<std::size_t>(n)][c] = repeats ? 0 : number_[triangle[c]];
+    }
+    if (repeats) any_repeats.store(true, std::memory_order_relaxed);
   });
   if (!any_repeats) return;
   const auto kept = std::remove_if(piece.triangles.begin(), piece.triangles.end(), repeats_a_vertex);
-  dropped = static_cast<std::uint64_t>(piece.triangles.end() - kept);
-  piece.triangles.resize(piece.triangles.size() - dropped);
+  const auto repeats = static_cast<std::uint64_t>(piece.triangles.end() - kept);
+  piece.triangles.resize(piece.triangles.size() - repeats);
+  dropped_ += repeats;
+}
+
+// Those that have been incomplete before, then the new ones.
+void MeshSurface::list_incomplete(std::uint64_t end, SurfacePiece& piece) {
+  const auto vertex = [&](std::uint32_t n) {
+    return n < piece.inherited ? incomplete_[n] : vertices_[n - piece.inherited];
+  };
+  collect(
+      executor_, static_cast<std::int64_t>(incomplete_.size() + vertices_.size()), kBlock,
+      [&](std::int64_t from, std::int64_t to, std::vector<std::uint32_t>& list) {
+        for (auto n = static_cast<std::uint32_t>(from); n < static_cast<std::uint32_t>(to); ++n) {
+          if (last_[vertex(n)] >= end) list.push_back(n);
+        }
+      },
+      piece.incomplete);
+  std::vector<std::uint32_t> incomplete(piece.incomplete.size());
+  for (std::size_t n = 0; n < incomplete.size(); ++n) {
+    incomplete[n] = vertex(piece.incomplete[n]);
+    number_[incomplete[n]] = static_cast<std::uint32_t>(n);
+  }
+  incomplete_ = std::move(incomplete);
 }
 
 double mean_triangle_area(const TriangleMesh& mesh, const Executor& executor) {

@@ -99,8 +99,9 @@ std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
   return walkable;
 }
 
-// Tells whether it was not final before.
+// Tells whether it was not final before. Those that are locked stay so.
 bool Simplifier::make_final(Index v, std::size_t level) {
+  if (zone_.states[v] == VertexState::kLocked) return false;
   if (is_last(level)) return std::exchange(zone_.states[v], VertexState::kFinal) != VertexState::kFinal;
   return !std::exchange(zone_.levels[level][v].final, true);
 }

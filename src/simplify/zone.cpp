@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "isoweave/error.hpp"
@@ -19,19 +18,6 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 2048;
-
-// By insertion where there are few, in a fan's hub by std::sort.
-template <class T, class Less>
-void sort_few(std::span<T> items, const Less& less) {
-  constexpr std::size_t kFew = 32;
-  if (items.size() > kFew) return std::sort(items.begin(), items.end(), less);
-  for (std::size_t n = 1; n < items.size(); ++n) {
-    const T item = items[n];
-    std::size_t at = n;
-    for (; at > 0 && less(item, items[at - 1]); --at) items[at] = items[at - 1];
-    items[at] = item;
-  }
-}
 
 }  // namespace
 
@@ -69,7 +55,6 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     first_side_ = {};
     next_side_ = {};
   }
-  if (!piece.manifold) lock_split_vertices(executor);
   std::vector<Index> front(piece.incomplete.size());
   for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
   front_ = std::move(front);
@@ -146,6 +131,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   normal_array_.insert(normal_array_.end(), piece.normals.begin(), piece.normals.end());
   value_array_.insert(value_array_.end(), piece.values.begin(), piece.values.end());
   if (options.normals_count) normal_quadric_array_.resize(end);
+  if (!piece.manifold) corner_array_.resize(end);
   show_arrays();
   touch(vertex_array_, first, executor);
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
@@ -158,6 +144,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
     turn_keys[first + from] = 0;
     turns[first + from] = Turn();
     if (options.normals_count) normal_quadrics[first + from] = NormalQuadric();
+    if (!piece.manifold) corner_array_[first + from] = 0;
     for (Array<LevelVertex>& level : levels) level[first + from] = LevelVertex();
   });
 }
@@ -167,6 +154,7 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
   triangle_array_.resize(first + piece.triangles.size());
   show_arrays();
   touch(triangle_array_, first, executor);
+  const bool alone = executor.threads() == 1;
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
@@ -174,7 +162,9 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
       const Index corner = piece.triangles[static_cast<std::size_t>(n)][c];
       const Index v = corner < piece.inherited ? front_[corner] : settled.first_new + (corner - piece.inherited);
       triangles[t].sides[c].vertex = v;
-      make_least(vertices[v].half_edge, half_edge(t, c));
+      Index& least = vertices[v].half_edge;
+      alone ? static_cast<void>(least = std::min(least, half_edge(t, c))) : make_least(least, half_edge(t, c));
+      if (!piece.manifold) alone ? ++corner_array_[v] : fetch_add(corner_array_[v], 1);
     }
   });
 }
@@ -198,110 +188,24 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
   extracted_surface_->append(corners, piece.complete_below);
 }
 
-// Finds twins: puts every side of an edge into the list of the end that has the smaller number in the piece, and pairs
-// the sides of each list. A side of a new triangle has the number of its half-edge, counted from the first of them; the
-// open ones follow.
-void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
-  const auto open_sides = open_sides_of(piece);
-  const auto open = static_cast<std::int64_t>(open_sides.size());
-  const auto count = static_cast<std::int64_t>(piece.triangles.size());
-  const Index first_open = half_edge(static_cast<Index>(count), 0);
-  const auto ends_of = [&](Index side) -> std::array<Index, 2> {
-    if (side >= first_open) return {open_sides[side - first_open][0], open_sides[side - first_open][1]};
-    const auto& corners = piece.triangles[side >> 2];
-    return {corners[side & 3], corners[next(side) & 3]};
-  };
-  const auto half_edge_of = [&](Index side) {
-    return side < first_open ? half_edge(first_triangle, 0) + side : open_sides[side - first_open][2];
-  };
-
-  const std::size_t ends = piece.inherited + piece.positions.size();
-  first_side_.resize(ends);
-  next_side_.resize(first_open + open_sides.size());
-  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::fill(first_side_.data() + begin, first_side_.data() + end, kNone);
-  });
-  const bool alone = executor.threads() == 1;
-  const auto list = [&](Index side, Index a, Index b) {
-    Index& first = first_side_[std::min(a, b)];
-    next_side_[side] =
-        alone ? std::exchange(first, side) : std::atomic_ref(first).exchange(side, std::memory_order_relaxed);
-  };
-  executor.for_each(count + open, kBlock, [&](std::int64_t n) {
-    if (n >= count) {
-      const auto& [a, b, h] = open_sides[static_cast<std::size_t>(n - count)];
-      return list(first_open + static_cast<Index>(n - count), a, b);
-    }
-    const auto& corners = piece.triangles[static_cast<std::size_t>(n)];
-    for (Index c = 0; c < 3; ++c) list(half_edge(static_cast<Index>(n), c), corners[c], corners[(c + 1) % 3]);
-  });
-  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<EdgeSide> sides;
-    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
-      sides.clear();
-      for (Index side = first_side_[v]; side != kNone; side = next_side_[side]) {
-        const auto [a, b] = ends_of(side);
-        sides.emplace_back(a, b, half_edge_of(side));
-      }
-      sort_few(std::span(sides), [](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
-      link_sorted(*this, sides);
-    }
-  });
-}
-
-// Vertices whose faces form more than one fan.
-void Zone::lock_split_vertices(const Executor& executor) {
-  std::vector<std::uint32_t> corners(vertices.size(), 0);
-  executor.for_each(triangle_count(), kBlock, [&](std::int64_t t) {
-    for (const HalfEdge& side : triangles[static_cast<std::size_t>(t)].sides) {
-      std::atomic_ref(corners[side.vertex]).fetch_add(1, std::memory_order_relaxed);
-    }
-  });
-  executor.for_each(static_cast<std::int64_t>(vertices.size()), kBlock, [&](std::int64_t n) {
-    const auto v = static_cast<Index>(n);
-    if (exists(vertices[v].half_edge) && count_fan(v) != corners[v]) states[v] = VertexState::kLocked;
-  });
-}
-
-// Faces that a walk both ways around v meets.
-std::uint32_t Zone::count_fan(Index v) const {
-  const Index first = vertices[v].half_edge;
-  std::uint32_t faces = 1;
-  for (Index h = rotate(first); h != first; h = rotate(h), ++faces) {
-    if (exists(h)) continue;
-    for (h = twin(first); exists(h); h = twin(next(h))) ++faces;
-    return faces;
-  }
-  return faces;
-}
-
-// The half-edges that a piece can bring a twin for, with the numbers that it gives to their ends: only a triangle
-// between incomplete vertices can.
-std::vector<std::array<Index, 3>> Zone::open_sides_of(const SurfacePiece& piece) const {
-  Array<Index> number;  // of incomplete vertices
-  number.resize(settled.first_new);
-  for (Index n = 0; n < piece.inherited; ++n) number[front_[n]] = n;
-  std::vector<std::array<Index, 3>> sides;
-  for (const Index h : unkeyed_edges_) {
-    const Index a = origin(h);
-    const Index b = destination(h);
-    const bool open =
-        twin(h) == kNone && states[a] == VertexState::kIncomplete && states[b] == VertexState::kIncomplete;
-    if (open) sides.push_back({number[a], number[b], h});
-  }
-  return sides;
-}
-
-// Vertices that later pieces do not add to are complete now: they get their quadrics.
+// Vertices that later pieces do not add to are complete now: they get their quadrics, or are locked.
 void Zone::settle_vertices(const Executor& executor) {
   std::vector<std::uint8_t> is_front(vertices.size(), 0);
   for (const Index v : front_) is_front[v] = 1;
+  std::atomic<std::uint64_t> newly_locked{0};
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] != VertexState::kIncomplete || is_front[v] != 0) return;
+    const bool has_faces = exists(vertices[v].half_edge);
+    if (has_faces && !corner_array_.empty() && !is_one_fan(v)) {
+      states[v] = VertexState::kLocked;
+      newly_locked.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
     states[v] = VertexState::kComplete;
-    if (exists(vertices[v].half_edge)) initial_quadric(v);
+    if (has_faces) initial_quadric(v);
   });
+  locked += newly_locked;
 }
 
 // The quadric of a vertex that has all its faces.
@@ -348,9 +252,15 @@ void Zone::settle_edges(Index first_triangle, const Executor& executor) {
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         EdgeBatch batch;
         for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
+          // Which sides stand for their edges cannot be predicted: all are written, and passed over if they do not.
+          Index edges[3];
+          std::size_t count = 0;
           for (Index c = 0; c < 3; ++c) {
-            const Index h = half_edge(t, c);
-            if (represents_edge(h) && !settle_edge(h, batch)) list.push_back(h);
+            edges[count] = half_edge(t, c);
+            count += static_cast<std::size_t>(represents_edge(edges[count]));
+          }
+          for (std::size_t n = 0; n < count; ++n) {
+            if (!settle_edge(edges[n], batch)) list.push_back(edges[n]);
           }
         }
         give_keys(batch);
@@ -418,6 +328,7 @@ void Zone::compact(const Executor& executor) {
   });
   new_vertex.apply(state_array_);
   for (Array<LevelVertex>& level : levels) new_vertex.apply(level);
+  if (!corner_array_.empty()) new_vertex.apply(corner_array_);
   if (!normal_array_.empty()) new_vertex.apply(normal_array_);
   if (!normal_quadric_array_.empty()) new_vertex.apply(normal_quadric_array_);
   if (!value_array_.empty()) new_vertex.apply(value_array_);
@@ -434,7 +345,7 @@ std::uint64_t Zone::bytes() const {
          vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
          normal_quadric_array_.capacity() * sizeof(NormalQuadric) + value_array_.capacity() * sizeof(float) +
-         triangle_array_.capacity() * sizeof(Triangle) +
+         triangle_array_.capacity() * sizeof(Triangle) + corner_array_.capacity() * sizeof(std::uint32_t) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }
 

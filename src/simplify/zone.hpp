@@ -50,6 +50,7 @@ class Zone : public ZoneView {
   const ZoneView& view() const { return *this; }
 
   SettledVertices settled;                 // with the last piece
+  std::uint64_t locked = 0;                // vertices so far, those that are gone included
   std::vector<Array<LevelVertex>> levels;  // before the last one; each parallel to vertices
 
   // Edges with a higher cost wait: what is decided is what a run with that error would decide. All vertices count as
@@ -68,8 +69,8 @@ class Zone : public ZoneView {
 
   std::uint64_t bytes() const;
 
-  // The state between two appends. Turns are not part of it: with the next append all undecided vertices count as
-  // settled.
+  // The state between two appends, all of manifold pieces. Turns are not part of it: with the next append all
+  // undecided vertices count as settled.
   template <class Archive>
   void exchange(Archive& archive) {
     archive.list(vertex_array_);
@@ -96,9 +97,8 @@ class Zone : public ZoneView {
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
-  void lock_split_vertices(const Executor& executor);
-  std::uint32_t count_fan(Index v) const;
-  std::vector<std::array<Index, 3>> open_sides_of(const SurfacePiece& piece) const;
+  bool is_one_fan(Index v) const;
+  std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(const Executor& executor);
   void initial_quadric(Index v);
   void settle_edges(Index first_triangle, const Executor& executor);
@@ -113,6 +113,8 @@ class Zone : public ZoneView {
   Array<Key> turn_key_array_;
   Array<Turn> turn_array_;
   Array<Triangle> triangle_array_;
+  Array<std::uint32_t> corner_array_;    // triangles that name each vertex, and whether an edge of it is bad; only
+                                         // where pieces are no manifold by promise
   Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next piece
   std::vector<Index> front_;             // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;     // an end incomplete

@@ -22,17 +22,10 @@ struct EdgeSide {
   ISOWEAVE_HD Index other_end() const { return other & ~kBackwards; }
 };
 
-ISOWEAVE_HD inline void lock(const ZoneView& zone, Index v) {
-#ifdef __CUDA_ARCH__
-  zone.states[v] = VertexState::kLocked;  // whoever writes writes the same
-#else
-  std::atomic_ref(zone.states[v]).store(VertexState::kLocked, std::memory_order_relaxed);
-#endif
-}
-
-// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions.
-// Others stay unlinked, and their ends where they are.
-ISOWEAVE_HD inline void link_sorted(const ZoneView& zone, std::span<const EdgeSide> sides) {
+// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions;
+// another one is bad: see_bad(half-edge) is told.
+template <class SeeBad>
+ISOWEAVE_HD inline void link_sorted(const ZoneView& zone, std::span<const EdgeSide> sides, const SeeBad& see_bad) {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].other_end() == sides[begin].other_end()) ++end;
     if (end - begin == 1) continue;
@@ -41,8 +34,7 @@ ISOWEAVE_HD inline void link_sorted(const ZoneView& zone, std::span<const EdgeSi
       zone.set_twin(h, sides[begin + 1].half_edge);
       zone.set_twin(sides[begin + 1].half_edge, h);
     } else {
-      lock(zone, zone.origin(h));
-      lock(zone, zone.destination(h));
+      see_bad(h);
     }
   }
 }
