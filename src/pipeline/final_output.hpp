@@ -22,7 +22,8 @@ class FinalOutput {
   // simplifier's zone, which is compacted.
   void take(Simplifier& simplifier);
 
-  // Fills in what has been written so far: counts, Euler number, components, digest.
+  // Fills in what has been written so far: counts, Euler number, components, digest. What there is around locked
+  // vertices is not in the counts of edges.
   void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
 
   // Adds what has been written around locked vertices, to a report that has everything else.

@@ -15,6 +15,12 @@
 namespace isoweave {
 namespace {
 
+// What takes the place of the mean voxel face.
+double mean_face(const TriangleMesh& mesh, const Executor& executor) {
+  const double area = mean_triangle_area(mesh, executor);
+  return area > 0 ? 2 * area : 1;
+}
+
 SimplifierOptions simplifier_options(const SimplifyOptions& options, const RunControl& control, double error, double a0,
                                      std::span<const double> levels) {
   const double side = std::sqrt(a0);
@@ -44,6 +50,99 @@ std::uint64_t next_piece(const Simplifier& simplifier) {
       beside_zone(kSimplifiedSlab, static_cast<double>(simplifier.live_triangles())).triangles);
 }
 
+class MeshRun {
+ public:
+  MeshRun(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
+          const RunControl& control)
+      : mesh_(mesh),
+        sinks_(sinks),
+        options_(options),
+        executor_(control.threads),
+        a0_(mean_face(mesh, executor_)),
+        error_(options.error.value * (options.error.voxels ? std::sqrt(a0_) : 1)),
+        level_errors_(level_errors(options.levels, error_, std::sqrt(a0_), options.triangles)),
+        simplifier_(simplifier_options(options, control, error_, a0_, level_errors_), executor_, control.stop),
+        surface_(mesh, executor_, pieces_of(mesh, options)) {
+    if (options.triangles > 0) target_.emplace(simplifier_, executor_, options.triangles);
+    for (std::size_t level = 0; level < sinks.size(); ++level) {
+      outputs_.push_back(std::make_unique<FinalOutput>(world_, *sinks[level], executor_, control.measure, level));
+    }
+  }
+
+  MeshReport run() {
+    do {
+      take_piece();
+    } while (!surface_.complete());
+    for (const auto& output : outputs_) output->wait();
+    report_run();
+    for (std::size_t level = 0; level < sinks_.size(); ++level) report_level(level);
+    if (target_) report_target(*target_, options_.triangles, std::sqrt(a0_), report_);
+    for (MeshSink* sink : sinks_) sink->finish();
+    clock_.lap(report_.seconds_write);
+    total_.lap(report_.seconds_total);
+    report_.peak_bytes = peak_process_bytes();
+    return report_;
+  }
+
+ private:
+  void take_piece() {
+    surface_.take(next_piece(simplifier_), piece_);
+    simplifier_.append(piece_);
+    for (std::size_t level = 0; level < sinks_.size(); ++level) {
+      simplifier_.decide(level);
+      if (target_) surface_.complete() ? target_->finish() : target_->thin_out();
+      clock_.lap(report_.seconds_simplify);
+      outputs_[level]->take(simplifier_);
+      clock_.lap(report_.seconds_write);
+    }
+  }
+
+  void report_run() {
+    report_.threads = executor_.threads();
+    report_.schedule = simplifier_.schedule();
+    report_.error = error_;
+    report_.triangles_extracted = mesh_.triangles.size();
+    report_.vertices_extracted = mesh_.vertices.size();
+    report_.locked_vertices = simplifier_.zone().locked;
+    report_simplifier(simplifier_, report_);
+    if (surface_.dropped() > 0) {
+      report_.warnings.push_back(std::to_string(surface_.dropped()) + " triangles that repeat a vertex are left out");
+    }
+    if (report_.locked_vertices > 0) {
+      report_.warnings.push_back(std::to_string(report_.locked_vertices) +
+                                 " vertices are not on an oriented manifold and stay where they are");
+    }
+    report_.levels.resize(level_errors_.size());
+    for (std::size_t level = 0; level < level_errors_.size(); ++level) {
+      report_.levels[level].error = level_errors_[level];
+    }
+  }
+
+  void report_level(std::size_t level) {
+    SurfaceReport& report = simplifier_.is_last(level) ? report_ : report_.levels[level];
+    outputs_[level]->report(report);
+    report_defects(simplifier_.defects(level), report);
+    outputs_[level]->report_locked(report);
+  }
+
+  Stopwatch total_;
+  Stopwatch clock_;
+  const TriangleMesh& mesh_;
+  const std::span<MeshSink* const> sinks_;
+  const SimplifyOptions& options_;
+  const Executor executor_;
+  const double a0_;
+  const double error_;
+  const std::vector<double> level_errors_;
+  const World world_;
+  Simplifier simplifier_;
+  std::optional<CountTarget> target_;
+  std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
+  MeshSurface surface_;
+  SurfacePiece piece_;
+  MeshReport report_;
+};
+
 }  // namespace
 
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
@@ -58,67 +157,7 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> si
   if (control.device == Device::kCuda) {
     throw std::invalid_argument("a CUDA device: expected a volume, found a mesh, which takes processors");
   }
-  Stopwatch total;
-  Stopwatch clock;
-  MeshReport report;
-  const Executor executor(control.threads);
-  const double mean_area = mean_triangle_area(mesh, executor);
-  const double a0 = mean_area > 0 ? 2 * mean_area : 1;
-  const double side = std::sqrt(a0);
-  report.threads = executor.threads();
-  report.error = options.error.value * (options.error.voxels ? side : 1);
-  report.triangles_extracted = mesh.triangles.size();
-  report.vertices_extracted = mesh.vertices.size();
-  const std::vector<double> errors = level_errors(options.levels, report.error, side, options.triangles);
-  Simplifier simplifier(simplifier_options(options, control, report.error, a0, errors), executor, control.stop);
-  report.schedule = simplifier.schedule();
-  std::optional<CountTarget> target;
-  if (options.triangles > 0) target.emplace(simplifier, executor, options.triangles);
-  const World world;
-  std::vector<std::unique_ptr<FinalOutput>> outputs;
-  for (std::size_t level = 0; level < sinks.size(); ++level) {
-    outputs.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, level));
-  }
-
-  MeshSurface surface(mesh, executor, pieces_of(mesh, options));
-  SurfacePiece piece;
-  do {
-    surface.take(next_piece(simplifier), piece);
-    simplifier.append(piece);
-    for (std::size_t level = 0; level < sinks.size(); ++level) {
-      simplifier.decide(level);
-      if (target) surface.complete() ? target->finish() : target->thin_out();
-      clock.lap(report.seconds_simplify);
-      outputs[level]->take(simplifier);
-      clock.lap(report.seconds_write);
-    }
-  } while (!surface.complete());
-
-  if (surface.dropped() > 0) {
-    report.warnings.push_back(std::to_string(surface.dropped()) + " triangles that repeat a vertex are left out");
-  }
-  report.locked_vertices = simplifier.zone().locked;
-  if (report.locked_vertices > 0) {
-    report.warnings.push_back(std::to_string(report.locked_vertices) +
-                              " vertices are not on an oriented manifold and stay where they are");
-  }
-  report_simplifier(simplifier, report);
-  report.levels.resize(errors.size());
-  for (std::size_t level = 0; level < sinks.size(); ++level) {
-    const bool last = simplifier.is_last(level);
-    SurfaceReport& of_level = last ? report : report.levels[level];
-    if (!last) of_level.error = errors[level];
-    outputs[level]->wait();
-    outputs[level]->report(of_level);
-    report_defects(simplifier.defects(level), of_level);
-    outputs[level]->report_locked(of_level);
-  }
-  if (target) report_target(*target, options.triangles, side, report);
-  for (MeshSink* sink : sinks) sink->finish();
-  clock.lap(report.seconds_write);
-  total.lap(report.seconds_total);
-  report.peak_bytes = peak_process_bytes();
-  return report;
+  return MeshRun(mesh, sinks, options, control).run();
 }
 
 }  // namespace isoweave
