@@ -68,6 +68,7 @@ void expect_same_in_pieces(const TriangleMesh& mesh, const SimplifyOptions& opti
                            std::initializer_list<std::uint64_t> pieces) {
   const Result whole = simplify(mesh, options, kWhole, 1);
   expect_same(whole, whole);
+  expect_same(simplify(mesh, options, kWhole, 3), whole);
   for (const std::uint64_t piece : pieces) {
     for (const int threads : {1, 3}) {
       SCOPED_TRACE("pieces of " + std::to_string(piece) + ", " + std::to_string(threads) + " threads");
