@@ -32,7 +32,7 @@ void sort_few(std::span<T> items, const Less& less) {
 
 // Finds twins: puts every side of an edge into the list of the end that has the smaller number in the piece, and pairs
 // the sides of each list. The ends of a bad edge are marked: what its sides are linked to is of no matter. A side of a
-// new triangle has the number of its half-edge, counted from the first of them; the open ones follow.
+// new triangle has the number of its half-edge, counted from the first of them; those that are known follow.
 void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
   const auto known_sides = known_sides_of(piece);
   const auto known = static_cast<std::int64_t>(known_sides.size());
