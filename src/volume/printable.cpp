@@ -14,10 +14,7 @@ std::string printable(std::string_view text) {
 
 std::string quoted(std::string_view text) {
   constexpr std::size_t kShown = 60;
-  std::string result(1, '\'');
-  result.append(text.substr(0, kShown));
-  result.push_back('\'');
-  return result;
+  return "'" + printable(text.substr(0, kShown)) + "'";
 }
 
 }  // namespace isoweave

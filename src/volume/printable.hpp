@@ -10,7 +10,7 @@ namespace isoweave {
 // and long text is cut.
 std::string printable(std::string_view text);
 
-// The first characters of a text, in single quotes.
+// The first characters of a text, printable, in single quotes.
 std::string quoted(std::string_view text);
 
 }  // namespace isoweave

@@ -72,7 +72,7 @@ std::string left_out(const std::vector<std::string>& others) {
   constexpr std::size_t kNamed = 3;
   std::string names;
   for (std::size_t n = 0; n < std::min(others.size(), kNamed); ++n) {
-    names += (n == 0 ? "" : ", ") + fs::path(others[n]).filename().string();
+    names += (n == 0 ? "" : ", ") + printable(fs::path(others[n]).filename().string());
   }
   if (others.size() > kNamed) names += ", ...";
   return std::to_string(others.size()) + " files of the folder are no slices and are left out: " + names;

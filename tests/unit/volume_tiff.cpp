@@ -165,6 +165,9 @@ TEST(Tiff, ReadsTheFirstChannelOfOmeStacks) {
   EXPECT_EQ(samples_of<std::uint16_t>(*other)[20], kSamples[20]);
   EXPECT_TRUE(
       contains(refusal_of(folder, described(ome("XYZCT", "PhysicalSizeZUnit=\"nm\" ")), stored(kSamples)), "one unit"));
+  const std::string lines = "PhysicalSizeXUnit=\"n\nm\" PhysicalSizeYUnit=\"n\nm\" PhysicalSizeZUnit=\"n\nm\" ";
+  const auto odd = open_volume(write_stack(folder / "a.tif", described(ome("XYZCT", lines)), stored(kSamples)));
+  EXPECT_EQ(odd->info().notes.at(1), "the unit 'n?m' is none of m, mm, um, nm and is left out");
   EXPECT_TRUE(contains(refusal_of(folder, described(ome("ZYX")), stored(kSamples)), "DimensionOrder"));
   EXPECT_TRUE(contains(refusal_of(folder, described("<OME></OME>"), stored(kSamples)), "expected Pixels"));
 }
