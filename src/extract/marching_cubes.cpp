@@ -203,6 +203,7 @@ std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_
 // Turns the counts of rows into the places where their vertices and triangles begin, and makes room for those.
 void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
   rows_of_slab_.resize(layers * rows_);
+  rows_of_slab_.emplace_back();
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   for (Row& row : rows_of_slab_) {
@@ -248,7 +249,9 @@ void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers,
     const std::int64_t j = static_cast<std::int64_t>(row) - 1;
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
     const Slice& upper = slices_[n + 1];
-    number_row(n, row, front_size_ + rows_of_slab_[static_cast<std::size_t>(job)].vertices);
+    const std::uint32_t first = rows_of_slab_[static_cast<std::size_t>(job)].vertices;
+    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].vertices) return;
+    number_row(n, row, front_size_ + first);
     const SampleRow<T> here = samples.row(j, k + 1);
     const EdgeRow<T, 2> along_z{samples.row(j, k), here, j, k};
     const EdgeRow<T, 0> along_x{here, here, j, k + 1};
@@ -366,7 +369,9 @@ void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) cons
   executor_.for_each(static_cast<std::int64_t>(layers * rows_), kRowsPerBlock, [&](std::int64_t job) {
     const std::size_t n = static_cast<std::size_t>(job) / rows_;
     const std::size_t row = static_cast<std::size_t>(job) % rows_;
-    auto* out = piece.triangles.data() + rows_of_slab_[static_cast<std::size_t>(job)].triangles;
+    const std::uint32_t first = rows_of_slab_[static_cast<std::size_t>(job)].triangles;
+    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].triangles) return;
+    auto* out = piece.triangles.data() + first;
     CellWord word{};
     for_active_cells(
         n, row, [&](std::size_t w) { word = cell_word(n, row, w); },

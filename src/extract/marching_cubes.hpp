@@ -68,7 +68,8 @@ class MarchingCubes {
     std::vector<std::uint32_t> base;
   };
 
-  // What a row of a layer has: numbers of its own, then, of vertices and triangles, those of the rows before it.
+  // What a row of a layer has: numbers of its own, then, of vertices and triangles, those of the rows before it. One
+  // more follows the last.
   struct Row {
     std::uint32_t vertices = 0, triangles = 0;
     std::uint32_t cells = 0;      // crossed

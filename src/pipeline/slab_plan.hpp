@@ -16,7 +16,7 @@ struct SlabGoal {
   std::uint64_t most_vertices;  // a slab that turns out to be fuller is cut, where no thickness is asked for
 };
 inline constexpr SlabGoal kSimplifiedSlab{160000, std::int64_t{8} << 20, 120000};
-inline constexpr SlabGoal kFullSlab{100000, std::int64_t{4} << 20, 120000};
+inline constexpr SlabGoal kFullSlab{30000, std::int64_t{4} << 20, 120000};
 
 // A device wants work for all its threads, and has memory of its own.
 inline constexpr SlabGoal kDeviceSlab{4e6, std::int64_t{256} << 20, 3000000};
