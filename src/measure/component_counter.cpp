@@ -14,9 +14,7 @@ std::uint32_t ComponentCounter::add(std::size_t count) {
   return first;
 }
 
-void ComponentCounter::join(std::uint32_t a, std::uint32_t b) {
-  if (join_sets(parent_, a, b)) joined_.fetch_add(1, std::memory_order_relaxed);
-}
+bool ComponentCounter::join(std::uint32_t a, std::uint32_t b) { return join_sets(parent_, a, b); }
 
 void ComponentCounter::compact(std::span<std::uint32_t*> labels) {
   constexpr std::uint32_t kUnused = 0xffffffffu;

@@ -15,8 +15,12 @@ class ComponentCounter {
   // New components of one vertex each; returns the first of their consecutive labels.
   std::uint32_t add(std::size_t count);
 
-  // The two labels name the same component from now on. May be called by several threads at the same time.
-  void join(std::uint32_t a, std::uint32_t b);
+  // The two labels name the same component from now on. Tells whether they were two, which is to be counted below. May
+  // be called by several threads at the same time.
+  bool join(std::uint32_t a, std::uint32_t b);
+
+  // So many joins made one of two components. May be called by several threads at the same time.
+  void count_joins(std::uint64_t count) { joined_.fetch_add(count, std::memory_order_relaxed); }
 
   // Components so far.
   std::uint64_t count() const { return added_ - joined_; }

@@ -1,5 +1,4 @@
 // The digest of a triangle. The digest of a mesh is the sum over its triangles, modulo 2^64.
-#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -9,35 +8,49 @@
 namespace isoweave {
 namespace {
 
-using CornerBits = std::array<std::uint32_t, 3>;
+// The bits of x, y and z, as one number: corners compare as the lists of their coordinates' bits do.
+struct CornerBits {
+  std::uint64_t xy = 0;
+  std::uint64_t z = 0;
 
-CornerBits bits_of(const Point& p) {
-  CornerBits bits{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    // -0 and 0 are the same place, and which of them a sum gives is an accident.
-    bits[axis] = p[axis] == 0.0F ? 0U : std::bit_cast<std::uint32_t>(p[axis]);
-  }
-  return bits;
+  friend bool operator==(const CornerBits&, const CornerBits&) = default;
+};
+
+// -0 and 0 are the same place, and which of them a sum gives is an accident.
+std::uint64_t bits_of(float x) {
+  constexpr std::uint32_t kMinusZero = 0x80000000u;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return bits == kMinusZero ? 0 : bits;
+}
+
+CornerBits bits_of(const Point& p) { return {bits_of(p[0]) << 32 | bits_of(p[1]), bits_of(p[2])}; }
+
+// 1 or 0, without branches: which corner is the smallest cannot be predicted.
+std::size_t is_less(const CornerBits& a, const CornerBits& b) {
+  return static_cast<std::size_t>(a.xy < b.xy) | (static_cast<std::size_t>(a.xy == b.xy) & (a.z < b.z ? 1U : 0U));
 }
 
 // The chain makes the place of a corner in the triangle matter, so a flipped triangle gets another digest.
 std::uint64_t mix_corner(std::uint64_t state, const CornerBits& corner) {
-  state = measure::splitmix64(state ^ (std::uint64_t{corner[0]} << 32 | corner[1]));
-  return measure::splitmix64(state ^ corner[2]);
+  return measure::splitmix64(measure::splitmix64(state ^ corner.xy) ^ corner.z);
+}
+
+std::uint64_t mix_corners(const CornerBits& p, const CornerBits& q, const CornerBits& r) {
+  return mix_corner(mix_corner(mix_corner(0, p), q), r);
 }
 
 }  // namespace
 
+// Of the three rotations counts the one that begins with the smallest corner; where two corners are equal and smallest,
+// the one that has them first.
 std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c) {
-  const CornerBits p = bits_of(a);
-  const CornerBits q = bits_of(b);
-  const CornerBits r = bits_of(c);
-  using Corners = std::array<CornerBits, 3>;
-  // The least of the three rotations begins with the smallest corner, and is unique even when two corners are equal.
-  const Corners least = std::min({Corners{p, q, r}, Corners{q, r, p}, Corners{r, p, q}});
-  std::uint64_t state = 0;
-  for (const CornerBits& corner : least) state = mix_corner(state, corner);
-  return state;
+  const std::array<CornerBits, 3> corners{bits_of(a), bits_of(b), bits_of(c)};
+  std::size_t first = is_less(corners[1], corners[0]);
+  first += (2 - first) * is_less(corners[2], corners[first]);
+  const std::size_t second = first < 2 ? first + 1 : 0;
+  const std::size_t third = first > 0 ? first - 1 : 2;
+  if (corners[third] == corners[first]) return mix_corners(corners[third], corners[first], corners[second]);
+  return mix_corners(corners[first], corners[second], corners[third]);
 }
 
 std::string digest_text(std::uint64_t digest) {

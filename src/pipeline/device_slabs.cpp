@@ -32,8 +32,8 @@ void DeviceSlabs::write(SlabRecord& record, MeshReport& report) {
   const auto corner = [&](std::size_t n, std::size_t c) {
     const std::uint32_t v = piece_.triangles[n][c];
     const FinalVertex& vertex = piece_.vertices[v];
-    return v < added ? OutputCorner{first + v, label + v, vertex.position}
-                     : OutputCorner{vertex.output, vertex.component, vertex.position};
+    const Point point = output_.point(vertex.position);
+    return v < added ? OutputCorner{first + v, label + v, point} : OutputCorner{vertex.output, vertex.component, point};
   };
   output_.add_triangles(
       piece_.triangles.size(), [&](std::size_t n, std::size_t c) { return corner(n, c).number; }, corner);

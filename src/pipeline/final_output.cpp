@@ -18,7 +18,7 @@ void FinalOutput::take(Simplifier& simplifier) {
       triangles.size(), [&](std::size_t n, std::size_t c) { return number(zone, vertex(n, c)); },
       [&](std::size_t n, std::size_t c) {
         const Index v = vertex(n, c);
-        return OutputCorner{number(zone, v), component(zone, v), zone.vertices[v].position};
+        return OutputCorner{number(zone, v), component(zone, v), output_.point(zone.vertices[v].position)};
       });
   if (zone.locked > 0) keep_locked(zone, triangles);
   const bool last = simplifier.is_last(level_);

@@ -1,5 +1,7 @@
 #include "pipeline/full_output.hpp"
 
+#include <span>
+
 namespace isoweave {
 
 void FullOutput::take(const SurfacePiece& piece) {
@@ -8,10 +10,11 @@ void FullOutput::take(const SurfacePiece& piece) {
       piece.positions.size(), {!piece.normals.empty(), !piece.values.empty()},
       [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
       [&](std::size_t n) { return piece.values[n]; });
+  const std::span<const Point> points = output_.added_points();
   const auto vertex = [&](std::uint32_t v) {
     if (v < piece.inherited) return front_[v];
     const std::uint32_t n = v - piece.inherited;
-    return OutputCorner{first_number + n, first_label + n, piece.positions[n]};
+    return OutputCorner{first_number + n, first_label + n, points[n]};
   };
   output_.add_triangles(
       piece.triangles.size(),

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
@@ -20,7 +21,7 @@ namespace isoweave {
 struct OutputCorner {
   std::uint64_t number;  // in the output
   std::uint32_t label;   // of its component
-  Vec3 position;
+  Point point;           // of the output
 };
 
 // What vertices have beside their place.
@@ -41,6 +42,10 @@ class SurfaceOutput {
         sink_(sink, executor.threads() > 1) {}
 
   std::uint64_t vertices() const { return vertices_; }
+
+  // Where a position comes to lie.
+  Point point(Vec3 position) const { return world_.point(position); }
+
   ComponentCounter& components() { return components_; }
 
   // Of the next vertex that is added.
@@ -65,6 +70,9 @@ class SurfaceOutput {
     return measure_ ? components_.add(count) : 0;
   }
 
+  // Of the vertices that were added last, until others are.
+  std::span<const Point> added_points() const { return {pieces_[next_].points.data(), pieces_[next_].points.size()}; }
+
   // Adds triangles and hands everything to the sink. number(n, c): of corner c of the n-th in the output; corner(n, c):
   // all of it. Called by any thread.
   template <class NumberOf, class CornerOf>
@@ -75,16 +83,21 @@ class SurfaceOutput {
     piece.triangles.resize(count);
     executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t begin, std::int64_t end) {
       std::uint64_t digest = 0;
+      std::uint64_t joins = 0;
       for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
         piece.triangles[n] = {number(n, turn[0]), number(n, turn[1]), number(n, turn[2])};
-        if (measure_) digest += measure({corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])});
+        if (!measure_) continue;
+        const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
+        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point);
+        for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
       }
       digest_.fetch_add(digest, std::memory_order_relaxed);
+      components_.count_joins(joins);
     });
     triangles_ += count;
     if (observer_ != nullptr) {
       view_triangles(
-          count, [&](std::size_t n, std::size_t c) { return corner(n, c).position; }, world_, executor_,
+          count, [&](std::size_t n, std::size_t c) { return corner(n, turn.at(c)).point; }, executor_,
           [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
     }
     sink_.append({.vertices = {piece.points.data(), piece.points.size()},
@@ -112,13 +125,6 @@ class SurfaceOutput {
 
  private:
   static constexpr std::int64_t kBlock = 4096;
-
-  std::uint64_t measure(const std::array<OutputCorner, 3>& corners) {
-    components_.join(corners[0].label, corners[1].label);
-    components_.join(corners[0].label, corners[2].label);
-    return triangle_digest(world_.point(corners[0].position), world_.point(corners[1].position),
-                           world_.point(corners[2].position));
-  }
 
   struct Piece {
     Array<Point> points;

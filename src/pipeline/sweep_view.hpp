@@ -16,16 +16,16 @@ namespace isoweave {
 
 inline constexpr std::size_t kViewBlock = 32768;  // triangles, 36 bytes each
 
-// Hands over `count` triangles. position(n, c): of corner c of the n-th, called by any thread.
-template <class PositionOf>
-void view_triangles(std::size_t count, const PositionOf& position, const World& world, const Executor& executor,
+// Hands over `count` triangles. point(n, c): corner c of the n-th, called by any thread.
+template <class PointOf>
+void view_triangles(std::size_t count, const PointOf& point, const Executor& executor,
                     const SweepObserver::Visitor& visitor) {
   std::vector<TriangleCorners> block(std::min(count, kViewBlock));
   for (std::size_t first = 0; first < count; first += block.size()) {
     block.resize(std::min(block.size(), count - first));
     executor.for_each(static_cast<std::int64_t>(block.size()), kViewBlock / 16, [&](std::int64_t i) {
       const auto n = static_cast<std::size_t>(i);
-      block[n] = world.triangle({position(first + n, 0), position(first + n, 1), position(first + n, 2)});
+      block[n] = {point(first + n, 0), point(first + n, 1), point(first + n, 2)};
     });
     visitor(block);
   }
