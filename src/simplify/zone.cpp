@@ -196,22 +196,23 @@ void Zone::settle_vertices(const Executor& executor) {
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] != VertexState::kIncomplete || is_front[v] != 0) return;
-    const bool has_faces = exists(vertices[v].half_edge);
-    if (has_faces && !corner_array_.empty() && !is_one_fan(v)) {
+    states[v] = VertexState::kComplete;
+    if (!exists(vertices[v].half_edge)) return;
+    Star star;
+    star.gather(*this, v);
+    if (!corner_array_.empty() && !is_one_fan(star)) {
       states[v] = VertexState::kLocked;
       newly_locked.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    states[v] = VertexState::kComplete;
-    if (has_faces) initial_quadric(v);
+    initial_quadric(star);
   });
   locked += newly_locked;
 }
 
 // The quadric of a vertex that has all its faces.
-void Zone::initial_quadric(Index v) {
-  Star star;
-  star.gather(*this, v);
+void Zone::initial_quadric(Star& star) {
+  const Index v = star.vertex;
   if (star.border || star.overflow) {
     give_initial_quadric(*this, v);
   } else {

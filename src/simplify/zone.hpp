@@ -11,6 +11,7 @@
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/extracted_surface.hpp"
+#include "simplify/star.hpp"
 #include "simplify/zone_view.hpp"
 
 namespace isoweave {
@@ -97,10 +98,10 @@ class Zone : public ZoneView {
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
-  bool is_one_fan(Index v) const;
+  bool is_one_fan(const Star& star) const;
   std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(const Executor& executor);
-  void initial_quadric(Index v);
+  void initial_quadric(Star& star);
   void settle_edges(Index first_triangle, const Executor& executor);
   bool settle_edge(Index h, EdgeBatch& batch);
   void give_keys(EdgeBatch& batch);

@@ -85,16 +85,18 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor&
   });
 }
 
-// A walk both ways around v meets all its faces, and no edge there is bad.
-bool Zone::is_one_fan(Index v) const {
-  const Index first = vertices[v].half_edge;
+// A walk both ways around its vertex meets all faces, and no edge there is bad.
+bool Zone::is_one_fan(const Star& star) const {
+  const std::uint32_t corners = corner_array_[star.vertex];
+  if (!star.border && !star.overflow) return static_cast<std::uint32_t>(star.faces) == corners;
+  const Index first = vertices[star.vertex].half_edge;
   std::uint32_t faces = 1;
   for (Index h = rotate(first); h != first; h = rotate(h), ++faces) {
     if (exists(h)) continue;
     for (h = twin(first); exists(h); h = twin(next(h))) ++faces;
     break;
   }
-  return faces == corner_array_[v];
+  return faces == corners;
 }
 
 // The half-edges that a piece can bring another side for, with the numbers that it gives to their ends: only a triangle
