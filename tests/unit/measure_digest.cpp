@@ -17,6 +17,12 @@ TEST(MeasureDigest, SameForEveryRotation) {
   EXPECT_EQ(triangle_digest(kA, kB, kC), triangle_digest(kC, kA, kB));
 }
 
+TEST(MeasureDigest, SameForEveryRotationOfCornersAboveEachOther) {
+  const Point low{1, 2, 3}, middle{1, 2, 4}, high{1, 2, 5};
+  EXPECT_EQ(triangle_digest(low, high, middle), triangle_digest(high, middle, low));
+  EXPECT_EQ(triangle_digest(low, high, middle), triangle_digest(middle, low, high));
+}
+
 // Two equal corners leave two candidates for "smallest first"; the rotation must still be unique.
 TEST(MeasureDigest, SameForEveryRotationWithEqualCorners) {
   EXPECT_EQ(triangle_digest(kA, kA, kB), triangle_digest(kA, kB, kA));
