@@ -1,5 +1,5 @@
-// bench_work MESH ERROR: simplifies a mesh once with isoweave and once, to as many triangles, with meshoptimizer, each in
-// one thread, for a profiler that counts what they do (bench/work). Prints the numbers of collapses.
+// bench_work MESH ERROR: simplifies a mesh once with isoweave and once, to as many triangles, with meshoptimizer, each
+// in one thread, for a profiler that counts what they do (bench/work). Prints the numbers of collapses.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
