@@ -46,7 +46,7 @@ void limit_memory() {
 }
 
 // Touches memory and gives it back to this system, which hands it out again next. A virtual machine's host provides
-// memory when it is touched first, and takes back what is free: that takes longer than anything a run does with it.
+// memory when it is touched first, and takes back what is free: no run is to pay for that.
 void have_host_provide_memory() {
   constexpr std::size_t kBytes = std::size_t{1} << 30;
   constexpr std::size_t kPage = 4096;

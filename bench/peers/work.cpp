@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
+#include <string>
 
 #include "isoweave/pipeline.hpp"
 #include "meshoptimizer.hpp"

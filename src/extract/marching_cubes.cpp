@@ -250,7 +250,7 @@ void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers,
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
     const Slice& upper = slices_[n + 1];
     const std::uint32_t first = rows_of_slab_[static_cast<std::size_t>(job)].vertices;
-    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].vertices) return;
+    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].vertices) return;  // nobody asks for numbers there
     number_row(n, row, front_size_ + first);
     const SampleRow<T> here = samples.row(j, k + 1);
     const EdgeRow<T, 2> along_z{samples.row(j, k), here, j, k};

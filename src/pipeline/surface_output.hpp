@@ -21,7 +21,7 @@ namespace isoweave {
 struct OutputCorner {
   std::uint64_t number;  // in the output
   std::uint32_t label;   // of its component
-  Point point;           // of the output
+  Point point;           // where it lies in the output
 };
 
 // What vertices have beside their place.
