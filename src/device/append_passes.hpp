@@ -45,7 +45,9 @@ struct AppendPasses {
   ISOWEAVE_HD void fill_side(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (!is_open(n, old, h)) return;
-    sides[fetch_add(side_fill[smaller_end(h)], 1)] = EdgeSide(zone.origin(h), zone.destination(h), h);
+    const Index from = zone.origin(h);
+    const Index to = zone.destination(h);
+    sides[fetch_add(side_fill[smaller_end(h)], 1)] = EdgeSide(to < from ? from | EdgeSide::kBackwards : to, h);
   }
 
   // The sides listed at the n-th vertex.
@@ -58,7 +60,11 @@ struct AppendPasses {
       for (; at > begin && side.other_end() < sides[at - 1].other_end(); --at) sides[at] = sides[at - 1];
       sides[at] = side;
     }
-    link_sorted(zone, {sides + begin, end - begin}, [](Index) {});
+    const auto link = [&](Index h, Index back) {
+      zone.set_twin(h, back);
+      zone.set_twin(back, h);
+    };
+    link_sorted({sides + begin, end - begin}, link, [](Index) {});
   }
 
   // The vertices that were incomplete, and those beside them.

@@ -41,24 +41,24 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     throw OverMemory("the undecided zone would hold " + std::to_string(vertex_total) +
                      " vertices, expected fewer than 2^31: choose thinner slabs or a smaller error");
   }
-  const auto first_vertex = static_cast<Index>(vertices.size());
   const Index first_triangle = triangle_count();
-  list_settled(first_vertex + static_cast<Index>(piece.positions.size()));
+  list_settled(static_cast<Index>(vertices.size() + piece.positions.size()));
   add_vertices(piece, executor);
   add_triangles(piece, executor);
+  std::vector<Index> front(piece.incomplete.size());
+  std::vector<std::uint8_t> on_front(vertices.size(), 0);
+  for (std::size_t n = 0; n < front.size(); ++n) {
+    front[n] = number_in_zone(piece, piece.incomplete[n]);
+    on_front[front[n]] = 1;
+  }
+  link(piece, first_triangle, on_front, executor);
   if (extracted_surface_) know_more(piece, first_triangle, executor);
-  const auto vertex_of = [&](Index n) {
-    return n < piece.inherited ? front_[n] : first_vertex + (n - piece.inherited);
-  };
-  link(piece, first_triangle, executor);
   if (piece.incomplete.empty()) {  // nothing is left to link to
     first_side_ = {};
     next_side_ = {};
   }
-  std::vector<Index> front(piece.incomplete.size());
-  for (std::size_t n = 0; n < front.size(); ++n) front[n] = vertex_of(piece.incomplete[n]);
   front_ = std::move(front);
-  settle_vertices(executor);
+  settle_vertices(on_front, executor);
   settle_edges(first_triangle, executor);
 }
 
@@ -154,17 +154,12 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
   triangle_array_.resize(first + piece.triangles.size());
   show_arrays();
   touch(triangle_array_, first, executor);
-  const bool alone = executor.threads() == 1;
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
     for (Index c = 0; c < 3; ++c) {
       const Index corner = piece.triangles[static_cast<std::size_t>(n)][c];
-      const Index v = corner < piece.inherited ? front_[corner] : settled.first_new + (corner - piece.inherited);
-      triangles[t].sides[c].vertex = v;
-      Index& least = vertices[v].half_edge;
-      alone ? static_cast<void>(least = std::min(least, half_edge(t, c))) : make_least(least, half_edge(t, c));
-      if (!piece.manifold) alone ? ++corner_array_[v] : fetch_add(corner_array_[v], 1);
+      triangles[t].sides[c].vertex = number_in_zone(piece, corner);
     }
   });
 }
@@ -189,13 +184,11 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
 }
 
 // Vertices that later pieces do not add to are complete now: they get their quadrics, or are locked.
-void Zone::settle_vertices(const Executor& executor) {
-  std::vector<std::uint8_t> is_front(vertices.size(), 0);
-  for (const Index v : front_) is_front[v] = 1;
+void Zone::settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor) {
   std::atomic<std::uint64_t> newly_locked{0};
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
-    if (states[v] != VertexState::kIncomplete || is_front[v] != 0) return;
+    if (states[v] != VertexState::kIncomplete || on_front[v] != 0) return;
     states[v] = VertexState::kComplete;
     if (!exists(vertices[v].half_edge)) return;
     Star star;

@@ -89,18 +89,24 @@ class Zone : public ZoneView {
   }
 
  private:
+  class Linker;
   struct EdgeBatch;
 
   void show_arrays();
   void forget_turns();
   void list_settled(Index end);
+  // Of a vertex that the piece gives a number.
+  Index number_in_zone(const SurfacePiece& piece, Index number) const {
+    return number < piece.inherited ? front_[number] : settled.first_new + (number - piece.inherited);
+  }
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
   void add_triangles(const SurfacePiece& piece, const Executor& executor);
-  void link(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
+  void link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,
+            const Executor& executor);
   void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
   bool is_one_fan(const Star& star) const;
   std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
-  void settle_vertices(const Executor& executor);
+  void settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor);
   void initial_quadric(Star& star);
   void settle_edges(Index first_triangle, const Executor& executor);
   bool settle_edge(Index h, EdgeBatch& batch);

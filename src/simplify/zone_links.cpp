@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "parallel/collect.hpp"
 #include "simplify/zone.hpp"
 #include "simplify/zone_rules.hpp"
 
@@ -15,74 +17,220 @@ namespace {
 constexpr std::int64_t kBlock = 2048;
 constexpr std::uint32_t kNoFan = std::uint32_t{1} << 31;  // beside a number of triangles
 
-// By insertion where there are few, in a fan's hub by std::sort.
-template <class T, class Less>
-void sort_few(std::span<T> items, const Less& less) {
-  constexpr std::size_t kFew = 32;
-  if (items.size() > kFew) return std::sort(items.begin(), items.end(), less);
-  for (std::size_t n = 1; n < items.size(); ++n) {
-    const T item = items[n];
-    std::size_t at = n;
-    for (; at > 0 && less(item, items[at - 1]); --at) items[at] = items[at - 1];
-    items[at] = item;
+using Four [[gnu::vector_size(16), gnu::may_alias]] = std::uint32_t;
+
+// The sides of edges at a vertex that run one way.
+struct Sides {
+  static constexpr std::size_t kRoom = 16;  // a fan's hub has more: they are counted only
+
+  alignas(Four) std::array<Index, kRoom> other_end;
+  std::array<Index, kRoom> half_edge;
+  std::size_t count = 0;
+
+  Sides() { other_end.fill(kNone); }
+
+  void add(Index end, Index h) {
+    if (count < kRoom) {
+      other_end[count] = end;
+      half_edge[count] = h;
+    }
+    ++count;
+  }
+
+  const Four* ends() const { return reinterpret_cast<const Four*>(other_end.data()); }
+};
+
+// Those that leave a vertex and those that arrive there. A triangle has one of each, at the same place in the lists.
+struct SidesAt {
+  static constexpr std::uint8_t kNoSide = Sides::kRoom;
+
+  Sides leaving;
+  Sides arriving;
+  std::array<std::uint8_t, Sides::kRoom> after;  // of the side that arrives: the one that leaves on its edge
+
+  std::size_t most() const { return std::max(leaving.count, arriving.count); }
+};
+
+bool several(std::uint32_t bits) { return (bits & (bits - 1)) != 0; }
+
+// Gives the sides that leave a vertex their twins, which arrive there. see_bad(half-edge) is told of an edge that has
+// two sides that leave, or two that arrive. All are compared with all, by bits: which fit cannot be predicted.
+template <std::size_t kLanes, class SeeBad>
+void link_leaving(const ZoneView& zone, SidesAt& sides, const SeeBad& see_bad) {
+  const Sides& leaving = sides.leaving;
+  const Sides& arriving = sides.arriving;
+  Four twins[kLanes / 4] = {};
+  Four rivals[kLanes / 4] = {};
+  Four bit = {1, 1, 1, 1};
+  for (std::size_t m = 0; m < sides.most(); ++m, bit += bit) {
+    for (std::size_t n = 0; n < kLanes / 4; ++n) {
+      twins[n] |= Four(leaving.ends()[n] == arriving.other_end[m]) & bit;
+      rivals[n] |= Four(leaving.ends()[n] == leaving.other_end[m]) & bit;
+    }
+  }
+  sides.after.fill(SidesAt::kNoSide);
+  for (std::size_t n = 0; n < leaving.count; ++n) {
+    const std::uint32_t twin = twins[n / 4][n % 4];
+    if (several(twin) || several(rivals[n / 4][n % 4])) {
+      see_bad(leaving.half_edge[n]);
+    } else if (twin != 0) {
+      const auto m = static_cast<std::size_t>(std::countr_zero(twin));
+      zone.set_twin(leaving.half_edge[n], arriving.half_edge[m]);
+      sides.after[m] = static_cast<std::uint8_t>(n);
+    }
   }
 }
 
 }  // namespace
 
-// Finds twins: puts every side of an edge into the list of the end that has the smaller number in the piece, and pairs
-// the sides of each list. The ends of a bad edge are marked: what its sides are linked to is of no matter. A side of a
-// new triangle has the number of its half-edge, counted from the first of them; those that are known follow.
-void Zone::link(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
-  const auto known_sides = known_sides_of(piece);
-  const auto known = static_cast<std::int64_t>(known_sides.size());
-  const auto count = static_cast<std::int64_t>(piece.triangles.size());
-  const Index first_known = half_edge(static_cast<Index>(count), 0);
-  const auto ends_of = [&](Index side) -> std::array<Index, 2> {
-    if (side >= first_known) return {known_sides[side - first_known][0], known_sides[side - first_known][1]};
-    const auto& corners = piece.triangles[side >> 2];
-    return {corners[side & 3], corners[next(side) & 3]};
-  };
-  const auto half_edge_of = [&](Index side) {
-    return side < first_known ? half_edge(first_triangle, 0) + side : known_sides[side - first_known][2];
-  };
+// Links a piece to itself and to the front.
+class Zone::Linker {
+ public:
+  Linker(Zone& zone, const SurfacePiece& piece, Index first_triangle, const Executor& executor)
+      : zone_(zone),
+        piece_(piece),
+        first_new_(half_edge(first_triangle, 0)),
+        first_known_(half_edge(static_cast<Index>(piece.triangles.size()), 0)),
+        known_(zone.known_sides_of(piece)) {
+    zone.first_side_.resize(piece.inherited + piece.positions.size());
+    zone.next_side_.resize(first_known_ + 2 * known_.size());
+    list_sides(executor);
+  }
 
-  const std::size_t ends = piece.inherited + piece.positions.size();
-  first_side_.resize(ends);
-  next_side_.resize(first_known + known_sides.size());
-  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::fill(first_side_.data() + begin, first_side_.data() + end, kNone);
-  });
-  const bool alone = executor.threads() == 1;
-  const auto list = [&](Index side, Index a, Index b) {
-    Index& first = first_side_[std::min(a, b)];
-    next_side_[side] =
-        alone ? std::exchange(first, side) : std::atomic_ref(first).exchange(side, std::memory_order_relaxed);
-  };
-  executor.for_each(count + known, kBlock, [&](std::int64_t n) {
-    if (n >= count) {
-      const auto& [a, b, h] = known_sides[static_cast<std::size_t>(n - count)];
-      return list(first_known + static_cast<Index>(n - count), a, b);
+  // The n-th vertex of the piece, v in the zone: its sides get their twins, or are added to the bad ones. If its faces
+  // are one closed fan, and all in this piece, that is its star.
+  bool link(Index n, Index v, std::vector<Index>& bad, Star& star) const {
+    SidesAt sides;
+    Index least = kNone;
+    std::uint32_t corners = 0;
+    each_side(
+        n,
+        [&](Index to, Index h) {
+          sides.leaving.add(to, h);
+          if (h < first_new_) return;
+          least = std::min(least, h);
+          ++corners;
+        },
+        [&](Index from, Index h) { sides.arriving.add(from, h); });
+    zone_.vertices[v].half_edge = std::min(zone_.vertices[v].half_edge, least);
+    if (!zone_.corner_array_.empty()) zone_.corner_array_[v] += corners;
+    const auto see_bad = [&](Index h) { bad.push_back(h); };
+    if (sides.most() > Sides::kRoom) {
+      link_hub(n, see_bad);
+      return false;
     }
-    const auto& corners = piece.triangles[static_cast<std::size_t>(n)];
-    for (Index c = 0; c < 3; ++c) list(half_edge(static_cast<Index>(n), c), corners[c], corners[(c + 1) % 3]);
-  });
-  executor.for_blocks(static_cast<std::int64_t>(ends), kBlock, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<EdgeSide> sides;
-    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
-      sides.clear();
-      for (Index side = first_side_[v]; side != kNone; side = next_side_[side]) {
-        const auto [a, b] = ends_of(side);
-        sides.emplace_back(a, b, half_edge_of(side));
+    if (sides.most() <= Sides::kRoom / 2) {
+      link_leaving<Sides::kRoom / 2>(zone_, sides, see_bad);
+    } else {
+      link_leaving<Sides::kRoom>(zone_, sides, see_bad);
+    }
+    return n >= piece_.inherited && gather(sides, v, star);
+  }
+
+ private:
+  // A triangle is listed at its corners, with the number of the half-edge that leaves there, counted from the first new
+  // one. Known sides follow, each at both of its ends.
+  void list_sides(const Executor& executor) {
+    executor.for_blocks(static_cast<std::int64_t>(zone_.first_side_.size()), kBlock, [&](auto begin, auto end) {
+      std::fill(zone_.first_side_.data() + begin, zone_.first_side_.data() + end, kNone);
+    });
+    const bool alone = executor.threads() == 1;
+    const auto list = [&](Index n, Index side) {
+      Index& first = zone_.first_side_[n];
+      zone_.next_side_[side] =
+          alone ? std::exchange(first, side) : std::atomic_ref(first).exchange(side, std::memory_order_relaxed);
+    };
+    executor.for_each(static_cast<std::int64_t>(piece_.triangles.size()), kBlock, [&](std::int64_t t) {
+      for (Index c = 0; c < 3; ++c) {
+        list(piece_.triangles[static_cast<std::size_t>(t)][c], half_edge(static_cast<Index>(t), c));
       }
-      sort_few(std::span(sides), [](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
-      link_sorted(*this, sides, [&](Index bad) {
-        if (piece.manifold) return;
-        fetch_or(corner_array_[origin(bad)], kNoFan);
-        fetch_or(corner_array_[destination(bad)], kNoFan);
-      });
+    });
+    executor.for_each(static_cast<std::int64_t>(known_.size()), kBlock, [&](std::int64_t i) {
+      const Index side = first_known_ + 2 * static_cast<Index>(i);
+      list(known_[static_cast<std::size_t>(i)][0], side);
+      list(known_[static_cast<std::size_t>(i)][1], side + 1);
+    });
+  }
+
+  // Calls leave(other end, half-edge) and arrive(other end, half-edge) for the sides at a vertex.
+  template <class Leave, class Arrive>
+  void each_side(Index n, const Leave& leave, const Arrive& arrive) const {
+    for (Index side = zone_.first_side_[n]; side != kNone; side = zone_.next_side_[side]) {
+      if (side < first_known_) {
+        const auto& corners = piece_.triangles[side >> 2];
+        leave(corners[next(side) & 3], first_new_ + side);
+        arrive(corners[previous(side) & 3], first_new_ + previous(side));
+      } else {
+        const auto& [a, b, h] = known_[(side - first_known_) / 2];
+        a == n ? leave(b, h) : arrive(a, h);
+      }
     }
-  });
+  }
+
+  // More sides than are compared with each other: they are sorted.
+  template <class SeeBad>
+  void link_hub(Index n, const SeeBad& see_bad) const {
+    std::vector<EdgeSide> sides;
+    each_side(
+        n, [&](Index to, Index h) { sides.emplace_back(to, h); },
+        [&](Index from, Index h) { sides.emplace_back(from | EdgeSide::kBackwards, h); });
+    std::sort(sides.begin(), sides.end(),
+              [](const EdgeSide& a, const EdgeSide& b) { return a.other_end() < b.other_end(); });
+    link_sorted(
+        sides, [&](Index leaving, Index arriving) { zone_.set_twin(leaving, arriving); }, see_bad);
+  }
+
+  // As star.gather(zone, v) would, from the sides of a vertex whose triangles are all new. False where they are not one
+  // closed fan.
+  bool gather(const SidesAt& sides, Index v, Star& star) const {
+    const Sides& leaving = sides.leaving;
+    const auto begin = leaving.half_edge.begin();
+    const auto first = static_cast<std::size_t>(
+        std::find(begin, begin + static_cast<std::ptrdiff_t>(leaving.count), zone_.vertices[v].half_edge) - begin);
+    std::size_t faces = 0;
+    std::size_t side = first;
+    do {
+      if (side == SidesAt::kNoSide || faces == leaving.count) return false;
+      star.out[faces] = leaving.half_edge[side];
+      star.neighbour[faces++] = zone_.number_in_zone(piece_, leaving.other_end[side]);
+      side = sides.after[side];
+    } while (side != first);
+    star.vertex = v;
+    star.faces = star.neighbours = static_cast<int>(faces);
+    return faces == leaving.count;
+  }
+
+  Zone& zone_;
+  const SurfacePiece& piece_;
+  const Index first_new_;
+  const Index first_known_;
+  const std::vector<std::array<Index, 3>> known_;  // their ends' numbers in the piece, and half-edge
+};
+
+// Finds twins, and what each vertex of the piece has to know of its triangles. The ends of a bad edge are marked: what
+// its sides are linked to is of no matter. Vertices that this makes complete get their quadrics while their faces are
+// at hand, if they can.
+void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,
+                const Executor& executor) {
+  const Linker linker(*this, piece, first_triangle, executor);
+  std::vector<Index> bad;
+  collect(
+      executor, static_cast<std::int64_t>(first_side_.size()), kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (auto n = static_cast<Index>(begin); n < static_cast<Index>(end); ++n) {
+          const Index v = number_in_zone(piece, n);
+          Star star;
+          if (!linker.link(n, v, list, star) || on_front[v] != 0 || options.normals_count) continue;
+          states[v] = VertexState::kComplete;
+          initial_quadric(star);
+        }
+      },
+      bad);
+  for (const Index h : bad) {
+    if (corner_array_.empty()) break;
+    corner_array_[origin(h)] |= kNoFan;
+    corner_array_[destination(h)] |= kNoFan;
+  }
 }
 
 // A walk both ways around its vertex meets all faces, and no edge there is bad.

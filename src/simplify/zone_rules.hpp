@@ -9,32 +9,33 @@
 
 namespace isoweave {
 
-// One side of an edge, in the list of the end with the smaller number.
+// One side of an edge, in a list of one of its ends.
 struct EdgeSide {
-  static constexpr Index kBackwards = Index{1} << 31;  // runs from the larger to the smaller number
+  static constexpr Index kBackwards = Index{1} << 31;  // runs from the other end to this one
 
   Index other = 0;
   Index half_edge = kNone;
 
   EdgeSide() = default;
-  ISOWEAVE_HD EdgeSide(Index a, Index b, Index h) : other(a > b ? a | kBackwards : b), half_edge(h) {}
+  ISOWEAVE_HD EdgeSide(Index other_end, Index h) : other(other_end), half_edge(h) {}
 
   ISOWEAVE_HD Index other_end() const { return other & ~kBackwards; }
+  ISOWEAVE_HD bool backwards() const { return (other & kBackwards) != 0; }
 };
 
-// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions;
-// another one is bad: see_bad(half-edge) is told.
-template <class SeeBad>
-ISOWEAVE_HD inline void link_sorted(const ZoneView& zone, std::span<const EdgeSide> sides, const SeeBad& see_bad) {
+// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions:
+// see_pair(forwards, backwards) is told those half-edges. Another one is bad: see_bad(half-edge) is told.
+template <class SeePair, class SeeBad>
+ISOWEAVE_HD inline void link_sorted(std::span<const EdgeSide> sides, const SeePair& see_pair, const SeeBad& see_bad) {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].other_end() == sides[begin].other_end()) ++end;
     if (end - begin == 1) continue;
-    const Index h = sides[begin].half_edge;
+    const Index a = sides[begin].half_edge;
+    const Index b = sides[begin + 1].half_edge;
     if (end - begin == 2 && sides[begin].other != sides[begin + 1].other) {
-      zone.set_twin(h, sides[begin + 1].half_edge);
-      zone.set_twin(sides[begin + 1].half_edge, h);
+      sides[begin].backwards() ? see_pair(b, a) : see_pair(a, b);
     } else {
-      see_bad(h);
+      see_bad(a);
     }
   }
 }
