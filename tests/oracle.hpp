@@ -18,7 +18,7 @@ inline Index standing_half_edge(const Zone& zone, Index h) {
 
 // The reference: an ordered set of all live edges; always decide the first, until so many triangles have gone. For
 // complete surfaces.
-inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t most_removed = ~std::uint64_t{0}) {
+inline DecisionCounts decide_in_order(Zone& zone, std::uint64_t most_removed = ~std::uint64_t{0}) {
   using Entry = std::tuple<CostBits, std::uint64_t, Index>;
   const CostBits retire = zone.options.retire;
   std::set<Entry> live;
@@ -32,7 +32,7 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t
     if ((h & 3) == 3) continue;
     if (zone.represents_edge(h)) offer(h);
   }
-  Decider decider(zone, quality);
+  Decider decider(zone);
   while (!live.empty() && decider.counts().removed < most_removed) {
     const Entry first = *live.begin();
     live.erase(live.begin());
@@ -53,10 +53,10 @@ inline DecisionCounts decide_in_order(Zone& zone, Quality quality, std::uint64_t
 // A sweep of the complete surface by the reference.
 inline SurfaceRun reference_run(const SurfaceCase& surface) {
   const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
   DecisionCounts counts;
-  SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier,
-                         [&] { counts += decide_in_order(simplifier.zone(), surface.quality); });
+  SurfaceRun run =
+      sweep(surface, kWholeVolume, executor, simplifier, [&] { counts += decide_in_order(simplifier.zone()); });
   run.report.collapses = counts.collapses;
   run.report.postponed = counts.postponed;
   run.report.rekeyed = counts.rekeyed;
@@ -100,8 +100,8 @@ inline std::vector<Index> safe_edges(const Zone& zone) {
 }
 
 // Decides random subsets of the safe edges in random order until none is left.
-inline void decide_at_random(Zone& zone, Quality quality, std::mt19937& random) {
-  Decider decider(zone, quality);
+inline void decide_at_random(Zone& zone, std::mt19937& random) {
+  Decider decider(zone);
   for (std::vector<Index> safe = safe_edges(zone); !safe.empty(); safe = safe_edges(zone)) {
     std::shuffle(safe.begin(), safe.end(), random);
     safe.resize(1 + random() % safe.size());

@@ -98,7 +98,8 @@ struct SurfaceCase {
             drop_specks,
             max_distance * voxel(),
             {x, y, z},
-            normals_count};
+            normals_count,
+            quality};
   }
 };
 
@@ -139,7 +140,7 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
 
 inline SurfaceRun sweep(const SurfaceCase& surface, Schedule schedule, int threads, std::int64_t slab) {
   const Executor executor(threads);
-  Simplifier simplifier({surface.zone(), surface.quality, schedule}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), schedule}, executor, nullptr);
   return sweep(surface, slab, executor, simplifier, [&] { simplifier.decide(); });
 }
 

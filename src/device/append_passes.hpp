@@ -96,7 +96,10 @@ struct AppendPasses {
     const std::uint64_t tie = give_tie(zone, h, ends);
     const bool locked = zone.states[a] == VertexState::kLocked || zone.states[b] == VertexState::kLocked;
     CostBits cost = kRetiredCost;
-    if (!locked) ScalarArithmetic().edge_costs({&ends, 1}, &cost);
+    if (!locked) {
+      ScalarArithmetic().edge_costs({&ends, 1}, &cost);
+      cost = scaled(cost, key_factors(zone.options.quality).first);
+    }
     zone.set_key(h, make_key(cost, tie));
   }
 

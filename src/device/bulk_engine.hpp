@@ -122,9 +122,9 @@ class BulkEngine final : public DeviceEngine {
     minima_.resize(zone_.vertices.size());
     marks_.resize(zone_.vertices.size());
     device_.clear(marks_);
-    rounds_ += device_.run_rounds({zone_, options_.quality, marks_.data(), list(kChanged, changed_),
-                                   list(kCandidates, candidates_), list(kMinima, minima_)},
-                                  decisions_);
+    rounds_ += device_.run_rounds(
+        {zone_, marks_.data(), list(kChanged, changed_), list(kCandidates, candidates_), list(kMinima, minima_)},
+        decisions_);
   }
 
   std::size_t name_final() override {

@@ -21,7 +21,6 @@ struct BulkOptions {
   IsoRule rule;
   bool normals = false;
   ZoneOptions zone;
-  Quality quality = Quality::kNormal;
 };
 
 // What a slab has brought.

@@ -104,9 +104,9 @@ class VolumeSweep {
     }
     if (control_.device == Device::kCuda) {
       check_device_options();
-      return std::make_unique<DeviceSlabs>(make_cuda_engine({field_.info(), field_.rule(), normals(),
-                                                             zone_options(volume_, options_), options_.quality}),
-                                           normals(), world_, *sinks_.back(), executor_, control_.measure);
+      return std::make_unique<DeviceSlabs>(
+          make_cuda_engine({field_.info(), field_.rule(), normals(), zone_options(volume_, options_)}), normals(),
+          world_, *sinks_.back(), executor_, control_.measure);
     }
     const HostSlabs::Options host = host_options(volume_, field_.rule(), options_, control_);
     // A zone that has been left in the middle cannot be saved.

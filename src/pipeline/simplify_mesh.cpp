@@ -30,8 +30,9 @@ SimplifierOptions simplifier_options(const SimplifyOptions& options, const RunCo
                    retire_cost(error, a0, options.triangles),
                    options.drop_specks,
                    most_distance(options.max_distance, side),
-                   {side, side, side}};
-  simplify.quality = options.quality;
+                   {side, side, side},
+                   false,
+                   options.quality};
   simplify.schedule = control.schedule;
   simplify.finer = level_costs(levels, a0);
   return simplify;

@@ -71,7 +71,8 @@ ZoneOptions zone_options(const VolumeInfo& volume, const MeshOptions& options) {
           options.drop_specks,
           most_distance(options.max_distance, voxel),
           {volume.geometry.spacing[0], volume.geometry.spacing[1], volume.geometry.spacing[2]},
-          options.normals == Normals::kQuadric};
+          options.normals == Normals::kQuadric,
+          options.quality};
 }
 
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {

@@ -22,7 +22,7 @@ namespace isoweave {
 template <class Arithmetic>
 class BasicDecider {
  public:
-  ISOWEAVE_HD BasicDecider(const ZoneView& zone, Quality quality) : zone_(zone), quality_(quality) {}
+  ISOWEAVE_HD explicit BasicDecider(const ZoneView& zone) : zone_(zone) {}
 
   // Gathers the stars of the edge's ends, one after the other, and shows them to see(star) until that answers false.
   // Tells whether it never did; then the stars stay for decide().
@@ -78,11 +78,6 @@ class BasicDecider {
 
   static constexpr CostBits kTried = 0xffffffffu;  // above every limit
 
-  // An edge goes back when its full cost exceeds its key by this factor.
-  ISOWEAVE_HD static constexpr float refinement_limit(Quality quality) {
-    return quality == Quality::kFine ? 1.0F : 4.0F;
-  }
-
   // The face of a star of three that does not hold `other`.
   ISOWEAVE_HD static Index far_face(const Star& star, Index other) {
     return star.out[(star.place_of(other) + 1) % 3] >> 2;
@@ -106,6 +101,8 @@ class BasicDecider {
   ISOWEAVE_HD bool topology_allows();
   ISOWEAVE_HD bool keeps_sides(Vec3 x) const;
   ISOWEAVE_HD Vec3 best_place(const Quadric& full, Vec3 gradient, double offset) const;
+  ISOWEAVE_HD double memory() const;
+  ISOWEAVE_HD Quadric full_quadric(const Star& star, const Quadric& faces) const;
   ISOWEAVE_HD Quadric with_normals(const Quadric& full) const;
   ISOWEAVE_HD Reach reach(Vec3 x) const;
   ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
@@ -118,7 +115,6 @@ class BasicDecider {
   ISOWEAVE_HD void update_keys(CostBits collapse_cost);
 
   const ZoneView& zone_;
-  Quality quality_;
   [[no_unique_address]] Arithmetic arithmetic_;
   Index edge_ = kNone;
   Star u_, v_;  // u_ is the end with the smaller id: sums never depend on memory order
@@ -154,17 +150,16 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   Quadric full;
   Vec3 best;
   CostBits limit = key;
-  if (quality_ == Quality::kFast) {
+  if (zone_.options.quality == Quality::kFast) {
     full = with_normals(u.quadric + moved(v.quadric, -edge_vector_));
     best = minimiser(full, factorise(full), 0.5 * edge_vector_);
   } else {
-    const double a0 = zone_.options.a0;
-    const double weight = 1 / (2 * a0 * a0);
+    const double weight = (2 - memory()) * initial_weight(zone_.options);
     const FaceSums u_sums = arithmetic_.sum_faces(u_fan_, u_.count(), weight);
     const FaceSums v_sums = arithmetic_.sum_faces(v_fan_, v_.count(), weight);
-    full = with_normals(u.quadric + u_sums.planes + moved(v.quadric + v_sums.planes, -edge_vector_));
+    full = with_normals(full_quadric(u_, u_sums.planes) + moved(full_quadric(v_, v_sums.planes), -edge_vector_));
     best = best_place(full, u_sums.normal + v_sums.normal, dot(v_sums.normal, edge_vector_));
-    limit = cost_bits(refinement_limit(quality_) * cost_value(key));
+    limit = scaled(key, key_factors(zone_.options.quality).limit);
     const CostBits cost = to_cost(evaluate(full, best));
     if (cost > limit) {
       ++counts_.rekeyed;
@@ -263,6 +258,23 @@ ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const
   if (zone_.extracted != nullptr) return reach_of_collapse(zone_, u_, v_, zone_.vertices[u_.vertex].position + x);
 #endif
   return Reach::kWithin;
+}
+
+// Weight of the vertices' quadrics in a full cost, where weights are 2 in all. Only they know about normals: where
+// these count, so do they.
+template <class Arithmetic>
+ISOWEAVE_HD double BasicDecider<Arithmetic>::memory() const {
+  return zone_.normal_quadrics.empty() ? kMemory : 1;
+}
+
+// What the vertex of a star remembers, the planes of its faces, and on a border those of its border edges.
+template <class Arithmetic>
+ISOWEAVE_HD Quadric BasicDecider<Arithmetic>::full_quadric(const Star& star, const Quadric& faces) const {
+  const Quadric sum = memory() * zone_.vertices[star.vertex].quadric + faces;
+  if (!star.border) return sum;
+  const std::size_t last = star.count() - 1;
+  return sum + (2 - memory()) * (border_plane(zone_, star.vertex, star.neighbour[0], star.out[0]) +
+                                 border_plane(zone_, star.vertex, star.neighbour[last], star.out[last - 1]));
 }
 
 // The quadric of both ends, measured from u, less what the best normal at each place saves where normals count.
@@ -421,10 +433,12 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
   }
   changed_count_ = static_cast<int>(count);
   edge_costs(zone_, arithmetic_, {ends, count}, costs);
+  const float merged_factor = key_factors(zone_.options.quality).merged;
   for (std::size_t n = 0; n < count; ++n) {
     CostBits cost = cost_of(before_[n]);
     if (cost < collapse_cost + 1) cost = collapse_cost + 1;
-    if (cost < costs[n]) cost = costs[n];
+    const CostBits own = scaled(costs[n], merged_factor);
+    if (cost < own) cost = own;
     zone_.set_cost(changed_[n], cost);
   }
 }

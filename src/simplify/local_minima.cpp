@@ -18,7 +18,7 @@ constexpr std::size_t kPlaces = 1024;
 // neighbours. It never waits for another worker with anything in hand.
 class LocalMinima::Worker {
  public:
-  Worker(Zone& zone, Quality quality, std::uint16_t number) : zone_(zone), decider_(zone, quality), number_(number) {}
+  Worker(Zone& zone, std::uint16_t number) : zone_(zone), decider_(zone), number_(number) {}
 
   const DecisionCounts& counts() const { return decider_.counts(); }
 
@@ -207,9 +207,9 @@ class LocalMinima::Worker {
   std::vector<Index> held_;
 };
 
-LocalMinima::LocalMinima(Zone& zone, Quality quality, const Executor& executor) : zone_(zone), executor_(executor) {
+LocalMinima::LocalMinima(Zone& zone, const Executor& executor) : zone_(zone), executor_(executor) {
   for (int n = 0; n < executor.threads(); ++n) {
-    workers_.push_back(std::make_unique<Worker>(zone, quality, static_cast<std::uint16_t>(n + 1)));
+    workers_.push_back(std::make_unique<Worker>(zone, static_cast<std::uint16_t>(n + 1)));
   }
 }
 

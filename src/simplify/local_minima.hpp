@@ -17,7 +17,7 @@ namespace isoweave {
 
 class LocalMinima final : public Driver {
  public:
-  LocalMinima(Zone& zone, Quality quality, const Executor& executor);
+  LocalMinima(Zone& zone, const Executor& executor);
   ~LocalMinima() override;
 
   void run(const std::atomic<bool>* stop) override;

@@ -45,6 +45,11 @@ ISOWEAVE_HD inline BasicQuadric<Real> operator+(const BasicQuadric<Real>& p, con
   return {p.xx + q.xx, p.xy + q.xy, p.xz + q.xz, p.yy + q.yy, p.yz + q.yz, p.zz + q.zz, p.b + q.b, p.c + q.c};
 }
 
+template <class Real>
+ISOWEAVE_HD inline BasicQuadric<Real> operator*(double scale, const BasicQuadric<Real>& q) {
+  return {scale * q.xx, scale * q.xy, scale * q.xz, scale * q.yy, scale * q.yz, scale * q.zz, scale * q.b, scale * q.c};
+}
+
 // scale * (normal . x)^2: a plane through the origin.
 template <class Real>
 ISOWEAVE_HD inline BasicQuadric<Real> plane_quadric(const BasicVec3<Real>& normal, const Real& scale) {

@@ -15,8 +15,8 @@ namespace isoweave {
 class Queue final : public Driver {
  public:
   // Stops when at least `most_removed` triangles have gone.
-  Queue(Zone& zone, Quality quality, std::uint64_t most_removed = ~std::uint64_t{0})
-      : zone_(zone), decider_(zone, quality), most_removed_(most_removed) {}
+  Queue(Zone& zone, std::uint64_t most_removed = ~std::uint64_t{0})
+      : zone_(zone), decider_(zone), most_removed_(most_removed) {}
 
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override { return decider_.counts(); }

@@ -26,7 +26,6 @@ struct RoundPasses {
   static constexpr std::uint32_t kChanged = 2;
 
   ZoneView zone;
-  Quality quality = Quality::kNormal;
   std::uint32_t* marks = nullptr;  // per vertex: the lists that hold it
   IndexList changed;               // vertices whose turn is new
   IndexList candidates;            // vertices whose least edge may have become a local minimum
@@ -58,7 +57,7 @@ struct RoundPasses {
 
   // 3: decides the n-th minimum, and lists the vertices at whose edges something has changed.
   ISOWEAVE_HD void decide(std::int64_t n, DecisionCounts& counts) const {
-    BasicDecider<Arithmetic> decider(zone, quality);
+    BasicDecider<Arithmetic> decider(zone);
     decider.look_at(minima[n]);
     decider.decide();
     mark(decider.first().vertex, kChanged, changed);

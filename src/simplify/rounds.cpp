@@ -15,8 +15,8 @@ void Rounds::run(const std::atomic<bool>* stop) {
   for (List* list : {&changed_, &candidates_, &minima_}) list->items.resize(zone_.vertices.size());
   changed_.size = static_cast<std::uint32_t>(zone_.settled.size());
   for (std::size_t n = 0; n < changed_.size; ++n) changed_.items[n] = zone_.settled[n];
-  const RoundPasses<VectorArithmetic> passes{zone_.view(),    quality_,           marks_.data(),
-                                             changed_.view(), candidates_.view(), minima_.view()};
+  const RoundPasses<VectorArithmetic> passes{zone_.view(), marks_.data(), changed_.view(), candidates_.view(),
+                                             minima_.view()};
   while (changed_.size > 0 && !(stop != nullptr && stop->load(std::memory_order_relaxed))) run_round(passes);
 }
 

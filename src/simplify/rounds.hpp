@@ -11,7 +11,7 @@ namespace isoweave {
 
 class Rounds final : public Driver {
  public:
-  Rounds(Zone& zone, Quality quality, const Executor& executor) : zone_(zone), quality_(quality), executor_(executor) {}
+  Rounds(Zone& zone, const Executor& executor) : zone_(zone), executor_(executor) {}
 
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override { return counts_; }
@@ -29,7 +29,6 @@ class Rounds final : public Driver {
   void run_round(const RoundPasses<VectorArithmetic>& passes);
 
   Zone& zone_;
-  Quality quality_;
   const Executor& executor_;
   std::vector<std::uint32_t> marks_;
   List changed_, candidates_, minima_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "isoweave/simplify_options.hpp"
 #include "parallel/host_device.hpp"
 #include "simplify/quadric.hpp"
 
@@ -19,6 +20,7 @@ inline constexpr CostBits kRetiredCost = 0x7f800000u;  // +infinity: an edge tha
 inline constexpr float kCostFloor = 1e-20F;            // lower costs count as this
 inline constexpr float kPostponeFactor = 16;           // a smaller factor gives far more rounds on noise
 inline constexpr float kPostponeFloor = 2.4e-4F;       // a 64th of a voxel, squared
+inline constexpr double kMemory = 0.125;               // weight of the quadrics in a full cost, of 2 in all
 inline constexpr double kNormalWeight = 0.25;          // a normal off by 1 counts as half a voxel, squared
 inline constexpr int kMaxValence = 24;                 // of a merged vertex
 inline constexpr double kSideCosine = 0.2;             // least cosine between a face before and after
@@ -44,6 +46,22 @@ ISOWEAVE_HD inline CostBits postponed_cost(CostBits cost) {
   const float raised = kPostponeFactor * cost_value(cost);
   return cost_bits(raised > kPostponeFloor ? raised : kPostponeFloor);
 }
+
+// How costs become keys. The full cost of an edge, which is known when it is decided, is about twice that of its ends'
+// quadrics on the surface as it was extracted, and less and less of that afterwards.
+struct KeyFactors {
+  float first;   // of the quadrics' cost, for edges as they were extracted
+  float merged;  // the same for edges at a merged vertex
+  float limit;   // an edge that is decided goes back when its full cost exceeds its key by this
+};
+
+ISOWEAVE_HD inline KeyFactors key_factors(Quality quality) {
+  if (quality == Quality::kFast) return {1, 1, 1};
+  if (quality == Quality::kNormal) return {2, 1, 2};
+  return {2, 0.5F, 1.1F};
+}
+
+ISOWEAVE_HD inline CostBits scaled(CostBits cost, float factor) { return cost_bits(factor * cost_value(cost)); }
 
 // Bijective mix of 64 bits (finaliser of SplitMix64, Steele et al., 2014). Ties broken by a hash need far fewer
 // rounds on flats than ties broken by position.

@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::int64_t kBlock = 8192;
 
-std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, Quality quality, const Executor& executor) {
+std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, const Executor& executor) {
   switch (schedule) {
     case Schedule::kQueue:
-      return std::make_unique<Queue>(zone, quality);
+      return std::make_unique<Queue>(zone);
     case Schedule::kRounds:
-      return std::make_unique<Rounds>(zone, quality, executor);
+      return std::make_unique<Rounds>(zone, executor);
     default:
-      return std::make_unique<LocalMinima>(zone, quality, executor);
+      return std::make_unique<LocalMinima>(zone, executor);
   }
 }
 
@@ -33,9 +33,8 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
       executor_(executor),
       stop_(stop),
       schedule_(options.schedule == Schedule::kAutomatic ? Schedule::kLocal : options.schedule),
-      quality_(options.quality),
       finer_(options.finer),
-      driver_(make_driver(schedule_, zone_, options.quality, executor)),
+      driver_(make_driver(schedule_, zone_, executor)),
       defects_(levels()) {}
 
 void Simplifier::decide() {
@@ -50,7 +49,7 @@ void Simplifier::decide(std::size_t level) {
 
 CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
   if (this->triangles() <= triangles) return kUnknownCost;
-  Queue queue(zone_, quality_, this->triangles() - triangles);
+  Queue queue(zone_, this->triangles() - triangles);
   queue.run(stop_);
   counts_before_ += queue.counts();
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");

@@ -15,7 +15,6 @@ namespace isoweave {
 
 struct SimplifierOptions {
   ZoneOptions zone;
-  Quality quality = Quality::kNormal;
   Schedule schedule = Schedule::kAutomatic;
   // Costs at which finer meshes are taken out, ascending, all below what retires an edge.
   std::vector<CostBits> finer{};
@@ -96,7 +95,6 @@ class Simplifier {
   const Executor& executor_;
   const std::atomic<bool>* stop_;
   Schedule schedule_;
-  Quality quality_;
   std::vector<CostBits> finer_;
   std::unique_ptr<Driver> driver_;
   std::vector<std::uint8_t> undecided_;  // per vertex

@@ -285,7 +285,9 @@ bool Zone::settle_edge(Index h, EdgeBatch& batch) {
 void Zone::give_keys(EdgeBatch& batch) {
   std::array<CostBits, EdgeBatch::kCapacity> costs;
   edge_costs(*this, VectorArithmetic(), std::span(batch.ends).first(batch.count), costs.data());
-  for (std::size_t n = 0; n < batch.count; ++n) set_key(batch.half_edges[n], make_key(costs[n], batch.ties[n]));
+  const float first = key_factors(options.quality).first;
+  for (std::size_t n = 0; n < batch.count; ++n)
+    set_key(batch.half_edges[n], make_key(scaled(costs[n], first), batch.ties[n]));
   batch.count = 0;
 }
 

@@ -94,6 +94,7 @@ struct ZoneOptions {
   double most_distance = 0;    // of any point from the extracted surface; 0: no such bound
   Vec3 cell{};                 // lengths of a box that holds a few triangles, where there is such a bound
   bool normals_count = false;  // in costs and places, by quadrics of their own
+  Quality quality = Quality::kNormal;
 };
 
 class ExtractedSurface;

@@ -179,14 +179,14 @@ SurfaceRun reference(const Scene& scene, const Kept& kept, std::uint64_t triangl
   const Executor executor(1);
   ZoneOptions zone = scene.surface.zone();
   if (triangles > 0) zone.retire = kRetiredCost - 1;
-  Simplifier simplifier({zone, scene.surface.quality, Schedule::kQueue}, executor, nullptr);
+  Simplifier simplifier({zone, Schedule::kQueue}, executor, nullptr);
   MemorySink sink;
   const World world;
   FinalOutput output(world, sink, executor);
   simplifier.append(kept.piece);
   const std::uint64_t most = triangles > 0 ? kept.piece.triangles.size() - triangles : ~std::uint64_t{0};
   SurfaceRun run;
-  run.report.collapses = decide_in_order(simplifier.zone(), scene.surface.quality, most).collapses;
+  run.report.collapses = decide_in_order(simplifier.zone(), most).collapses;
   simplifier.zone().retire_all();
   output.take(simplifier);
   output.wait();

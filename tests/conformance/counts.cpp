@@ -15,8 +15,10 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 ZoneOptions zone_options(const SurfaceCase& surface) {
   const double a0 = surface.voxel() * surface.voxel();
   const Lattice lattice{surface.volume.dims};
-  return {
-      {lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1), surface.drop_specks};
+  ZoneOptions zone{{lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1)};
+  zone.drop_specks = surface.drop_specks;
+  zone.quality = surface.quality;
+  return zone;
 }
 
 SurfaceCase make_case(const std::string& kind, bool closed) {
@@ -31,10 +33,10 @@ SurfaceCase make_case(const std::string& kind, bool closed) {
 
 SurfaceRun oracle(const SurfaceCase& surface, std::uint64_t triangles) {
   const Executor executor(1);
-  Simplifier simplifier({zone_options(surface), surface.quality, Schedule::kQueue}, executor, nullptr);
+  Simplifier simplifier({zone_options(surface), Schedule::kQueue}, executor, nullptr);
   return sweep(surface, kWholeVolume, executor, simplifier, [&] {
     const std::uint64_t have = simplifier.triangles();
-    decide_in_order(simplifier.zone(), surface.quality, have > triangles ? have - triangles : 0);
+    decide_in_order(simplifier.zone(), have > triangles ? have - triangles : 0);
     simplifier.zone().retire_all();
   });
 }
@@ -43,7 +45,7 @@ SurfaceRun oracle(const SurfaceCase& surface, std::uint64_t triangles) {
 SurfaceRun run(const SurfaceCase& surface, std::uint64_t triangles, Schedule schedule, int threads, std::int64_t slab,
                std::uint64_t most_held, std::uint64_t* held = nullptr) {
   const Executor executor(threads);
-  Simplifier simplifier({zone_options(surface), surface.quality, schedule}, executor, nullptr);
+  Simplifier simplifier({zone_options(surface), schedule}, executor, nullptr);
   CountTarget target(simplifier, executor, triangles, most_held);
   const std::int64_t layers = surface.volume.dims[2] + (surface.closed ? 1 : 0);
   std::int64_t done = 0;

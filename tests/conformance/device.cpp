@@ -37,7 +37,7 @@ SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, b
 }
 
 BulkOptions bulk_options(const SurfaceCase& surface, const VolumeInfo& volume, bool normals) {
-  return {volume, surface.rule(), normals, surface.zone(), surface.quality};
+  return {volume, surface.rule(), normals, surface.zone()};
 }
 
 SurfaceRun run_on_processors(const SurfaceCase& surface, std::int64_t slab) {
@@ -143,8 +143,7 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
     const BulkOptions bulk{source->info(),
                            stored_rule(source->info(), options),
                            true,
-                           {{lattice.row(), lattice.plane()}, 1, retire_cost(0.1, 1)},
-                           Quality::kNormal};
+                           {{lattice.row(), lattice.plane()}, 1, retire_cost(0.1, 1)}};
     const SurfaceRun run =
         sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, true, 4);
     EXPECT_GT(expected.mesh.triangles.size(), 100u);

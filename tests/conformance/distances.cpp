@@ -55,9 +55,9 @@ TEST_P(Distances, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
   for (const std::int64_t slab : {std::int64_t{2}, std::int64_t{5}}) {
     std::mt19937 random(static_cast<unsigned>(slab));
     const Executor executor(1);
-    Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
-    const SurfaceRun run = sweep(surface, slab, executor, simplifier,
-                                 [&] { decide_at_random(simplifier.zone(), surface.quality, random); });
+    Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
+    const SurfaceRun run =
+        sweep(surface, slab, executor, simplifier, [&] { decide_at_random(simplifier.zone(), random); });
     EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest)) << "slab " << slab;
   }
 }

@@ -48,7 +48,7 @@ TEST_P(NormalsThatCount, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
 TEST_P(NormalsThatCount, KeysAreCostsOfPlaceAndNormal) {
   const SurfaceCase surface = this->surface();
   const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
   std::size_t keys = 0;
   sweep(surface, kWholeVolume, executor, simplifier, [&] {
     const Zone& zone = simplifier.zone();
@@ -60,7 +60,7 @@ TEST_P(NormalsThatCount, KeysAreCostsOfPlaceAndNormal) {
       };
       const double cost = collapse_cost(first->quadric, normal_of(first), second->quadric, normal_of(second),
                                         second->position - first->position);
-      ASSERT_EQ(zone.cost(h), to_cost(cost));
+      ASSERT_EQ(zone.cost(h), scaled(to_cost(cost), key_factors(surface.quality).first));
       ++keys;
     }
   });
@@ -73,9 +73,8 @@ TEST_P(NormalsThatCount, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
   const SurfaceRun expected = reference_run(surface);
   std::mt19937 random(3);
   const Executor executor(1);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
-  const SurfaceRun run =
-      sweep(surface, 3, executor, simplifier, [&] { decide_at_random(simplifier.zone(), surface.quality, random); });
+  Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
+  const SurfaceRun run = sweep(surface, 3, executor, simplifier, [&] { decide_at_random(simplifier.zone(), random); });
   EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest));
   EXPECT_EQ(riders_digest(run.mesh), riders_digest(expected.mesh));
 }

@@ -67,9 +67,9 @@ TEST_P(Conformance, RandomSafeSubsetsInRandomOrderGiveTheSameMesh) {
     for (const std::int64_t slab : {std::int64_t{4}, kWholeVolume}) {
       std::mt19937 random(static_cast<unsigned>(slab));
       const Executor executor(1);
-      Simplifier simplifier({surface.zone(), quality, Schedule::kQueue}, executor, nullptr);
+      Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
       const SurfaceRun run =
-          sweep(surface, slab, executor, simplifier, [&] { decide_at_random(simplifier.zone(), quality, random); });
+          sweep(surface, slab, executor, simplifier, [&] { decide_at_random(simplifier.zone(), random); });
       EXPECT_EQ(digest_text(run.report.digest), digest_text(expected.report.digest)) << "slab " << slab;
     }
   }
@@ -123,11 +123,11 @@ TEST(Ties, EqualUpperHalvesLeaveTheOrderToTheLower) {
     surface.error = 0.3;
     const auto run = [&](Schedule schedule, int threads, bool reference) {
       const Executor executor(threads);
-      Simplifier simplifier({surface.zone(), surface.quality, schedule}, executor, nullptr);
+      Simplifier simplifier({surface.zone(), schedule}, executor, nullptr);
       return sweep(surface, kWholeVolume, executor, simplifier, [&] {
         drop_upper_ties(simplifier.zone());
         if (reference) {
-          decide_in_order(simplifier.zone(), surface.quality);
+          decide_in_order(simplifier.zone());
         } else {
           simplifier.decide();
         }
@@ -151,11 +151,11 @@ TEST(Golden, DigestsOfTheRules) {
   };
   const std::array<Golden, 6> all{{
       {true, Quality::kFast, 5944, "f9fe2c4830c71895"},
-      {true, Quality::kNormal, 6910, "8c6f17041972f02d"},
-      {true, Quality::kFine, 7956, "8f83aa5a50699a82"},
+      {true, Quality::kNormal, 6558, "6a24ae79ac274b99"},
+      {true, Quality::kFine, 6866, "a8506cd99d7c1a7b"},
       {false, Quality::kFast, 5473, "f0e63b65e540b714"},
-      {false, Quality::kNormal, 6336, "f9a5b7db1dde7178"},
-      {false, Quality::kFine, 7393, "f1a26910cca208c4"},
+      {false, Quality::kNormal, 6138, "a1df8bc5f626495d"},
+      {false, Quality::kFine, 6463, "a87ec349979e8c03"},
   }};
   for (const Golden& golden : all) {
     SurfaceCase surface;
@@ -202,7 +202,7 @@ TEST(Starts, OfWalksDoNotMatter) {
   for (const bool turned : {false, true}) {
     std::mt19937 random(5);
     const Executor executor(1);
-    Simplifier simplifier({surface.zone(), surface.quality, Schedule::kQueue}, executor, nullptr);
+    Simplifier simplifier({surface.zone(), Schedule::kQueue}, executor, nullptr);
     const SurfaceRun run = sweep(surface, kWholeVolume, executor, simplifier, [&] {
       if (turned) turn_starts(simplifier.zone(), random);
       simplifier.decide();

@@ -69,7 +69,7 @@ TEST_P(Specks, VanishAtACostThatNoErrorChanges) {
   SurfaceCase surface = this->surface(1.5);
   const SurfaceRun direct = sweep(surface, Schedule::kLocal, 2, kWholeVolume);
   const Executor executor(2);
-  Simplifier simplifier({surface.zone(), surface.quality, Schedule::kLocal}, executor, nullptr);
+  Simplifier simplifier({surface.zone(), Schedule::kLocal}, executor, nullptr);
   const double voxel = surface.voxel();
   const SurfaceRun steps = sweep(surface, kWholeVolume, executor, simplifier, [&] {
     for (const double error : {0.2, 0.7, 1.5}) {

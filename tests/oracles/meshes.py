@@ -250,12 +250,13 @@ class Checks:
         error = float(re.search(r"by at most (\S+) mm", said).group(1))
         steps, shape, origin, transform = read_packed_precomputed(self.path("b.precomputed"), 9, self.folder)
         assert np.allclose(transform, np.eye(3, 4) * 1e6)
-        rounded = np.round((corners - origin) / shape * 65535)
-        far = np.linalg.norm(origin + rounded * shape / 65535 - corners, axis=2).max()
+        exact = (corners - origin) / shape * 65535
+        far = np.linalg.norm(origin + np.round(exact) * shape / 65535 - corners, axis=2).max()
         assert far <= error * 1.01, f"b.precomputed: {far} mm, {error} were told"
-        # Boxes have 32 bits in the file: a coordinate in the middle between two steps may go either way.
-        missing = set(map(tuple, canonical(rounded))) ^ set(map(tuple, canonical(steps)))
-        assert len(missing) < 0.002 * len(steps) and len(steps) == self.report["triangles"], "b.precomputed: others"
+        # Boxes have 32 bits in the file: a coordinate near the middle between two steps may go either way.
+        sure = (np.abs(exact % 1 - 0.5) > 0.01).all(axis=(1, 2))
+        missing = set(map(tuple, canonical(np.round(exact[sure])))) - set(map(tuple, canonical(steps)))
+        assert not missing and sure.mean() > 0.7 and len(steps) == len(exact), "b.precomputed: others"
         print(f"{'b.precomputed by Draco':28} {len(steps)} triangles, within {far:.3g} of {error:.3g} mm")
 
 
