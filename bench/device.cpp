@@ -65,8 +65,7 @@ BulkOptions bulk_options(const Arguments& arguments, const VolumeInfo& volume) {
   return {volume,
           stored_rule(volume, options),
           false,
-          {{lattice.row(), lattice.plane()}, a0, retire_cost(arguments.error * voxel, a0)},
-          Quality::kNormal};
+          {{lattice.row(), lattice.plane()}, a0, retire_cost(arguments.error * voxel, a0)}};
 }
 
 std::unique_ptr<SliceSource> open(const std::string& volume) {
