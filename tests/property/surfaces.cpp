@@ -137,8 +137,8 @@ TEST(Surface, FineIsNearerThanFastAtEqualCount) {
   const Result fast = run(volume, options);
   options.quality = Quality::kFine;
   Result fine;
-  for (double error = 0.8; fine.mesh.triangles.empty() || fine.mesh.triangles.size() > fast.mesh.triangles.size();
-       error *= 1.1) {
+  for (double error = 0.4; fine.mesh.triangles.empty() || fine.mesh.triangles.size() > fast.mesh.triangles.size();
+       error *= 1.03) {
     options.error = {error, true};
     fine = run(volume, options);
   }
