@@ -19,8 +19,8 @@ REPETITIONS = 5
 # Steps of a run, and the functions that they are, with all that these call.
 STEPS = [
     ("pieces of the mesh", [r"MeshSurface::MeshSurface", r"MeshSurface::take", r"mean_triangle_area"]),
-    ("half-edges", [r"Zone::add_vertices", r"Zone::add_triangles", r"Zone::link"]),
-    ("first quadrics", [r"Zone::settle_vertices"]),
+    ("half-edges, first quadrics of closed fans", [r"Zone::add_vertices", r"Zone::add_triangles", r"Zone::link"]),
+    ("other first quadrics", [r"Zone::settle_vertices"]),
     ("first keys", [r"Zone::settle_edges"]),
     ("first turns", [r"give_turns", r"LocalMinima::group_by_place"]),
     ("decisions", [r"Executor::for_blocks<Executor::for_each<LocalMinima::run"]),
