@@ -8,7 +8,7 @@ namespace isoweave {
 // How much an edge's cost is refined when it is decided. Every quality gives one mesh, whatever the schedule.
 //   fast    accumulated quadrics alone
 //   normal  the current faces count more, placement preserves volume; an edge dearer than twice its key goes back
-//   fine    the same, and keys are lower and an edge a tenth dearer than its key goes back: lowest error
+//   fine    the same with lower keys, and an edge a tenth dearer than its key goes back: lowest error
 enum class Quality : std::uint8_t { kFast, kNormal, kFine };
 
 // Order in which edges are decided; it never changes the result.
