@@ -29,18 +29,17 @@ class BasicDecider {
   template <class See>
   ISOWEAVE_HD bool look_at(Index half_edge, const See& see) {
     edge_ = half_edge;
-    Index to_v = half_edge;
+    const Index to_v = half_edge;
     Index to_u = zone_.twin(half_edge);
-    Index u = zone_.origin(half_edge);
-    Index v = zone_.destination(half_edge);
+    const Index u = zone_.origin(half_edge);
+    const Index v = zone_.destination(half_edge);
     if (!exists(to_u)) to_u = zone_.vertices[v].half_edge;
-    if (zone_.vertices[v].id < zone_.vertices[u].id) {
-      swap_indices(u, v);
-      swap_indices(to_u, to_v);
-    }
-    u_.gather(zone_, u, to_v);
+    const Index ends[2] = {u, v};
+    const Index starts[2] = {to_v, to_u};
+    const std::size_t first = zone_.vertices[v].id < zone_.vertices[u].id ? 1 : 0;
+    u_.gather(zone_, ends[first], starts[first]);
     if (!see(u_)) return false;
-    v_.gather(zone_, v, to_u);
+    v_.gather(zone_, ends[1 - first], starts[1 - first]);
     return see(v_);
   }
 
@@ -58,7 +57,9 @@ class BasicDecider {
   ISOWEAVE_HD const std::array<Index, Star::kRoom>& changed() const { return changed_; }
   ISOWEAVE_HD int changed_count() const { return changed_count_; }
 
-  // After a collapse: the key that the n-th of them had, the smaller one where two edges have become one.
+  // After a collapse: the end of the n-th of them that is not the merged vertex, and the key that it had, the smaller
+  // one where two edges have become one.
+  ISOWEAVE_HD Index changed_end(std::size_t n) const { return changed_end_[n]; }
   ISOWEAVE_HD Key key_before(std::size_t n) const { return before_[n]; }
 
   ISOWEAVE_HD bool collapsed() const {
@@ -81,12 +82,6 @@ class BasicDecider {
   // The face of a star of three that does not hold `other`.
   ISOWEAVE_HD static Index far_face(const Star& star, Index other) {
     return star.out[(star.place_of(other) + 1) % 3] >> 2;
-  }
-
-  ISOWEAVE_HD static void swap_indices(Index& a, Index& b) {
-    const Index before = a;
-    a = b;
-    b = before;
   }
 
   // Faces that hold both ends of the edge: they go when it collapses.
@@ -122,6 +117,7 @@ class BasicDecider {
   Fan u_fan_, v_fan_;
   Vec3 edge_vector_;  // from u to v; places are measured from u
   std::array<Index, Star::kRoom> changed_;
+  std::array<Index, Star::kRoom> changed_end_;
   std::array<Key, Star::kRoom> before_;
   int changed_count_ = 0;
   bool collapsed_ = false;
@@ -427,6 +423,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
     const Vertex* const both[2] = {&merged, &zone_.vertices[star.neighbour[n]]};
     const std::size_t first = both[1]->id < merged.id;
     changed_[count] = h;
+    changed_end_[count] = star.neighbour[n];
     before_[count] = before;
     ends[count] = {both[first], both[1 - first]};
     count += cost_of(before) <= zone_.options.retire;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <thread>
 
 #include "simplify/turns.hpp"
@@ -11,8 +13,18 @@ namespace {
 
 constexpr double kPlaceSide = 24;  // mean voxels: what a worker has in hand at a time stays in its cache
 constexpr std::size_t kPlaces = 1024;
+constexpr std::uint32_t kNowhere = 2 * kPlaces;
+
+// Asks for a line of memory before it is needed.
+void fetch(const void* line) { __builtin_prefetch(line, 1, 2); }
 
 }  // namespace
+
+// Places in a row, that lie side by side.
+struct LocalMinima::Stretch {
+  std::atomic<std::size_t> next{0};
+  std::size_t end = 0;
+};
 
 // Serves pairs. While it works on one, it holds every vertex that it reads or writes: both ends of the edge and their
 // neighbours. It never waits for another worker with anything in hand.
@@ -81,7 +93,7 @@ class LocalMinima::Worker {
     Index first = v;
     decider_.look_at(edge, [&](Star& star) {
       all_held = hold_neighbours(star);
-      if (all_held) first = earliest(star, v);
+      if (all_held) first = last_before(star, v);
       return all_held && first == v;
     });
     if (!all_held) return false;
@@ -98,22 +110,24 @@ class LocalMinima::Worker {
     return owners_ == nullptr || star.each_neighbour(zone_, [&](Index x) { return hold(x); });
   }
 
-  // Around one end of the pair of v: the neighbour whose turn comes first of all, if it comes before that of the pair;
-  // else v. One neighbour, the other end, has the pair's key; if more do, their whole ties are compared.
-  Index earliest(const Star& star, Index v) const {
+  // Around one end of the pair of v: of the neighbours whose turns come before that of the pair the last one, as the
+  // others are likely to be through when it is; v if there is none. One neighbour, the other end, has the pair's key;
+  // if more do, whole ties are compared.
+  Index last_before(const Star& star, Index v) const {
     const Key own = zone_.turn_keys[v];
-    Key least = own;
-    Index first = v;
+    Key latest = 0;
+    Index last = v;
     std::size_t equals = star.overflow ? 2 : 0;
     for (std::size_t n = 0; n < star.count(); ++n) {
       const Index x = star.neighbour[n];
       const Key key = zone_.turn_keys[x];
-      const bool less = key < least;
-      first = less ? x : first;
-      least = less ? key : least;
+      const Key rank = key - 1;  // an unknown turn, 0, is the last to be through
+      const bool later = (key < own) & (rank >= latest);
+      last = later ? x : last;
+      latest = later ? rank : latest;
       equals += key == own ? 1 : 0;
     }
-    return equals > 1 ? earliest_in_full(star, v) : first;
+    return equals > 1 ? earliest_in_full(star, v) : last;
   }
 
   Index earliest_in_full(const Star& star, Index v) const {
@@ -174,7 +188,7 @@ class LocalMinima::Worker {
     // Edges that were the turn of their other end have another key now.
     for (int n = 0; n < decider_.changed_count(); ++n) {
       const auto place = static_cast<std::size_t>(n);
-      const Index w = other_end(zone_, decider_.changed()[place], first.vertex);
+      const Index w = decider_.changed_end(place);
       if (zone_.turn_keys[w] != decider_.key_before(place)) continue;
       renew_turn(zone_, w);
       follow(w);
@@ -227,17 +241,49 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
   group_by_place();
   const bool alone = workers_.size() == 1;
   if (!alone) owners_.assign(zone_.vertices.size(), 0);
-  std::atomic<std::size_t> next_place{0};
+  std::vector<Stretch> stretches(workers_.size());
+  share_places(stretches);
   executor_.for_each(executor_.threads(), 1, [&](std::int64_t n) {
-    Worker& worker = *workers_[static_cast<std::size_t>(n)];
+    const auto number = static_cast<std::size_t>(n);
+    Worker& worker = *workers_[number];
     worker.begin(alone ? nullptr : &owners_);
-    for (std::size_t place = next_place++; place < kPlaces; place = next_place++) {
-      for (std::size_t m = places_.start[place]; m < places_.start[place + 1]; ++m) {
-        worker.serve(awake(places_.items[m]), stop);
+    for (std::size_t m = 0; m < stretches.size(); ++m) {
+      Stretch& stretch = stretches[(number + m) % stretches.size()];
+      for (std::size_t place = stretch.next++; place < stretch.end; place = stretch.next++) {
+        serve_place(place, worker, stop);
       }
     }
   });
   ++rounds_;
+}
+
+// Every worker begins with a stretch of its own, so that they seldom meet, and share few lines of memory.
+void LocalMinima::share_places(std::span<Stretch> stretches) const {
+  const std::size_t vertices = places_.items.size();
+  std::size_t place = 0;
+  for (std::size_t n = 0; n < stretches.size(); ++n) {
+    stretches[n].next = place;
+    while (place < kPlaces && places_.start[place] * stretches.size() < vertices * (n + 1)) ++place;
+    stretches[n].end = place;
+  }
+}
+
+// The pairs of a place. Whoever walks around a vertex waits for one line of memory after the other: what is there is
+// asked for before.
+void LocalMinima::serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const {
+  const auto items =
+      std::span(places_.items).subspan(places_.start[place], places_.start[place + 1] - places_.start[place]);
+  for (const std::uint32_t n : items) {
+    const auto* const vertex = reinterpret_cast<const std::byte*>(&zone_.vertices[awake(n)]);
+    fetch(vertex);
+    fetch(vertex + sizeof(Vertex) / 2);
+    fetch(&zone_.turns[awake(n)]);
+    fetch(&zone_.triangles[triangle_[n]]);
+    fetch(&zone_.triangles[triangle_[n]] + 1);
+  }
+  for (const std::uint32_t n : items) {
+    if (place_[n] % 2 == 1) worker.serve(awake(n), stop);
+  }
 }
 
 void LocalMinima::wake_waiters_of_settled() {
@@ -257,14 +303,13 @@ Index LocalMinima::awake(std::size_t n) const {
   return n < zone_.settled.size() ? zone_.settled[n] : woken_[n - zone_.settled.size()];
 }
 
-// v and the other end of its least edge are a pair, and v is the one of them to serve, or both are.
+// v, which has a turn, and the other end of its least edge are a pair, and v is the one of them to serve, or both are.
 bool LocalMinima::stands_for_pair(Index v) const {
-  if (!has_turn(zone_, v)) return false;
   const Index other = other_end(zone_, zone_.turns[v].edge, v);
   return same_turn(zone_, v, other) && (v < other || other < zone_.settled.first_new);
 }
 
-// Groups the pairs to serve by columns of the volume; after kColumns of them the numbers start again.
+// Groups vertices that have a turn by columns of the volume; after kColumns of them the numbers start again.
 void LocalMinima::group_by_place() {
   constexpr std::uint32_t kColumns = 32;
   static_assert(kColumns * kColumns == kPlaces);
@@ -274,16 +319,18 @@ void LocalMinima::group_by_place() {
     return static_cast<std::uint32_t>(static_cast<std::int64_t>(number)) % kColumns;
   };
   place_.resize(zone_.settled.size() + woken_.size());
-  executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t n) {
-    std::uint32_t& place = place_[static_cast<std::size_t>(n)];
-    const Index v = awake(static_cast<std::size_t>(n));
-    place = kPlaces;
-    if (!stands_for_pair(v)) return;
+  triangle_.resize(place_.size());
+  executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Index v = awake(n);
+    place_[n] = kNowhere;
+    if (!has_turn(zone_, v)) return;
     const Vec3 p = zone_.vertices[v].position;
-    place = column(p.x) + kColumns * column(p.y);
+    place_[n] = 2 * (column(p.x) + kColumns * column(p.y)) + (stands_for_pair(v) ? 1 : 0);
+    triangle_[n] = zone_.vertices[v].half_edge >> 2;
   });
   fill_buckets(
-      executor_, static_cast<std::uint32_t>(place_.size()), kPlaces, [&](std::uint32_t n) { return place_[n]; },
+      executor_, static_cast<std::uint32_t>(place_.size()), kPlaces, [&](std::uint32_t n) { return place_[n] / 2; },
       places_);
 }
 

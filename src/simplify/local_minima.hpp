@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "parallel/bucket.hpp"
@@ -26,18 +27,22 @@ class LocalMinima final : public Driver {
 
  private:
   class Worker;
+  struct Stretch;
 
   void wake_waiters_of_settled();
   void group_by_place();
   Index awake(std::size_t n) const;
   bool stands_for_pair(Index v) const;
+  void share_places(std::span<Stretch> stretches) const;
+  void serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const;
 
   Zone& zone_;
   const Executor& executor_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<std::uint16_t> owners_;  // per vertex: the worker that holds it, 0 for none
   std::vector<Index> woken_;           // vertices that waited for one that has settled
-  std::vector<std::uint32_t> place_;   // of the vertices to serve: those settled and those woken
+  std::vector<std::uint32_t> place_;   // of those settled and those woken, doubled; odd if there is a pair to serve
+  std::vector<Index> triangle_;        // one at each of them that has a place
   Buckets places_;                     // of their numbers
   std::uint64_t rounds_ = 0;
 };

@@ -90,8 +90,7 @@ std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
           undecided_[v] = zone_.states[v] == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= within;
           if (undecided_[v]) continue;
-          const bool has_fan = zone_.walkable(v);
-          if (make_final(v, level) && has_fan) list.push_back(v);
+          if (make_final(v, level) && zone_.walkable(v)) list.push_back(v);
         }
       },
       walkable);

@@ -135,8 +135,8 @@ struct ZoneView {
     return state != VertexState::kIncomplete && state != VertexState::kLocked && exists(vertices[v].half_edge);
   }
 
-  // The half-edge that stands for its edge.
-  ISOWEAVE_HD bool represents_edge(Index h) const { return h < twin(h) || !exists(twin(h)); }
+  // The half-edge that stands for its edge: the smaller one, or the only one, as what is no half-edge is greater.
+  ISOWEAVE_HD bool represents_edge(Index h) const { return h < twin(h); }
 
   // The next half-edge around the origin of h, counter-clockwise; kNone past a border.
   ISOWEAVE_HD Index rotate(Index h) const { return twin(previous(h)); }
