@@ -57,28 +57,39 @@ class KernelsInLanes {
     }
   }
 
-  // The repeated neighbour makes the slots past the last one zero.
+  static Vec places(const Vertex* vertices, const Vec& from, const Index* which) {
+    Real c[4];
+    load_vertices<4>([&](std::size_t n) { return vertices + which[n]; }, c);
+    return Vec{c[0], c[1], c[2]} - from;
+  }
+
+  static void store(const Vec& v, double* x, double* y, double* z) {
+    v.x.store(x);
+    v.y.store(y);
+    v.z.store(z);
+  }
+
+  static Vec shifted(const Vec& v, const Vec& by) {
+    return {isoweave::shifted(v.x, by.x), isoweave::shifted(v.y, by.y), isoweave::shifted(v.z, by.z)};
+  }
+
+  // The repeated neighbour makes the slots past the last one zero. What has just been stored is not loaded with the
+  // next number beside it: a load waits until all stores that it takes from are through.
   static void measure(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan) {
     const Vec from{centre.x, centre.y, centre.z};
-    std::size_t end = 0;
-    for (; end < count; end += N) {
-      Real c[4];
-      load_vertices<4>([&](std::size_t n) { return vertices + neighbours[end + n]; }, c);
-      const Vec to = Vec{c[0], c[1], c[2]} - from;
-      to.x.store(fan.x + end);
-      to.y.store(fan.y + end);
-      to.z.store(fan.z + end);
+    const Vec3 repeated = vertices[neighbours[count]].position - centre;
+    const Vec last{repeated.x, repeated.y, repeated.z};
+    Vec to = places(vertices, from, neighbours);
+    std::size_t n = 0;
+    for (; n < count; n += N) {
+      const Vec beyond = n + N < count ? places(vertices, from, neighbours + n + N) : last;
+      store(to, fan.x + n, fan.y + n, fan.z + n);
+      store(cross(to, shifted(to, beyond)), fan.normal_x + n, fan.normal_y + n, fan.normal_z + n);
+      to = beyond;
     }
-    const Vec3 to = vertices[neighbours[count]].position - centre;
-    fan.x[end] = to.x;
-    fan.y[end] = to.y;
-    fan.z[end] = to.z;
-    for (std::size_t n = 0; n < count; n += N) {
-      const Vec normal = cross(neighbour(fan, n), neighbour(fan, n + 1));
-      normal.x.store(fan.normal_x + n);
-      normal.y.store(fan.normal_y + n);
-      normal.z.store(fan.normal_z + n);
-    }
+    fan.x[n] = repeated.x;
+    fan.y[n] = repeated.y;
+    fan.z[n] = repeated.z;
   }
 
   static Vec neighbour(const Fan& fan, std::size_t n) {

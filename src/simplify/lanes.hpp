@@ -85,6 +85,15 @@ bool all(typename Lanes<N>::Mask mask) {
   return both != 0;
 }
 
+// All but the first of a, and the first of b.
+template <std::size_t N>
+[[gnu::always_inline]] inline Lanes<N> shifted(const Lanes<N>& a, const Lanes<N>& b) {
+  return [&]<std::size_t... Lane>(std::index_sequence<Lane...>) {
+    return Lanes<N>(__builtin_shufflevector(a.v, b.v, (Lane + 1)...));
+  }
+  (std::make_index_sequence<N>());
+}
+
 // Rows become columns in every group of W lanes: in steps, blocks of half the size change places across the diagonal.
 template <std::size_t N, std::size_t W>
 [[gnu::always_inline]] inline void transpose(Lanes<N> (&rows)[W]) {
