@@ -175,7 +175,7 @@ describe('a sweep', () => {
     await until(page, `document.getElementById('state').dataset.state === 'gone'`);
     assert.match(await visibleText(page, 'state'), /does not answer any more/);
     assert.ok((await drawn(page)).undecided > 0);
-  }, { errors: [/ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|ERR_EMPTY_RESPONSE|ERR_INVALID_CHUNKED|ERR_CONTENT_LENGTH/] }));
+  }, { errors: [/ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|ERR_SOCKET_NOT_CONNECTED|ERR_EMPTY_RESPONSE|ERR_INVALID_CHUNKED|ERR_CONTENT_LENGTH/] }));
 
   test('of more triangles than are drawn is shown coarser, and that is said', () => withWatched(kRough, kSmall, async (page, run) => {
     await until(page, kComplete);
