@@ -61,12 +61,12 @@ class LocalMinima::Worker {
   bool hold(Index v) {
     if (owners_ == nullptr) return true;
     const std::atomic_ref<std::uint16_t> owner((*owners_)[v]);
-    std::uint16_t found = 0;
-    if (owner.compare_exchange_strong(found, number_, std::memory_order_acquire, std::memory_order_relaxed)) {
-      held_.push_back(v);
-      return true;
-    }
-    return found == number_;
+    std::uint16_t found = owner.load(std::memory_order_relaxed);  // an exchange takes longer
+    if (found != 0) return found == number_;
+    const bool is_free =
+        owner.compare_exchange_strong(found, number_, std::memory_order_acquire, std::memory_order_relaxed);
+    if (is_free) held_.push_back(v);
+    return is_free;
   }
 
   void release() {
