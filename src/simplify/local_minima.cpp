@@ -89,14 +89,12 @@ class LocalMinima::Worker {
     if (!same_turn(zone_, v, other)) return true;
     const Index pair = std::min(v, other);
     if (waits_for(pair).load(std::memory_order_acquire) != kNone) return true;
-    bool all_held = true;
     Index first = v;
-    decider_.look_at(edge, [&](Star& star) {
-      all_held = hold_neighbours(star);
-      if (all_held) first = last_before(star, v);
-      return all_held && first == v;
+    decider_.look_at(edge, [&](const Star& star) {
+      first = hold_for(star, v);
+      return first == v;
     });
-    if (!all_held) return false;
+    if (first == kNone) return false;
     if (first != v) {
       wait(pair, first);
       return true;
@@ -106,28 +104,43 @@ class LocalMinima::Worker {
     return true;
   }
 
-  bool hold_neighbours(const Star& star) {
-    return owners_ == nullptr || star.each_neighbour(zone_, [&](Index x) { return hold(x); });
+  // Around one end of the pair of v: a neighbour whose turn comes before that of the pair, which is held then; v if
+  // there is none, and all are held; kNone if another worker holds something.
+  Index hold_for(const Star& star, Index v) {
+    const auto [seen, tied] = last_before(star, v);
+    if (seen != v) return hold(seen) && turn_key(seen) < turn_key(v) ? seen : kNone;
+    if (owners_ == nullptr) return tied ? earliest_in_full(star, v) : v;
+    if (!star.each_neighbour(zone_, [&](Index x) { return hold(x); })) return kNone;
+    const auto [last, tied_still] = last_before(star, v);
+    return tied_still ? earliest_in_full(star, v) : last;
   }
 
-  // Around one end of the pair of v: of the neighbours whose turns come before that of the pair the last one, as the
-  // others are likely to be through when it is; v if there is none. One neighbour, the other end, has the pair's key;
-  // if more do, whole ties are compared.
-  Index last_before(const Star& star, Index v) const {
-    const Key own = zone_.turn_keys[v];
+  // Whoever does not hold the vertex may be told what has been.
+  Key turn_key(Index v) const { return std::atomic_ref(zone_.turn_keys[v]).load(std::memory_order_relaxed); }
+
+  struct Before {
+    Index last;
+    bool tied;
+  };
+
+  // Around one end of the pair of v: of the neighbours whose turns come before that of the pair by their keys the last
+  // one, as the others are likely to be through when it is; v if there is none. One neighbour, the other end, has the
+  // pair's key; if more do, whole ties have to be compared.
+  Before last_before(const Star& star, Index v) const {
+    const Key own = turn_key(v);
     Key latest = 0;
     Index last = v;
     std::size_t equals = star.overflow ? 2 : 0;
     for (std::size_t n = 0; n < star.count(); ++n) {
       const Index x = star.neighbour[n];
-      const Key key = zone_.turn_keys[x];
+      const Key key = turn_key(x);
       const Key rank = key - 1;  // an unknown turn, 0, is the last to be through
       const bool later = (key < own) & (rank >= latest);
       last = later ? x : last;
       latest = later ? rank : latest;
       equals += key == own ? 1 : 0;
     }
-    return equals > 1 ? earliest_in_full(star, v) : last;
+    return {last, equals > 1};
   }
 
   Index earliest_in_full(const Star& star, Index v) const {
