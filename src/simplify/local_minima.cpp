@@ -26,8 +26,8 @@ struct LocalMinima::Stretch {
   std::size_t end = 0;
 };
 
-// Serves pairs. While it works on one, it holds every vertex that it reads or writes: both ends of the edge and their
-// neighbours. It never waits for another worker with anything in hand.
+// Serves pairs. It holds both ends of one that it looks at, all their neighbours when it decides the edge, and the
+// vertex that it lets the pair wait for. It never waits for another worker with anything in hand.
 class LocalMinima::Worker {
  public:
   Worker(Zone& zone, std::uint16_t number) : zone_(zone), decider_(zone), number_(number) {}
@@ -78,8 +78,8 @@ class LocalMinima::Worker {
 
   std::atomic_ref<Index> waits_for(Index v) { return std::atomic_ref<Index>(zone_.turns[v].waits_for); }
 
-  // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for the vertex
-  // that comes first. False when another worker holds something: nothing has been done.
+  // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for a vertex that
+  // comes before. False when another worker holds something: nothing has been done.
   bool visit(Index v) {
     if (!hold(v)) return false;
     if (!has_turn(zone_, v)) return true;
@@ -89,14 +89,14 @@ class LocalMinima::Worker {
     if (!same_turn(zone_, v, other)) return true;
     const Index pair = std::min(v, other);
     if (waits_for(pair).load(std::memory_order_acquire) != kNone) return true;
-    Index first = v;
+    Index before = v;
     decider_.look_at(edge, [&](const Star& star) {
-      first = hold_for(star, v);
-      return first == v;
+      before = hold_for(star, v);
+      return before == v;
     });
-    if (first == kNone) return false;
-    if (first != v) {
-      wait(pair, first);
+    if (before == kNone) return false;
+    if (before != v) {
+      wait(pair, before);
       return true;
     }
     decider_.decide();
@@ -105,7 +105,8 @@ class LocalMinima::Worker {
   }
 
   // Around one end of the pair of v: a neighbour whose turn comes before that of the pair, which is held then; v if
-  // there is none, and all are held; kNone if another worker holds something.
+  // there is none, and all are held; kNone if another worker holds something. Half of all looks end with the first:
+  // neighbours are not held for it.
   Index hold_for(const Star& star, Index v) {
     const auto [seen, tied] = last_before(star, v);
     if (seen != v) return hold(seen) && turn_key(seen) < turn_key(v) ? seen : kNone;
@@ -115,7 +116,7 @@ class LocalMinima::Worker {
     return tied_still ? earliest_in_full(star, v) : last;
   }
 
-  // Whoever does not hold the vertex may be told what has been.
+  // Whoever does not hold the vertex may be told an old one.
   Key turn_key(Index v) const { return std::atomic_ref(zone_.turn_keys[v]).load(std::memory_order_relaxed); }
 
   struct Before {
@@ -152,11 +153,11 @@ class LocalMinima::Worker {
     return first;
   }
 
-  void wait(Index pair, Index first) {
+  void wait(Index pair, Index before) {
     Turn& turn = zone_.turns[pair];
-    turn.next_waiter = zone_.turns[first].first_waiter;
-    zone_.turns[first].first_waiter = pair;
-    waits_for(pair).store(first, std::memory_order_release);
+    turn.next_waiter = zone_.turns[before].first_waiter;
+    zone_.turns[before].first_waiter = pair;
+    waits_for(pair).store(before, std::memory_order_release);
   }
 
   // Wakes the pairs that v no longer comes before; the others go on waiting for it. The turn of a pair that waits does
