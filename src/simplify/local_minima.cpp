@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
 #include <span>
 #include <thread>
 
@@ -26,6 +28,68 @@ struct LocalMinima::Stretch {
   std::size_t end = 0;
 };
 
+// What workers with much to do leave to those with nothing.
+class LocalMinima::Spare {
+ public:
+  // One worker more is at work: until it takes something, or leaves.
+  void enter() {
+    const std::lock_guard lock(mutex_);
+    ++working_;
+  }
+
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    if (--working_ == 0) changed_.notify_all();
+  }
+
+  bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
+
+  // Takes the older half of a stack.
+  void give(std::vector<Index>& todo) {
+    const auto half = todo.begin() + static_cast<std::ptrdiff_t>(todo.size() / 2);
+    {
+      const std::lock_guard lock(mutex_);
+      vertices_.insert(vertices_.end(), todo.begin(), half);
+      wanted_ = false;
+    }
+    todo.erase(todo.begin(), half);
+    changed_.notify_one();
+  }
+
+  // Waits for something to do. False when nobody is at work any more.
+  bool take(std::vector<Index>& todo) {
+    std::unique_lock lock(mutex_);
+    if (--working_ == 0) changed_.notify_all();
+    ++waiting_;
+    wanted_ = true;
+    changed_.wait(lock, [&] { return !vertices_.empty() || working_ == 0; });
+    --waiting_;
+    ++working_;
+    if (vertices_.empty()) return false;
+    todo.swap(vertices_);
+    wanted_ = waiting_ > 0;
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Index> vertices_;
+  std::size_t working_ = 0;
+  std::size_t waiting_ = 0;
+  std::atomic<bool> wanted_{false};  // somebody waits, and nothing is there
+};
+
+// A worker's time at work, however it ends.
+struct LocalMinima::Shift {
+  explicit Shift(Spare& where) : spare(where) { spare.enter(); }
+  ~Shift() { spare.leave(); }
+  Shift(const Shift&) = delete;
+  Shift& operator=(const Shift&) = delete;
+
+  Spare& spare;
+};
+
 // Serves pairs. It holds both ends of one that it looks at, all their neighbours when it decides the edge, and the
 // vertex that it lets the pair wait for. It never waits for another worker with anything in hand.
 class LocalMinima::Worker {
@@ -35,12 +99,28 @@ class LocalMinima::Worker {
   const DecisionCounts& counts() const { return decider_.counts(); }
 
   // owners: nullptr when this is the only worker.
-  void begin(std::vector<std::uint16_t>* owners) { owners_ = owners; }
+  void begin(std::vector<std::uint16_t>* owners, Spare& spare) {
+    owners_ = owners;
+    spare_ = &spare;
+  }
 
   // Serves the pair that v belongs to and everything that follows from it.
   void serve(Index v, const std::atomic<bool>* stop) {
     todo_.push_back(v);
+    serve_all(stop);
+  }
+
+  // Serves what other workers leave, until all are through.
+  void help(const std::atomic<bool>* stop) {
+    while (spare_->take(todo_)) serve_all(stop);
+  }
+
+ private:
+  static constexpr std::size_t kMuch = 16;
+
+  void serve_all(const std::atomic<bool>* stop) {
     while (!todo_.empty() || !later_.empty()) {
+      if (todo_.size() >= kMuch && spare_->wanted()) spare_->give(todo_);
       if (todo_.empty()) {
         todo_.swap(later_);
         std::this_thread::yield();
@@ -57,7 +137,6 @@ class LocalMinima::Worker {
     }
   }
 
- private:
   bool hold(Index v) {
     if (owners_ == nullptr) return true;
     const std::atomic_ref<std::uint16_t> owner((*owners_)[v]);
@@ -230,6 +309,7 @@ class LocalMinima::Worker {
   Decider decider_;
   std::uint16_t number_;
   std::vector<std::uint16_t>* owners_ = nullptr;
+  Spare* spare_ = nullptr;
   std::vector<Index> todo_;   // a stack: what was woken last lies nearest
   std::vector<Index> later_;  // met another worker
   std::vector<Index> held_;
@@ -257,16 +337,19 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
   if (!alone) owners_.assign(zone_.vertices.size(), 0);
   std::vector<Stretch> stretches(workers_.size());
   share_places(stretches);
+  Spare spare;
   executor_.for_each(executor_.threads(), 1, [&](std::int64_t n) {
     const auto number = static_cast<std::size_t>(n);
     Worker& worker = *workers_[number];
-    worker.begin(alone ? nullptr : &owners_);
+    worker.begin(alone ? nullptr : &owners_, spare);
+    const Shift shift(spare);
     for (std::size_t m = 0; m < stretches.size(); ++m) {
       Stretch& stretch = stretches[(number + m) % stretches.size()];
       for (std::size_t place = stretch.next++; place < stretch.end; place = stretch.next++) {
         serve_place(place, worker, stop);
       }
     }
+    worker.help(stop);
   });
   ++rounds_;
 }

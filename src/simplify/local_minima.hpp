@@ -28,6 +28,8 @@ class LocalMinima final : public Driver {
  private:
   class Worker;
   struct Stretch;
+  class Spare;
+  struct Shift;
 
   void wake_waiters_of_settled();
   void group_by_place();
