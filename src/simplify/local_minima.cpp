@@ -31,7 +31,7 @@ struct LocalMinima::Stretch {
 // What workers with much to do leave to those with nothing.
 class LocalMinima::Spare {
  public:
-  // One worker more is at work: until it takes something, or leaves.
+  // One worker more is at work. It is not while it waits in take(), nor when it has left.
   void enter() {
     const std::lock_guard lock(mutex_);
     ++working_;
