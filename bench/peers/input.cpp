@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 
@@ -57,12 +56,6 @@ HeldVolume hold(isoweave::SliceSource& source, double iso) {
   volume.samples.resize(volume.info.slice_bytes() * static_cast<std::size_t>(volume.info.dims[2]));
   source.read(0, volume.info.dims[2], volume.samples);
   return volume;
-}
-
-void HeldSource::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
-  const std::size_t slice = volume_.info.slice_bytes();
-  std::memcpy(out.data(), volume_.samples.data() + static_cast<std::size_t>(first) * slice,
-              static_cast<std::size_t>(count) * slice);
 }
 
 VolumeFile write_raw(isoweave::SliceSource& source, double iso, const std::string& path) {

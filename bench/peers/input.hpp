@@ -33,17 +33,6 @@ struct HeldVolume {
 
 HeldVolume hold(isoweave::SliceSource& source, double iso);
 
-// Slices of a volume that is in memory already. The volume must outlive it.
-class HeldSource : public isoweave::SliceSource {
- public:
-  explicit HeldSource(const HeldVolume& volume) : volume_(volume) {}
-  const isoweave::VolumeInfo& info() const override { return volume_.info; }
-  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
-
- private:
-  const HeldVolume& volume_;
-};
-
 // Headerless samples in a file, so that reading costs everybody the same.
 struct VolumeFile {
   isoweave::VolumeInfo info;  // of the file: its path, no slope

@@ -60,8 +60,8 @@ class Extraction : public Task {
  public:
   Extraction(const HeldVolume& volume, const Goal& goal) : volume_(volume), threads_(goal.threads) {}
   void run() override {
-    HeldSource source(volume_);
-    mesh_volume(source, sink_, mesh_options(volume_.iso, 0, Quality::kNormal), on(threads_));
+    const std::unique_ptr<isoweave::SliceSource> source = volume_in_memory(volume_.info, volume_.samples);
+    mesh_volume(*source, sink_, mesh_options(volume_.iso, 0, Quality::kNormal), on(threads_));
   }
   std::size_t triangles() const override { return sink_.triangles(); }
   isoweave::TriangleMesh mesh() const override { return sink_.mesh(); }

@@ -72,7 +72,16 @@ class SliceSource {
 
   // Whether slices that are skipped cost next to nothing. Not so in a compressed stream.
   virtual bool skips() const { return true; }
+
+  // All slices as read() gives them, if the source has them in memory anyway, else nothing. Extraction looks at samples
+  // where they are held, and reads only what is not.
+  virtual std::span<const std::byte> held() const { return {}; }
 };
+
+// A volume in memory: info.dims samples of info.type, x fastest, in the machine's byte order and aligned for their
+// type. They are not copied: they must outlive the source and stay as they are meanwhile. Throws std::invalid_argument
+// when there are more samples or fewer, or they are not aligned.
+std::unique_ptr<SliceSource> volume_in_memory(const VolumeInfo& info, std::span<const std::byte> samples);
 
 // Layout of a headerless file.
 struct RawLayout {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "extract/row_kernels.hpp"
 #include "extract/rules.hpp"
 #include "isoweave/volume.hpp"
 
@@ -13,6 +14,6 @@ namespace isoweave {
 // Sets bit i + 1 of `words` for every inside sample i of a row, clears all others. Bits 0 and n + 1 are the pad.
 // `words` holds at least (n + 2 + 63) / 64 words.
 void classify_row(const std::byte* row, SampleType type, std::int64_t n, const IsoRule& rule,
-                  std::span<std::uint64_t> words);
+                  std::span<std::uint64_t> words, const RowKernels& kernels = row_kernels());
 
 }  // namespace isoweave

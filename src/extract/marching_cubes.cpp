@@ -97,18 +97,16 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
   auto count = static_cast<std::size_t>(layers);
   slices_.resize(count + 1);
   layers_.resize(count);
-  const std::int64_t jobs = layers * static_cast<std::int64_t>(rows_);
   for (std::size_t n = 0; n < count; ++n) {
-    for (auto* bits : {&slices_[n + 1].inside, &slices_[n + 1].cross_x, &slices_[n + 1].cross_y, &layers_[n].cross_z}) {
+    for (auto* bits : {&slices_[n + 1].inside, &slices_[n + 1].cross_x, &slices_[n + 1].cross_y, &layers_[n].cross_z,
+                       &layers_[n].crossed}) {
       bits->resize(rows_ * words_);
     }
     slices_[n + 1].base.resize(rows_ * words_);
     layers_[n].base.resize(rows_ * words_);
   }
-  executor_.for_each(jobs, kRowsPerBlock, [&](std::int64_t job) {
-    const std::size_t n = static_cast<std::size_t>(job) / rows_;
-    classify(window, next_layer_ + static_cast<std::int64_t>(n) + 1, static_cast<std::size_t>(job) % rows_,
-             slices_[n + 1]);
+  for_rows(count, [&](std::size_t n, std::size_t row, std::size_t) {
+    classify(window, next_layer_ + static_cast<std::int64_t>(n) + 1, row, slices_[n + 1]);
   });
   count_rows(count);
   count = layers_within(count, most_vertices);
@@ -120,6 +118,22 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
   list_front(piece);
   if (layers_left() > 0) piece.complete_below = static_cast<double>(first_[2] + next_layer_) * spacing_[2];
   return static_cast<std::int64_t>(count);
+}
+
+// Calls visit(layer, row, number of the row in the slab) for every row of so many layers.
+template <class Visit>
+void MarchingCubes::for_rows(std::size_t layers, const Visit& visit) const {
+  const auto count = static_cast<std::int64_t>(layers * rows_);
+  executor_.for_blocks(count, kRowsPerBlock, [&](std::int64_t begin, std::int64_t end) {
+    std::size_t n = static_cast<std::size_t>(begin) / rows_;
+    std::size_t row = static_cast<std::size_t>(begin) % rows_;
+    for (auto number = static_cast<std::size_t>(begin); number < static_cast<std::size_t>(end); ++number) {
+      visit(n, row, number);
+      if (++row < rows_) continue;
+      row = 0;
+      ++n;
+    }
+  });
 }
 
 // Inside bits of one padded row of slice k.
@@ -143,15 +157,15 @@ std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   const bool closed = options_.rule.closed;
   const bool has_y = row + 1 < rows_ && (closed || (j >= 0 && j + 1 < dims_[1]));
   const bool has_z = closed || (k >= 0 && k + 1 < dims_[2]);
+  const std::uint64_t* const bits = &slice.inside[begin];
+  std::uint64_t* const x = &slice.cross_x[begin];
+  std::uint64_t* const y = &slice.cross_y[begin];
+  std::uint64_t* const z = &layers_[n].cross_z[begin];
+  kernels_.differ_along(bits, edge_mask_.data(), words_, x);
+  kernels_.differ(bits, has_y ? bits + words_ : bits, words_, y);
+  kernels_.differ(bits, has_z ? &slices_[n].inside[begin] : bits, words_, z);
   std::uint32_t count = 0;
-  for (std::size_t w = 0; w < words_; ++w) {
-    const std::uint64_t bits = slice.inside[begin + w];
-    const std::uint64_t carry = w + 1 < words_ ? slice.inside[begin + w + 1] << 63 : 0;
-    slice.cross_x[begin + w] = (bits ^ (bits >> 1 | carry)) & edge_mask_[w];
-    slice.cross_y[begin + w] = has_y ? bits ^ slice.inside[begin + words_ + w] : 0;
-    layers_[n].cross_z[begin + w] = has_z ? bits ^ slices_[n].inside[begin + w] : 0;
-    count += ones(slice.cross_x[begin + w]) + ones(slice.cross_y[begin + w]) + ones(layers_[n].cross_z[begin + w]);
-  }
+  for (std::size_t w = 0; w < words_; ++w) count += ones(x[w]) + ones(y[w]) + ones(z[w]);
   return count;
 }
 
@@ -174,19 +188,18 @@ std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row)
 // Finds the crossings of every row, and counts them and the triangles.
 void MarchingCubes::count_rows(std::size_t layers) {
   rows_of_slab_.resize(layers * rows_);
-  executor_.for_each(static_cast<std::int64_t>(rows_of_slab_.size()), kRowsPerBlock, [&](std::int64_t job) {
-    const std::size_t n = static_cast<std::size_t>(job) / rows_;
-    const std::size_t row = static_cast<std::size_t>(job) % rows_;
+  for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
     Row counts;
     counts.vertices = find_crossings(n, row);
     if (!options_.rule.closed) counts.on_border = crossings_on_border(n, row);
-    for_active_cells(
+    find_cells(n, row);
+    for_crossed_cells(
         n, row, [](std::size_t) {},
         [&](std::int64_t, std::uint32_t cell) {
           counts.triangles += kCaseTable[cell].triangles;
           ++counts.cells;
         });
-    rows_of_slab_[static_cast<std::size_t>(job)] = counts;
+    rows_of_slab_[number] = counts;
   });
 }
 
@@ -243,14 +256,12 @@ struct MarchingCubes::EdgeRow {
 template <class T>
 void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) {
   const SampleView<T> samples(window);
-  executor_.for_each(static_cast<std::int64_t>(layers * rows_), kRowsPerBlock, [&](std::int64_t job) {
-    const std::size_t n = static_cast<std::size_t>(job) / rows_;
-    const std::size_t row = static_cast<std::size_t>(job) % rows_;
+  for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
     const std::int64_t j = static_cast<std::int64_t>(row) - 1;
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
     const Slice& upper = slices_[n + 1];
-    const std::uint32_t first = rows_of_slab_[static_cast<std::size_t>(job)].vertices;
-    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].vertices) return;  // nobody asks for numbers there
+    const std::uint32_t first = rows_of_slab_[number].vertices;
+    if (first == rows_of_slab_[number + 1].vertices) return;  // nobody asks for numbers there
     number_row(n, row, front_size_ + first);
     const SampleRow<T> here = samples.row(j, k + 1);
     const EdgeRow<T, 2> along_z{samples.row(j, k), here, j, k};
@@ -300,25 +311,34 @@ bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {
   return options_.rule.closed || (k >= 0 && k + 1 < dims_[2] && j >= 0 && j + 1 < dims_[1]);
 }
 
-// Calls visit(bit, case) for every cell of a cell row that the surface crosses, and enter_word(w) before the first of a
+// The rows of samples around a row of cells.
+std::array<const std::uint64_t*, 4> MarchingCubes::rows_around(std::size_t n, std::size_t row) const {
+  return {&slices_[n].inside[row * words_], &slices_[n].inside[(row + 1) * words_],
+          &slices_[n + 1].inside[row * words_], &slices_[n + 1].inside[(row + 1) * words_]};
+}
+
+// Finds the cells of a row that the surface crosses.
+void MarchingCubes::find_cells(std::size_t n, std::size_t row) {
+  std::uint64_t* const crossed = &layers_[n].crossed[row * words_];
+  if (has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) {
+    kernels_.cells_crossed(rows_around(n, row), cell_mask_.data(), words_, crossed);
+  } else {
+    std::fill(crossed, crossed + words_, 0);
+  }
+}
+
+// Calls visit(bit, case) for every cell of a row that the surface crosses, and enter_word(w) before the first of a
 // word.
 template <class EnterWord, class Visit>
-void MarchingCubes::for_active_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const {
-  if (!has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) return;
-  const std::uint64_t* rows[4] = {&slices_[n].inside[row * words_], &slices_[n].inside[(row + 1) * words_],
-                                  &slices_[n + 1].inside[row * words_], &slices_[n + 1].inside[(row + 1) * words_]};
+void MarchingCubes::for_crossed_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const {
+  const std::uint64_t* const crossed = &layers_[n].crossed[row * words_];
   for (std::size_t w = 0; w < words_; ++w) {
+    if (crossed[w] == 0) continue;
+    enter_word(w);
+    const std::array<const std::uint64_t*, 4> rows = rows_around(n, row);
     std::uint64_t shifted[4];
-    std::uint64_t any = 0;
-    std::uint64_t all = ~std::uint64_t{0};
-    for (std::size_t r = 0; r < 4; ++r) {
-      shifted[r] = rows[r][w] >> 1 | (w + 1 < words_ ? rows[r][w + 1] << 63 : 0);
-      any |= rows[r][w] | shifted[r];
-      all &= rows[r][w] & shifted[r];
-    }
-    const std::uint64_t active = any & ~all & cell_mask_[w];
-    if (active != 0) enter_word(w);
-    for_each_bit(active, w, [&](std::int64_t bit) {
+    for (std::size_t r = 0; r < 4; ++r) shifted[r] = rows[r][w] >> 1 | (w + 1 < words_ ? rows[r][w + 1] << 63 : 0);
+    for_each_bit(crossed[w], w, [&](std::int64_t bit) {
       const auto pair = [&](std::size_t r) {
         return static_cast<std::uint32_t>((rows[r][w] >> (bit & 63) & 1) | (shifted[r] >> (bit & 63) & 1) << 1);
       };
@@ -366,14 +386,12 @@ MarchingCubes::CellWord MarchingCubes::cell_word(std::size_t n, std::size_t row,
 
 // Writes triangles in lattice order.
 void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) const {
-  executor_.for_each(static_cast<std::int64_t>(layers * rows_), kRowsPerBlock, [&](std::int64_t job) {
-    const std::size_t n = static_cast<std::size_t>(job) / rows_;
-    const std::size_t row = static_cast<std::size_t>(job) % rows_;
-    const std::uint32_t first = rows_of_slab_[static_cast<std::size_t>(job)].triangles;
-    if (first == rows_of_slab_[static_cast<std::size_t>(job) + 1].triangles) return;
+  for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t row_number) {
+    const std::uint32_t first = rows_of_slab_[row_number].triangles;
+    if (first == rows_of_slab_[row_number + 1].triangles) return;
     auto* out = piece.triangles.data() + first;
     CellWord word{};
-    for_active_cells(
+    for_crossed_cells(
         n, row, [&](std::size_t w) { word = cell_word(n, row, w); },
         [&](std::int64_t bit, std::uint32_t cell) {
           const std::array<std::uint32_t, kCellEdges> number = word.numbers(bit);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "extract/row_kernels.hpp"
 #include "extract/rules.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
@@ -65,6 +66,7 @@ class MarchingCubes {
   // The same between two slices.
   struct Layer {
     std::vector<std::uint64_t> cross_z;
+    std::vector<std::uint64_t> crossed;  // cells that the surface crosses, not only along z
     std::vector<std::uint32_t> base;
   };
 
@@ -104,8 +106,12 @@ class MarchingCubes {
   void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
   void list_front(SurfacePiece& piece);
   bool has_cells(std::int64_t k, std::size_t row) const;
+  template <class Visit>
+  void for_rows(std::size_t layers, const Visit& visit) const;
+  std::array<const std::uint64_t*, 4> rows_around(std::size_t n, std::size_t row) const;
+  void find_cells(std::size_t n, std::size_t row);
   template <class EnterWord, class Visit>
-  void for_active_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const;
+  void for_crossed_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const;
   CellWord cell_word(std::size_t n, std::size_t row, std::size_t w) const;
 
   std::array<std::int64_t, 3> dims_;
@@ -115,6 +121,7 @@ class MarchingCubes {
   std::array<double, 3> spacing_;
   ExtractOptions options_;
   const Executor& executor_;
+  const RowKernels& kernels_ = row_kernels();
   std::size_t rows_;                                  // padded rows of a slice
   std::size_t words_;                                 // words of a padded row
   std::vector<std::uint64_t> edge_mask_, cell_mask_;  // per word: x-edges and cells that exist

@@ -47,7 +47,7 @@ struct MemoryModel {
   static constexpr double kBounded = 240;  // two extracted triangles for each that is held
 
   double slices(double layers, double ring) const {
-    constexpr double kBits = 0.625;  // bytes per sample: inside, crossings along three axes, numbers of vertices
+    constexpr double kBits = 0.75;  // bytes per sample: inside, crossings along three axes, cells, numbers of vertices
     return ring * static_cast<double>(slice_bytes + extras.slice_bytes) +
            (layers + 1) * kBits * static_cast<double>(slice_samples);
   }

@@ -14,6 +14,7 @@ constexpr std::size_t kRunBytes = std::size_t{8} << 20;
 
 SliceWindow::SliceWindow(SliceSource& source, std::int64_t first, Reading reading)
     : source_(source),
+      held_(source.held()),
       how_(reading),
       slice_bytes_(source.info().slice_bytes()),
       slices_(source.info().dims[2]),
@@ -37,17 +38,22 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int
   const std::int64_t new_end = std::clamp(end, end_, slices_);
   const std::int64_t last = how_ == Reading::kAhead ? std::clamp(new_end + ahead, new_end, slices_) : new_end;
   first_ = std::clamp(first, first_, end_);
+  const std::int64_t count = new_end - end_;
+  if (held_.empty()) wait_for(new_end, last, lock);
+  end_ = new_end;
+  return count;
+}
+
+// Has slices below `end` read, and those up to `last` behind them.
+void SliceWindow::wait_for(std::int64_t end, std::int64_t last, std::unique_lock<std::mutex>& lock) {
   if (last - first_ > room_ || buffer_.empty()) make_room(std::max<std::int64_t>(last - first_, 1), lock);
-  needed_ = new_end;
+  needed_ = end;
   wanted_ = last;
   while (how_ == Reading::kInPlace && can_read()) read_run(lock);
   if (!reader_.joinable() && filled_ < wanted_ && !failure_) reader_ = std::thread([this] { read_on(); });
   changed_.notify_all();
-  changed_.wait(lock, [&] { return filled_ >= new_end || failure_; });
-  if (filled_ < new_end) std::rethrow_exception(failure_);
-  const std::int64_t count = new_end - end_;
-  end_ = new_end;
-  return count;
+  changed_.wait(lock, [&] { return filled_ >= end || failure_; });
+  if (filled_ < end) std::rethrow_exception(failure_);
 }
 
 // Enlarges the ring in place: two of them would be the peak of a run. What had gone on at its beginning goes on behind

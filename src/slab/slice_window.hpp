@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <span>
 #include <thread>
 
 #include "isoweave/volume.hpp"
@@ -14,7 +15,7 @@
 namespace isoweave {
 
 // Holds slices [first, end) in the file's own sample type, and has some more read behind them meanwhile. Slices lie in
-// a ring. Memory: bytes().
+// a ring, or where the source holds them: then nothing is read. Memory: bytes().
 class SliceWindow {
  public:
   enum class Reading : std::uint8_t { kAhead, kInPlace };  // by a thread of its own; by advance(), and nothing ahead
@@ -28,7 +29,7 @@ class SliceWindow {
   const VolumeInfo& info() const { return source_.info(); }
   std::int64_t end() const { return end_; }
   std::uint64_t bytes() const { return buffer_.capacity(); }
-  std::int64_t room() const { return room_; }  // slices
+  std::int64_t room() const { return held_.empty() ? room_ : 0; }  // slices in the ring
 
   // Drops slices before `first` and waits for those up to `end`, both clipped to the volume; after that `ahead` slices
   // more are read while the caller works. Windows only move forward. Returns the number of slices that are new in the
@@ -37,18 +38,22 @@ class SliceWindow {
   std::int64_t advance(std::int64_t first, std::int64_t end, std::int64_t ahead = 0);
 
   // Samples of slice k, which must be held.
-  const std::byte* slice(std::int64_t k) const { return place(k); }
+  const std::byte* slice(std::int64_t k) const {
+    return held_.empty() ? place(k) : held_.data() + static_cast<std::size_t>(k) * slice_bytes_;
+  }
 
  private:
   std::byte* place(std::int64_t k) const {
     return const_cast<std::byte*>(buffer_.data()) + static_cast<std::size_t>((k - base_) % room_) * slice_bytes_;
   }
+  void wait_for(std::int64_t end, std::int64_t last, std::unique_lock<std::mutex>& lock);
   void make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock);
   void read_on();
   bool can_read() const;
   void read_run(std::unique_lock<std::mutex>& lock);
 
   SliceSource& source_;
+  std::span<const std::byte> held_;  // by the source
   Reading how_;
   std::size_t slice_bytes_;
   std::int64_t slices_;  // of the volume

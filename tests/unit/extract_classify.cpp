@@ -13,16 +13,26 @@ namespace isoweave {
 namespace {
 
 template <class T>
-void expect_bits(const std::vector<T>& row, SampleType type, const IsoRule& rule) {
-  std::vector<std::uint64_t> words((row.size() + 2 + 63) / 64, ~std::uint64_t{0});
-  classify_row(reinterpret_cast<const std::byte*>(row.data()), type, static_cast<std::int64_t>(row.size()), rule,
-               words);
+void expect_bits(const std::vector<T>& row, const IsoRule& rule, const std::vector<std::uint64_t>& words) {
   for (std::size_t bit = 0; bit < 64 * words.size(); ++bit) {
     const bool sample = bit >= 1 && bit <= row.size();
     const double value = sample ? static_cast<double>(row[bit - 1]) : 0;
     const bool inside = sample && (rule.above ? value >= rule.iso : value <= rule.iso);
     ASSERT_EQ((words[bit / 64] >> (bit % 64) & 1) != 0, inside)
         << "bit " << bit << ", value " << value << ", iso " << rule.iso << ", above " << rule.above;
+  }
+}
+
+// By every set, with one word more than is needed, too.
+template <class T>
+void expect_bits(const std::vector<T>& row, SampleType type, const IsoRule& rule) {
+  for (const RowKernels* kernels : all_row_kernels()) {
+    for (const std::size_t more : {0u, 1u}) {
+      std::vector<std::uint64_t> words((row.size() + 2 + 63) / 64 + more, ~std::uint64_t{0});
+      classify_row(reinterpret_cast<const std::byte*>(row.data()), type, static_cast<std::int64_t>(row.size()), rule,
+                   words, *kernels);
+      expect_bits(row, rule, words);
+    }
   }
 }
 
@@ -38,7 +48,7 @@ std::vector<T> edge_values(std::size_t size) {
 
 template <class T>
 void expect_all(SampleType type) {
-  for (const std::size_t size : {1u, 62u, 63u, 64u, 65u, 127u, 200u}) {
+  for (const std::size_t size : {1u, 2u, 61u, 62u, 63u, 64u, 65u, 126u, 127u, 128u, 190u, 200u}) {
     std::vector<T> row = edge_values<T>(size);
     if constexpr (std::numeric_limits<T>::has_infinity) {
       row[size / 2] = std::numeric_limits<T>::quiet_NaN();

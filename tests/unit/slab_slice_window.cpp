@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstring>
 #include <numeric>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "isoweave/error.hpp"
 #include "slab/slice_window.hpp"
@@ -108,6 +110,23 @@ TEST(SliceWindow, AFailureIsThrownWhenItsSlicesAreNeededAndNotBefore) {
   EXPECT_EQ(window.end(), 5);
   expect_holds(window, 4, 5);
   EXPECT_THROW(window.advance(4, 12, 10), BadInput) << "it stays so";
+}
+
+TEST(SliceWindow, LooksAtSamplesWhereTheyAreHeld) {
+  VolumeInfo info;
+  info.dims = {3, 2, 40};
+  info.type = SampleType::kInt32;
+  std::vector<std::int32_t> samples;
+  for (std::int32_t k = 0; k < 40; ++k) samples.insert(samples.end(), 6, k);
+  const auto volume = volume_in_memory(info, std::as_bytes(std::span(samples)));
+  SliceWindow window(*volume);
+  EXPECT_EQ(window.advance(-1, 7, 100), 7);
+  EXPECT_EQ(window.advance(6, 50, 1), 33);
+  EXPECT_EQ(window.end(), 40);
+  EXPECT_EQ(window.bytes(), 0u);
+  EXPECT_EQ(window.room(), 0);
+  EXPECT_EQ(window.slice(9), reinterpret_cast<const std::byte*>(&samples[9 * 6]));
+  expect_holds(window, 6, 40);
 }
 
 TEST(SliceWindow, EndsWhileItReads) {
