@@ -42,6 +42,7 @@ TEST(VolumeInMemory, OtherNumbersOfSamplesAreRefused) {
   };
   refused({2, 3, 5}, bytes);
   refused({2, 3, 3}, bytes);
+  refused({2, 3, 2}, bytes);
   refused({2, 3, 0}, bytes);
   refused({-2, -3, 4}, bytes);
   refused({2, 3, 4}, bytes.first(47));
