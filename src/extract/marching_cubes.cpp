@@ -145,7 +145,8 @@ void MarchingCubes::classify(const SliceWindow& window, std::int64_t k, std::siz
     return;
   }
   const std::size_t row_bytes = static_cast<std::size_t>(dims_[0]) * sample_bytes(type_);
-  classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, dims_[0], options_.rule, bits);
+  classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, dims_[0], options_.rule, bits,
+               kernels_);
 }
 
 // Crossing bits of one row of layer n of the slab and of the slice above it; returns how many there are.
