@@ -33,13 +33,17 @@ inline double area_of(const TriangleCorners& t) {
   return 0.5 * std::sqrt(dot(normal, normal));
 }
 
-// Meshes may come from any program: measures look before they follow an index.
+[[noreturn]] inline void refuse_index() {
+  throw std::invalid_argument("a triangle refers to a vertex that the mesh does not have");
+}
+
+// Meshes may come from any program: who follows an index looks at it before.
+inline void require_in_range(const std::array<std::uint32_t, 3>& triangle, std::size_t vertices) {
+  if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertices) refuse_index();
+}
+
 inline void require_indices_in_range(const TriangleMesh& mesh) {
-  for (const auto& triangle : mesh.triangles) {
-    if (std::max({triangle[0], triangle[1], triangle[2]}) >= mesh.vertices.size()) {
-      throw std::invalid_argument("a triangle refers to a vertex that the mesh does not have");
-    }
-  }
+  for (const auto& triangle : mesh.triangles) require_in_range(triangle, mesh.vertices.size());
 }
 
 // Finite, and with numbers of triangles that fit into 32 bits.

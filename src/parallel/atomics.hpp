@@ -80,15 +80,4 @@ ISOWEAVE_HD inline void make_least(std::uint32_t& at, std::uint32_t value) {
 #endif
 }
 
-ISOWEAVE_HD inline void make_largest(std::uint32_t& at, std::uint32_t value) {
-#ifdef __CUDA_ARCH__
-  atomicMax(&at, value);
-#else
-  const std::atomic_ref<std::uint32_t> largest(at);
-  std::uint32_t found = largest.load(std::memory_order_relaxed);
-  while (value > found && !largest.compare_exchange_weak(found, value, std::memory_order_relaxed)) {
-  }
-#endif
-}
-
 }  // namespace isoweave

@@ -8,8 +8,8 @@
 
 #include "isoweave/error.hpp"
 #include "measure/geometry.hpp"
-#include "parallel/atomics.hpp"
 #include "parallel/collect.hpp"
+#include "parallel/vertex_owners.hpp"
 
 namespace isoweave {
 namespace {
@@ -27,6 +27,7 @@ double sum_areas(const TriangleMesh& mesh, std::int64_t begin, std::int64_t end)
   double sum = 0;
   for (std::int64_t n = begin; n < end; ++n) {
     const auto& t = mesh.triangles[static_cast<std::size_t>(n)];
+    measure::require_in_range(t, mesh.vertices.size());
     const Vec3 a = position_of(mesh.vertices[t[0]]);
     const Vec3 normal = cross(position_of(mesh.vertices[t[1]]) - a, position_of(mesh.vertices[t[2]]) - a);
     sum += std::sqrt(dot(normal, normal));
@@ -41,36 +42,31 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh, const Executor& executor, con
   if (mesh.triangles.size() > kNoTriangle) {
     throw OverMemory("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, expected fewer than 2^32");
   }
-  measure::require_indices_in_range(mesh);
   find_uses();
   if (pieces_.exactly) return;
   while (inherited_with(pieces_.triangles) > mesh.vertices.size() / kInheritedPart) pieces_.triangles *= 2;
 }
 
-// The first and the last triangle of every vertex. Each way round most triangles find their vertices named already, and
-// have nothing to write.
+// The first and the last triangle of every vertex.
 void MeshSurface::find_uses() {
+  const VertexOwners owners(executor_, mesh_.triangles);
+  if (!mesh_.triangles.empty() && owners.largest_vertex() >= mesh_.vertices.size()) measure::refuse_index();
   first_.resize(mesh_.vertices.size());
   last_.resize(mesh_.vertices.size());
   number_.resize(mesh_.vertices.size());
-  std::fill(first_.begin(), first_.end(), kNoTriangle);
-  std::fill(last_.begin(), last_.end(), 0);
-  const bool alone = executor_.threads() == 1;
-  const auto name_first = [&](std::uint32_t v, std::uint32_t t) {
-    alone ? static_cast<void>(first_[v] = std::min(first_[v], t)) : make_least(first_[v], t);
-  };
-  const auto name_last = [&](std::uint32_t v, std::uint32_t t) {
-    alone ? static_cast<void>(last_[v] = std::max(last_[v], t)) : make_largest(last_[v], t);
-  };
-  const auto name_vertices = [&](std::int64_t n, const auto& name) {
-    const auto& triangle = mesh_.triangles[static_cast<std::size_t>(n)];
-    if (repeats_a_vertex(triangle)) return;
-    for (const std::uint32_t v : triangle) name(v, static_cast<std::uint32_t>(n));
-  };
-  const auto count = static_cast<std::int64_t>(mesh_.triangles.size());
-  executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t n = begin; n < end; ++n) name_vertices(n, name_first);
-    for (std::int64_t n = end; n-- > begin;) name_vertices(n, name_last);
+  owners.for_parts(mesh_.vertices.size(), [&](const VertexOwners::Part& part) {
+    std::fill_n(first_.data() + part.first, part.size, kNoTriangle);
+    std::fill_n(last_.data() + part.first, part.size, 0);
+    part.each_triangle([&](std::size_t n) {
+      const auto& triangle = mesh_.triangles[n];
+      if (repeats_a_vertex(triangle)) return;
+      const auto t = static_cast<std::uint32_t>(n);
+      for (const std::uint32_t v : triangle) {
+        if (!part.has(v)) continue;
+        first_[v] = std::min(first_[v], t);
+        last_[v] = t;
+      }
+    });
   });
 }
 

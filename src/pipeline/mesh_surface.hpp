@@ -53,7 +53,8 @@ class MeshSurface {
   std::uint64_t dropped_ = 0;
 };
 
-// Mean area of the mesh's triangles, summed in blocks of fixed size in file order; 0 for an empty mesh.
+// Mean area of the mesh's triangles, summed in blocks of fixed size in file order; 0 for an empty mesh. Throws
+// std::invalid_argument when a triangle refers to a vertex that the mesh does not have.
 double mean_triangle_area(const TriangleMesh& mesh, const Executor& executor);
 
 }  // namespace isoweave

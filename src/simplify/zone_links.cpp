@@ -1,13 +1,13 @@
 // How triangles come together: twins, and vertices around which they do not form one fan.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "parallel/collect.hpp"
+#include "parallel/vertex_owners.hpp"
 #include "simplify/zone.hpp"
 #include "simplify/zone_rules.hpp"
 
@@ -131,24 +131,20 @@ class Zone::Linker {
   // A triangle is listed at its corners, with the number of the half-edge that leaves there, counted from the first new
   // one. Known sides follow, each at both of its ends.
   void list_sides(const Executor& executor) {
-    executor.for_blocks(static_cast<std::int64_t>(zone_.first_side_.size()), kBlock, [&](auto begin, auto end) {
-      std::fill(zone_.first_side_.data() + begin, zone_.first_side_.data() + end, kNone);
-    });
-    const bool alone = executor.threads() == 1;
-    const auto list = [&](Index n, Index side) {
-      Index& first = zone_.first_side_[n];
-      zone_.next_side_[side] =
-          alone ? std::exchange(first, side) : std::atomic_ref(first).exchange(side, std::memory_order_relaxed);
-    };
-    executor.for_each(static_cast<std::int64_t>(piece_.triangles.size()), kBlock, [&](std::int64_t t) {
-      for (Index c = 0; c < 3; ++c) {
-        list(piece_.triangles[static_cast<std::size_t>(t)][c], half_edge(static_cast<Index>(t), c));
+    const VertexOwners owners(executor, {piece_.triangles.data(), piece_.triangles.size()});
+    owners.for_parts(zone_.first_side_.size(), [&](const VertexOwners::Part& part) {
+      std::fill_n(zone_.first_side_.data() + part.first, part.size, kNone);
+      const auto list = [&](Index n, Index side) {
+        if (part.has(n)) zone_.next_side_[side] = std::exchange(zone_.first_side_[n], side);
+      };
+      part.each_triangle([&](std::size_t t) {
+        for (Index c = 0; c < 3; ++c) list(piece_.triangles[t][c], half_edge(static_cast<Index>(t), c));
+      });
+      for (std::size_t i = 0; i < known_.size(); ++i) {
+        const Index side = first_known_ + 2 * static_cast<Index>(i);
+        list(known_[i][0], side);
+        list(known_[i][1], side + 1);
       }
-    });
-    executor.for_each(static_cast<std::int64_t>(known_.size()), kBlock, [&](std::int64_t i) {
-      const Index side = first_known_ + 2 * static_cast<Index>(i);
-      list(known_[static_cast<std::size_t>(i)][0], side);
-      list(known_[static_cast<std::size_t>(i)][1], side + 1);
     });
   }
 

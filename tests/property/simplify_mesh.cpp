@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
@@ -82,6 +83,12 @@ TEST(SimplifyMesh, TrianglesThatRepeatAVertexAreLeftOut) {
   ASSERT_EQ(result.report.warnings.size(), 1u);
   EXPECT_NE(result.report.warnings.front().find("1 triangles that repeat a vertex"), std::string::npos);
   EXPECT_EQ(result.report.digest, simplify(meshes::grid(6)).report.digest);
+}
+
+TEST(SimplifyMesh, AVertexThatTheMeshDoesNotHaveIsRefused) {
+  TriangleMesh mesh = meshes::grid(6);
+  mesh.triangles[5][2] = 0xfffffff0U;
+  for (const int threads : {1, 3}) EXPECT_THROW(simplify(mesh, threads), std::invalid_argument);
 }
 
 }  // namespace
