@@ -22,11 +22,11 @@ def image(folder, name, text):
 
 def machine_text(results):
     found = {(result["machine"]["processor"], result["machine"]["threads"]) for result in results}
-    repetitions = sorted({result["repetitions"] for result in results})
+    rounds = [len(row["ratios"]) for result in results for row in result.get("rows", []) if "ratios" in row]
     loads = [result["machine"]["load"] for result in results if "load" in result["machine"]]
     absent = sorted({name for result in results for name in result.get("absent", [])})
     text = "; ".join(f"{processor}, {threads} threads" for processor, threads in sorted(found))
-    text += f". Repetitions: {', '.join(str(count) for count in repetitions)}."
+    text += f". Rounds of a pair: {min(rounds)} to {max(rounds)}." if rounds else "."
     if loads:
         text += f" Load when the suites began: {number(min(loads), 2)} to {number(max(loads), 2)}."
     return text + (f" Not in this build: {', '.join(absent)}." if absent else "")

@@ -29,7 +29,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--name", input.name, "Of the volume, in the results")->required();
   app.add_option("--left", arguments.left, "Percentages of the triangles to be left")->delimiter(',');
   app.add_option("--threads", settings.threads)->delimiter(',');
-  app.add_option("--repetitions", settings.repetitions);
+  app.add_option("--rounds", settings.most_rounds, "Of a pair, at most");
+  app.add_option("--enough", settings.enough_seconds, "Seconds after which a pair has no further round");
   app.add_option("--only", settings.only, "Only peers with this in their name");
   app.add_option("--limit", settings.limit_seconds, "Seconds that one run may take");
   app.add_option("--scratch", input.scratch, "Folder for files that are needed meanwhile")->required();
@@ -61,7 +62,7 @@ Json run_suite(const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  Json json{{"suite", arguments.suite}, {"machine", machine()}, {"repetitions", arguments.settings.repetitions}};
+  Json json{{"suite", arguments.suite}, {"machine", machine()}};
   json.update(run_suite(arguments));
   std::ofstream file(arguments.output);
   file << json.dump(1) << '\n';

@@ -94,8 +94,16 @@ void repeat(Entry& entry, int threads, const Settings& settings, const FullSurfa
   series.runs.push_back(std::move(outcome.result));
 }
 
-bool is_over(const Series& peer, const Settings& settings) {
-  return !peer.failure.empty() || peer.runs.back()["seconds"] > settings.slow_seconds;
+double total_seconds(const std::map<int, Series>& all) {
+  double total = 0;
+  for (const auto& [threads, series] : all) {
+    for (const double seconds : series.seconds()) total += seconds;
+  }
+  return total;
+}
+
+bool any_failed(const std::map<int, Series>& all) {
+  return std::any_of(all.begin(), all.end(), [](const auto& series) { return !series.second.failure.empty(); });
 }
 
 Json row(const Entry& ours, const Entry& peer, int threads, const Series& our_series, const Series& peer_series) {
@@ -155,14 +163,15 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
 
 std::vector<Json> compare(Entry& ours, Entry& peer, const Settings& settings, const FullSurface* full) {
   std::map<int, Series> our_series, peer_series;
-  bool over = false;
-  for (int round = 0; round < settings.repetitions && !over; ++round) {
+  const auto wants_more = [&] {
+    return !any_failed(peer_series) && total_seconds(our_series) + total_seconds(peer_series) < settings.enough_seconds;
+  };
+  for (int round = 0; round < settings.most_rounds && wants_more(); ++round) {
     for (const int threads : settings.threads) {
       repeat(ours, threads, settings, full, our_series[threads]);
       if (!peer.runner.parallel && threads != settings.threads.front()) continue;
-      Series& series = peer_series[peer.runner.parallel ? threads : 1];
-      repeat(peer, peer.runner.parallel ? threads : 1, settings, full, series);
-      over = over || is_over(series, settings);
+      const int peer_threads = peer.runner.parallel ? threads : 1;
+      repeat(peer, peer_threads, settings, full, peer_series[peer_threads]);
     }
   }
   std::vector<Json> rows;

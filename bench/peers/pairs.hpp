@@ -30,8 +30,8 @@ Runner bind(const Contestant<Input>& contestant, const Input& input) {
 
 struct Settings {
   std::vector<int> threads{1, 4};
-  int repetitions = 5;
-  double slow_seconds = 60;  // a peer that takes longer runs once
+  int most_rounds = 9;
+  double enough_seconds = 6;  // a pair whose runs have taken this long has no further round
   double limit_seconds = 900;
   std::string only;  // part of the names of the peers to compare with; empty: all
 };
@@ -43,7 +43,7 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
 struct Entry {
   Runner runner;
   Goal goal;
-  Json quality = {};  // measured once: the mesh does not depend on threads and repetitions
+  Json quality = {};  // measured once: the mesh does not depend on threads and rounds
 };
 
 // One row for each number of threads. Quality is measured when `full` is given.
