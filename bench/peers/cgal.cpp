@@ -1,6 +1,5 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_cost.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_placement.h>
@@ -32,23 +31,34 @@ Mesh to_cgal(const isoweave::TriangleMesh& full) {
   return mesh;
 }
 
+// CGAL's own predicate counts edges, of which a collapse on a border takes two for one triangle.
+class TriangleCount {
+ public:
+  explicit TriangleCount(std::size_t most) : most_(most) {}
+
+  template <class Cost, class Profile>
+  bool operator()(const Cost&, const Profile& profile, std::size_t, std::size_t) const {
+    return profile.surface_mesh().number_of_faces() <= most_;
+  }
+
+ private:
+  std::size_t most_;
+};
+
 class EdgeCollapse : public Task {
  public:
-  EdgeCollapse(const isoweave::TriangleMesh& full, const Goal& goal) : mesh_(to_cgal(full)) {
-    // The predicate counts edges: a collapse takes three of them and two triangles.
-    const std::size_t fewer_edges = (full.triangles.size() - goal.triangles) * 3 / 2;
-    edges_left_ = mesh_.number_of_edges() - fewer_edges;
-  }
+  EdgeCollapse(const isoweave::TriangleMesh& full, const Goal& goal)
+      : mesh_(to_cgal(full)), triangles_(goal.triangles) {}
   std::size_t triangles() const override { return mesh_.number_of_faces(); }
   isoweave::TriangleMesh mesh() const override;
 
  protected:
-  sms::Count_stop_predicate<Mesh> stop() const { return sms::Count_stop_predicate<Mesh>(edges_left_); }
+  TriangleCount stop() const { return TriangleCount(triangles_); }
 
   Mesh mesh_;
 
  private:
-  std::size_t edges_left_ = 0;
+  std::size_t triangles_;
 };
 
 isoweave::TriangleMesh EdgeCollapse::mesh() const {
