@@ -138,7 +138,7 @@ class ComponentsAnd : public ::testing::Test {
     options.components = &choice;
     options.slab = 4;
     MemorySink sink;
-    const MeshReport report = mesh_volume(*scene.volume(), sink, options);
+    MeshReport report = mesh_volume(*scene.volume(), sink, options);
     if (mesh != nullptr) *mesh = std::move(sink.mesh);
     return report;
   }
