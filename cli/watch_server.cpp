@@ -64,10 +64,13 @@ class Connection final : public httplib::Stream {
   socket_t socket() const override { return socket_; }
 
  private:
+  // Looks once more when the time is up: a process that was stopped meanwhile finds what has come.
   bool wait_for(short event, Clock::time_point until) const {
-    while (!over_ && Clock::now() < until) {
+    while (!over_) {
+      const bool last = Clock::now() >= until;
       pollfd ready{socket_, event, 0};
-      if (::poll(&ready, 1, kLook) > 0) return true;
+      if (::poll(&ready, 1, last ? 0 : kLook) > 0) return true;
+      if (last) return false;
     }
     return false;
   }

@@ -386,6 +386,22 @@ TEST(CliWatch, InterruptedRunsEndAtOnceWhoeverWatches) {
   EXPECT_EQ(listing(folder), Words{});
 }
 
+// As by Ctrl-Z, or when a laptop is closed.
+TEST(CliWatch, WhoAskedBeforeTheRunWasStoppedIsAnsweredWhenItGoesOn) {
+  const files::Folder folder;
+  Running program(folder.path(), mesh({"--watch"}, kEndless));
+  const Address address = address_of(program);
+  const std::string question = request(address.path + "news");
+  Connection connection(address.port);
+  ASSERT_TRUE(connection.send(question.substr(0, 10)));
+  std::this_thread::sleep_for(200ms);  // until it has been read
+  ::kill(program.process(), SIGSTOP);
+  EXPECT_TRUE(connection.send(question.substr(10)));
+  std::this_thread::sleep_for(1500ms);  // more than anybody has to ask
+  ::kill(program.process(), SIGCONT);
+  EXPECT_EQ(parsed(connection.read_all()).status, 200);
+}
+
 TEST(CliWatch, ACapOnMemoryCountsWhatWatchingHolds) {
   const files::Folder folder;
   const Result small = run(folder.path(), mesh({"--watch", "--memory", "90M"}));
