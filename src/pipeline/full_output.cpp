@@ -1,8 +1,14 @@
 #include "pipeline/full_output.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace isoweave {
+namespace {
+
+constexpr std::int64_t kBlock = 4096;
+
+}  // namespace
 
 void FullOutput::take(const SurfacePiece& piece) {
   const std::uint64_t first_number = output_.vertices();
@@ -11,26 +17,35 @@ void FullOutput::take(const SurfacePiece& piece) {
       [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
       [&](std::size_t n) { return piece.values[n]; });
   const std::span<const Point> points = output_.added_points();
+  front_.back() = {first_number, first_label, {}};
+  // Without a branch: which vertices are inherited cannot be predicted.
+  const auto number = [&](std::uint32_t v) {
+    const std::uint32_t n = std::min(v, piece.inherited);
+    return front_[n].number + (v - n);
+  };
   const auto vertex = [&](std::uint32_t v) {
     if (v < piece.inherited) return front_[v];
     const std::uint32_t n = v - piece.inherited;
     return OutputCorner{first_number + n, first_label + n, points[n]};
   };
   output_.add_triangles(
-      piece.triangles.size(),
-      [&](std::size_t n, std::size_t c) {
-        const std::uint32_t v = piece.triangles[n][c];
-        return v < piece.inherited ? front_[v].number : first_number + (v - piece.inherited);
-      },
+      piece.triangles.size(), [&](std::size_t n, std::size_t c) { return number(piece.triangles[n][c]); },
       [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
-  std::vector<OutputCorner> front;
-  front.reserve(piece.incomplete.size());
-  for (const std::uint32_t v : piece.incomplete) front.push_back(vertex(v));
+  std::vector<OutputCorner> front(piece.incomplete.size() + 1);
+  executor_.for_each(static_cast<std::int64_t>(piece.incomplete.size()), kBlock, [&](std::int64_t n) {
+    const auto at = static_cast<std::size_t>(n);
+    front[at] = vertex(piece.incomplete[at]);
+  });
   front_ = std::move(front);
-  std::vector<std::uint32_t*> labels;
-  for (OutputCorner& corner : front_) labels.push_back(&corner.label);
-  if (output_.components().labels() > 0) output_.components().compact(labels);
+  forget_components();
   open_edges_ += piece.open_edges;
+}
+
+void FullOutput::forget_components() {
+  if (output_.components().labels() == 0) return;
+  std::vector<std::uint32_t*> labels;
+  for (std::size_t n = 0; n + 1 < front_.size(); ++n) labels.push_back(&front_[n].label);
+  output_.components().compact(labels);
 }
 
 }  // namespace isoweave

@@ -12,7 +12,7 @@ namespace isoweave {
 class FullOutput {
  public:
   FullOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure, SweepObserver* observer)
-      : output_(world, sink, executor, measure, observer) {}
+      : executor_(executor), output_(world, sink, executor, measure, observer) {}
 
   // Writes a piece of a manifold surface.
   void take(const SurfacePiece& piece);
@@ -30,8 +30,11 @@ class FullOutput {
   }
 
  private:
+  void forget_components();
+
+  const Executor& executor_;
   SurfaceOutput output_;
-  std::vector<OutputCorner> front_;  // vertices that the next piece names as well
+  std::vector<OutputCorner> front_{1};  // vertices that the next piece names as well; then its first own one
   std::uint64_t open_edges_ = 0;
 };
 
