@@ -1,5 +1,8 @@
 // Ours, through the public headers only.
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <span>
 
 #include "isoweave/pipeline.hpp"
 #include "task.hpp"
@@ -17,29 +20,49 @@ std::array<std::uint32_t, 3> narrow(const std::array<std::uint64_t, 3>& triangle
           static_cast<std::uint32_t>(triangle[2])};
 }
 
+// A part of the mesh in memory that nobody has cleared: peers do not clear theirs either.
+template <class T>
+class HeldArray {
+ public:
+  template <class From, class Change>
+  HeldArray(std::span<const From> from, const Change& change)
+      : elements_(std::make_unique_for_overwrite<T[]>(from.size())), size_(from.size()) {
+    std::transform(from.begin(), from.end(), elements_.get(), change);
+  }
+  std::span<const T> span() const { return {elements_.get(), size_}; }
+
+ private:
+  std::unique_ptr<T[]> elements_;
+  std::size_t size_;
+};
+
 // Holds the whole mesh in memory, as all peers do, in the pieces in which it comes.
 class HoldingSink : public isoweave::MeshSink {
  public:
   void append(const isoweave::MeshPiece& piece) override {
-    isoweave::TriangleMesh& held = pieces_.emplace_back();
-    held.vertices.assign(piece.vertices.begin(), piece.vertices.end());
-    held.triangles.resize(piece.triangles.size());
-    std::transform(piece.triangles.begin(), piece.triangles.end(), held.triangles.begin(), narrow);
+    pieces_.push_back({{piece.vertices, std::identity()}, {piece.triangles, narrow}});
     triangles_ += piece.triangles.size();
   }
   void finish() override {}
   std::size_t triangles() const { return triangles_; }
   isoweave::TriangleMesh mesh() const {
     isoweave::TriangleMesh whole;
-    for (const isoweave::TriangleMesh& piece : pieces_) {
-      whole.vertices.insert(whole.vertices.end(), piece.vertices.begin(), piece.vertices.end());
-      whole.triangles.insert(whole.triangles.end(), piece.triangles.begin(), piece.triangles.end());
+    for (const Piece& piece : pieces_) {
+      const auto vertices = piece.vertices.span();
+      const auto triangles = piece.triangles.span();
+      whole.vertices.insert(whole.vertices.end(), vertices.begin(), vertices.end());
+      whole.triangles.insert(whole.triangles.end(), triangles.begin(), triangles.end());
     }
     return whole;
   }
 
  private:
-  std::vector<isoweave::TriangleMesh> pieces_;
+  struct Piece {
+    HeldArray<isoweave::Point> vertices;
+    HeldArray<std::array<std::uint32_t, 3>> triangles;
+  };
+
+  std::vector<Piece> pieces_;
   std::size_t triangles_ = 0;
 };
 
