@@ -16,7 +16,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 8\n";  // the number changes with fields and rules
+constexpr std::string_view kFormat = "isoweave state 7\n";  // the number changes with fields and rules
 
 constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
 

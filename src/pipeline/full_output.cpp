@@ -17,8 +17,8 @@ void FullOutput::take(const SurfacePiece& piece) {
       [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
       [&](std::size_t n) { return piece.values[n]; });
   const std::span<const Point> points = output_.added_points();
-  front_.back() = {first_number, first_label, {}};
-  // Without a branch: which vertices are inherited cannot be predicted.
+  // Without a branch, as which vertices are inherited cannot be predicted: the first new one follows those in the list.
+  front_.push_back({first_number, first_label, {}});
   const auto number = [&](std::uint32_t v) {
     const std::uint32_t n = std::min(v, piece.inherited);
     return front_[n].number + (v - n);
@@ -31,8 +31,10 @@ void FullOutput::take(const SurfacePiece& piece) {
   output_.add_triangles(
       piece.triangles.size(), [&](std::size_t n, std::size_t c) { return number(piece.triangles[n][c]); },
       [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
-  std::vector<OutputCorner> front(piece.incomplete.size() + 1);
-  executor_.for_each(static_cast<std::int64_t>(piece.incomplete.size()), kBlock, [&](std::int64_t n) {
+  std::vector<OutputCorner> front;
+  front.reserve(piece.incomplete.size() + 1);
+  front.resize(piece.incomplete.size());
+  executor_.for_each(static_cast<std::int64_t>(front.size()), kBlock, [&](std::int64_t n) {
     const auto at = static_cast<std::size_t>(n);
     front[at] = vertex(piece.incomplete[at]);
   });
@@ -44,7 +46,7 @@ void FullOutput::take(const SurfacePiece& piece) {
 void FullOutput::forget_components() {
   if (output_.components().labels() == 0) return;
   std::vector<std::uint32_t*> labels;
-  for (std::size_t n = 0; n + 1 < front_.size(); ++n) labels.push_back(&front_[n].label);
+  for (OutputCorner& corner : front_) labels.push_back(&corner.label);
   output_.components().compact(labels);
 }
 

@@ -34,7 +34,7 @@ class FullOutput {
 
   const Executor& executor_;
   SurfaceOutput output_;
-  std::vector<OutputCorner> front_{1};  // vertices that the next piece names as well; then its first own one
+  std::vector<OutputCorner> front_;  // vertices that the next piece names as well
   std::uint64_t open_edges_ = 0;
 };
 

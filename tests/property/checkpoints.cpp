@@ -394,7 +394,7 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 8\n"));
+  writer.list(std::string("isoweave state 7\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -408,7 +408,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 8\n"));
+  writer.list(std::string("isoweave state 7\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
