@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "extract/classify.hpp"
-#include "extract/tables.hpp"
 #include "isoweave/error.hpp"
 #include "volume/samples.hpp"
 
@@ -15,8 +14,6 @@ namespace {
 constexpr std::int64_t kRowsPerBlock = 8;
 
 std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
-
-std::uint64_t below(std::int64_t bit) { return (std::uint64_t{1} << (bit & 63)) - 1; }
 
 // Words with the bits [first, end) set.
 std::vector<std::uint64_t> bit_range(std::size_t words, std::int64_t first, std::int64_t end) {
@@ -31,26 +28,6 @@ template <class Visit>
 void for_each_bit(std::uint64_t word, std::size_t w, Visit&& visit) {
   for (; word != 0; word &= word - 1) visit(static_cast<std::int64_t>(64 * w) + std::countr_zero(word));
 }
-
-// The rows of lattice edges that a row of cells touches: four along x, two along y, two along z.
-constexpr std::size_t edge_row(int axis, std::size_t dy, std::size_t dz) {
-  if (axis == 0) return dy + 2 * dz;
-  return axis == 1 ? 4 + dz : 6 + dy;
-}
-
-struct RowOfEdge {
-  std::uint8_t row, dx;
-};
-
-// Of the edges of a cell.
-constexpr std::array<RowOfEdge, kCellEdges> kRowOfEdge = [] {
-  std::array<RowOfEdge, kCellEdges> rows{};
-  for (std::size_t e = 0; e < rows.size(); ++e) {
-    const CellEdge edge = kEdgeTable[e];
-    rows[e] = {static_cast<std::uint8_t>(edge_row(edge.axis, edge.dy, edge.dz)), edge.dx};
-  }
-  return rows;
-}();
 
 // Replaces a count by the sum of those before it.
 void scan_one(std::uint32_t& count, std::uint64_t& sum) {
@@ -193,13 +170,7 @@ void MarchingCubes::count_rows(std::size_t layers) {
     Row counts;
     counts.vertices = find_crossings(n, row);
     if (!options_.rule.closed) counts.on_border = crossings_on_border(n, row);
-    find_cells(n, row);
-    for_crossed_cells(
-        n, row, [](std::size_t) {},
-        [&](std::int64_t, std::uint32_t cell) {
-          counts.triangles += kCaseTable[cell].triangles;
-          ++counts.cells;
-        });
+    find_cells(n, row, counts);
     rows_of_slab_[number] = counts;
   });
 }
@@ -318,89 +289,45 @@ std::array<const std::uint64_t*, 4> MarchingCubes::rows_around(std::size_t n, st
           &slices_[n + 1].inside[row * words_], &slices_[n + 1].inside[(row + 1) * words_]};
 }
 
-// Finds the cells of a row that the surface crosses.
-void MarchingCubes::find_cells(std::size_t n, std::size_t row) {
-  std::uint64_t* const crossed = &layers_[n].crossed[row * words_];
-  if (has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) {
-    kernels_.cells_crossed(rows_around(n, row), cell_mask_.data(), words_, crossed);
-  } else {
-    std::fill(crossed, crossed + words_, 0);
+// Finds the cells of a row that the surface crosses, and counts them and their triangles.
+void MarchingCubes::find_cells(std::size_t n, std::size_t row, Row& counts) {
+  const std::span crossed(&layers_[n].crossed[row * words_], words_);
+  if (!has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) {
+    std::fill(crossed.begin(), crossed.end(), 0);
+    return;
   }
+  kernels_.cells_crossed(rows_around(n, row), cell_mask_.data(), words_, crossed.data());
+  for (const std::uint64_t word : crossed) counts.cells += ones(word);
+  if (counts.cells > 0) counts.triangles = cell_kernels_.count_triangles(cell_row(n, row));
 }
 
-// Calls visit(bit, case) for every cell of a row that the surface crosses, and enter_word(w) before the first of a
-// word.
-template <class EnterWord, class Visit>
-void MarchingCubes::for_crossed_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const {
-  const std::uint64_t* const crossed = &layers_[n].crossed[row * words_];
-  for (std::size_t w = 0; w < words_; ++w) {
-    if (crossed[w] == 0) continue;
-    enter_word(w);
-    const std::array<const std::uint64_t*, 4> rows = rows_around(n, row);
-    std::uint64_t shifted[4];
-    for (std::size_t r = 0; r < 4; ++r) shifted[r] = rows[r][w] >> 1 | (w + 1 < words_ ? rows[r][w + 1] << 63 : 0);
-    for_each_bit(crossed[w], w, [&](std::int64_t bit) {
-      const auto pair = [&](std::size_t r) {
-        return static_cast<std::uint32_t>((rows[r][w] >> (bit & 63) & 1) | (shifted[r] >> (bit & 63) & 1) << 1);
-      };
-      visit(bit, cell_case(pair(0), pair(1), pair(2), pair(3)));
-    });
-  }
-}
-
-// Numbers of the crossings on the edges of the cell at a bit; where an edge has none the number means nothing.
-std::array<std::uint32_t, kCellEdges> MarchingCubes::CellWord::numbers(std::int64_t bit) const {
-  const std::array<std::uint64_t, 2> before{below(bit), below(bit) << 1 | 1};
-  const bool last = (bit & 63) == 63;
-  std::array<std::uint32_t, kCellEdges> number;
-  for (std::size_t e = 0; e < number.size(); ++e) {
-    const auto [r, dx] = kRowOfEdge[e];
-    number[e] = base[r] + ones(crossings[r] & before[dx]);
-    if (dx == 1 && last) number[e] = next_base[r];
-  }
-  return number;
-}
-
-MarchingCubes::CellWord MarchingCubes::cell_word(std::size_t n, std::size_t row, std::size_t w) const {
-  CellWord word{};
-  const bool has_next = w + 1 < words_;
-  const auto set = [&](std::size_t r, std::uint64_t crossings, std::uint32_t base) {
-    word.crossings[r] = crossings;
-    word.base[r] = base;
-  };
-  for (std::size_t high = 0; high < 2; ++high) {
-    const std::size_t at = (row + high) * words_ + w;
-    for (std::size_t dz = 0; dz < 2; ++dz) {
-      const Slice& slice = slices_[n + dz];
-      set(edge_row(0, high, dz), slice.cross_x[at], slice.base[at]);
+// A row of cells with all that lies around it. The numbers count once vertices have been emitted.
+CellRow MarchingCubes::cell_row(std::size_t n, std::size_t row) const {
+  CellRow cells{};
+  cells.words = words_;
+  cells.crossed = &layers_[n].crossed[row * words_];
+  cells.inside = rows_around(n, row);
+  for (std::size_t dz = 0; dz < 2; ++dz) {
+    const Slice& slice = slices_[n + dz];
+    for (std::size_t dy = 0; dy < 2; ++dy) {
+      cells.crossings[edge_row(0, dy, dz)] = &slice.cross_x[(row + dy) * words_];
+      cells.x_base[edge_row(0, dy, dz)] = &slice.base[(row + dy) * words_];
     }
-    const Layer& layer = layers_[n];
-    set(edge_row(2, high, 0), layer.cross_z[at], layer.base[at]);
-    if (has_next) word.next_base[edge_row(2, high, 0)] = layer.base[at + 1];
-    const Slice& slice = slices_[n + high];
-    const std::size_t low = row * words_ + w;
-    set(edge_row(1, 0, high), slice.cross_y[low], slice.base[low] + ones(slice.cross_x[low]));
-    if (has_next) word.next_base[edge_row(1, 0, high)] = slice.base[low + 1] + ones(slice.cross_x[low + 1]);
+    cells.crossings[edge_row(1, 0, dz)] = &slice.cross_y[row * words_];
   }
-  return word;
+  for (std::size_t dy = 0; dy < 2; ++dy) {
+    cells.crossings[edge_row(2, dy, 0)] = &layers_[n].cross_z[(row + dy) * words_];
+    cells.z_base[dy] = &layers_[n].base[(row + dy) * words_];
+  }
+  return cells;
 }
 
 // Writes triangles in lattice order.
 void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) const {
-  for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t row_number) {
-    const std::uint32_t first = rows_of_slab_[row_number].triangles;
-    if (first == rows_of_slab_[row_number + 1].triangles) return;
-    auto* out = piece.triangles.data() + first;
-    CellWord word{};
-    for_crossed_cells(
-        n, row, [&](std::size_t w) { word = cell_word(n, row, w); },
-        [&](std::int64_t bit, std::uint32_t cell) {
-          const std::array<std::uint32_t, kCellEdges> number = word.numbers(bit);
-          const CellCase& shape = kCaseTable[cell];
-          for (std::size_t t = 0; t < shape.triangles; ++t, ++out) {
-            for (std::size_t c = 0; c < 3; ++c) (*out)[c] = number[shape.edges[3 * t + c]];
-          }
-        });
+  for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
+    const std::uint32_t first = rows_of_slab_[number].triangles;
+    if (first == rows_of_slab_[number + 1].triangles) return;
+    cell_kernels_.write_triangles(cell_row(n, row), piece.triangles.data() + first);
   });
 }
 

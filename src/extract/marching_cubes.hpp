@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "extract/cell_kernels.hpp"
 #include "extract/row_kernels.hpp"
 #include "extract/rules.hpp"
 #include "extract/sample_view.hpp"
@@ -78,16 +79,6 @@ class MarchingCubes {
     std::uint32_t on_border = 0;  // crossings, of an open volume
   };
 
-  // The eight rows of edges that the cells of one word touch: their crossings, the number of the word's first, and,
-  // along y and z, of the next word's.
-  struct CellWord {
-    std::array<std::uint64_t, 8> crossings;
-    std::array<std::uint32_t, 8> base;
-    std::array<std::uint32_t, 8> next_base;
-
-    std::array<std::uint32_t, 12> numbers(std::int64_t bit) const;
-  };
-
   template <class T, int Axis>
   struct EdgeRow;
 
@@ -109,10 +100,8 @@ class MarchingCubes {
   template <class Visit>
   void for_rows(std::size_t layers, const Visit& visit) const;
   std::array<const std::uint64_t*, 4> rows_around(std::size_t n, std::size_t row) const;
-  void find_cells(std::size_t n, std::size_t row);
-  template <class EnterWord, class Visit>
-  void for_crossed_cells(std::size_t n, std::size_t row, EnterWord&& enter_word, Visit&& visit) const;
-  CellWord cell_word(std::size_t n, std::size_t row, std::size_t w) const;
+  void find_cells(std::size_t n, std::size_t row, Row& counts);
+  CellRow cell_row(std::size_t n, std::size_t row) const;
 
   std::array<std::int64_t, 3> dims_;
   Lattice lattice_;                    // of the whole
@@ -122,6 +111,7 @@ class MarchingCubes {
   ExtractOptions options_;
   const Executor& executor_;
   const RowKernels& kernels_ = row_kernels();
+  const CellKernels& cell_kernels_ = cell_kernels();
   std::size_t rows_;                                  // padded rows of a slice
   std::size_t words_;                                 // words of a padded row
   std::vector<std::uint64_t> edge_mask_, cell_mask_;  // per word: x-edges and cells that exist

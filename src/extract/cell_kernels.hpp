@@ -1,0 +1,56 @@
+// Passes over rows of cells, for the instruction set of this processor. Every set gives the same bits.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "extract/tables.hpp"
+
+namespace isoweave {
+
+// A row of cells, one bit each, and what lies around it: rows of as many words.
+struct CellRow {
+  std::size_t words;
+  const std::uint64_t* crossed;                   // the cells that the surface crosses
+  std::array<const std::uint64_t*, 4> inside;     // samples, in the order of cell_case()
+  std::array<const std::uint64_t*, 8> crossings;  // of the lattice edges, in the order of edge_row()
+  std::array<const std::uint32_t*, 4> x_base;     // number of each word's first crossing along x; those along y follow
+  std::array<const std::uint32_t*, 2> z_base;     // the same along z
+};
+
+// The rows of lattice edges that a row of cells touches: four along x, two along y, two along z.
+constexpr std::size_t edge_row(int axis, std::size_t dy, std::size_t dz) {
+  if (axis == 0) return dy + 2 * dz;
+  return axis == 1 ? 4 + dz : 6 + dy;
+}
+
+// Per case, where the corners of its triangles are among 16 numbers: those of the crossings at the cell's bit of the
+// eight rows, then those at the next bit. Three for each triangle, then zeros.
+inline constexpr std::array<std::array<std::uint8_t, 16>, 256> kCornerPlaces = [] {
+  std::array<std::array<std::uint8_t, 16>, 256> places{};
+  for (std::size_t cell = 0; cell < places.size(); ++cell) {
+    for (std::size_t corner = 0; corner < 3U * kCaseTable[cell].triangles; ++corner) {
+      const CellEdge edge = kEdgeTable[kCaseTable[cell].edges[corner]];
+      places[cell][corner] = static_cast<std::uint8_t>(edge_row(edge.axis, edge.dy, edge.dz) + 8U * edge.dx);
+    }
+  }
+  return places;
+}();
+
+struct CellKernels {
+  // Triangles in the crossed cells. Looks at `crossed` and `inside` only.
+  std::uint32_t (*count_triangles)(const CellRow& row);
+
+  // Writes them, cell by cell, and nothing behind the last.
+  void (*write_triangles)(const CellRow& row, std::array<std::uint32_t, 3>* out);
+};
+
+// The best for this processor.
+const CellKernels& cell_kernels();
+
+// All that this processor can run, the best last.
+std::span<const CellKernels* const> all_cell_kernels();
+
+}  // namespace isoweave
