@@ -1,5 +1,7 @@
 #include "pipeline/device_slabs.hpp"
 
+#include <array>
+#include <span>
 #include <stdexcept>
 
 namespace isoweave {
@@ -35,8 +37,13 @@ void DeviceSlabs::write(SlabRecord& record, MeshReport& report) {
     const Point point = output_.point(vertex.position);
     return v < added ? OutputCorner{first + v, label + v, point} : OutputCorner{vertex.output, vertex.component, point};
   };
-  output_.add_triangles(
-      piece_.triangles.size(), [&](std::size_t n, std::size_t c) { return corner(n, c).number; }, corner);
+  const auto number = [&](std::size_t n, std::span<std::array<std::uint64_t, 3>> out) {
+    for (auto& triangle : out) {
+      for (std::size_t c = 0; c < 3; ++c) triangle[c] = corner(n, c).number;
+      ++n;
+    }
+  };
+  output_.add_triangles(piece_.triangles.size(), number, corner);
   if (output_.components().labels() > engine_->held_vertices()) {
     engine_->change_components([&](std::span<std::uint32_t*> labels) { output_.components().compact(labels); });
   }

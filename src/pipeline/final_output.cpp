@@ -1,5 +1,8 @@
 #include "pipeline/final_output.hpp"
 
+#include <array>
+#include <span>
+
 #include "parallel/collect.hpp"
 
 namespace isoweave {
@@ -15,7 +18,13 @@ void FinalOutput::take(Simplifier& simplifier) {
   number_vertices(zone, triangles);
   const auto vertex = [&](std::size_t n, std::size_t c) { return zone.triangles[triangles[n]].sides[c].vertex; };
   output_.add_triangles(
-      triangles.size(), [&](std::size_t n, std::size_t c) { return number(zone, vertex(n, c)); },
+      triangles.size(),
+      [&](std::size_t n, std::span<std::array<std::uint64_t, 3>> out) {
+        for (auto& triangle : out) {
+          for (std::size_t c = 0; c < 3; ++c) triangle[c] = number(zone, vertex(n, c));
+          ++n;
+        }
+      },
       [&](std::size_t n, std::size_t c) {
         const Index v = vertex(n, c);
         return OutputCorner{number(zone, v), component(zone, v), output_.point(zone.vertices[v].position)};

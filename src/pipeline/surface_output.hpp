@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
@@ -73,20 +74,26 @@ class SurfaceOutput {
   // Of the vertices that were added last, until others are.
   std::span<const Point> added_points() const { return {pieces_[next_].points.data(), pieces_[next_].points.size()}; }
 
-  // Adds triangles and hands everything to the sink. number(n, c): of corner c of the n-th in the output; corner(n, c):
-  // all of it. Called by any thread.
-  template <class NumberOf, class CornerOf>
-  void add_triangles(std::size_t count, const NumberOf& number, const CornerOf& corner) {
+  // Adds triangles and hands everything to the sink. number(first, out): writes the numbers in the output of the
+  // corners of consecutive triangles; corner(n, c): all of corner c of the n-th. Called by any thread.
+  template <class Number, class CornerOf>
+  void add_triangles(std::size_t count, const Number& number, const CornerOf& corner) {
     const std::array<std::size_t, 3> turn =
         world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
     Piece& piece = pieces_[next_];
     piece.triangles.resize(count);
-    executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t begin, std::int64_t end) {
+    executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t from, std::int64_t to) {
+      const auto begin = static_cast<std::size_t>(from);
+      const auto end = static_cast<std::size_t>(to);
+      const std::span block(piece.triangles.data() + begin, end - begin);
+      number(begin, block);
+      if (world_.mirrors()) {
+        for (auto& triangle : block) std::swap(triangle[1], triangle[2]);
+      }
+      if (!measure_) return;
       std::uint64_t digest = 0;
       std::uint64_t joins = 0;
-      for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-        piece.triangles[n] = {number(n, turn[0]), number(n, turn[1]), number(n, turn[2])};
-        if (!measure_) continue;
+      for (std::size_t n = begin; n < end; ++n) {
         const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
         digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point);
         for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
