@@ -12,7 +12,6 @@
 #include "isoweave/error.hpp"
 #include "labels.hpp"
 #include "lods.hpp"
-#include "memory_sink.hpp"
 #include "mesh_arguments.hpp"
 #include "mesh_forecast.hpp"
 #include "mesh_options.hpp"
@@ -86,9 +85,9 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
     full.levels.clear();
     full.normals = Normals::kAbsent;
     full.values = nullptr;
-    MemorySink sink;
-    mesh_volume(*open_input(arguments.input), sink, full, control);
-    contents.full = sink.take();
+    MeshInMemory surface;
+    mesh_volume(*open_input(arguments.input), surface, full, control);
+    contents.full = surface.copy();
   }
   return contents;
 }

@@ -7,7 +7,6 @@
 
 #include "measure/geometry.hpp"
 #include "measure/triangle_tree.hpp"
-#include "memory_sink.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave::cli {
@@ -43,10 +42,10 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const
   RunControl quiet = control;
   quiet.measure = false;
   quiet.progress = nullptr;
-  MemorySink sink;
+  MeshInMemory result;
   const SimplifyOptions options{{kMostError * size_of(mesh), false}, Quality::kNormal, triangles};
-  simplify_mesh(mesh, sink, options, quiet);
-  return sink.take();
+  simplify_mesh(mesh, result, options, quiet);
+  return result.copy();
 }
 
 std::vector<float> distances_from(const measure::TriangleTree& tree, const TriangleMesh& mesh,

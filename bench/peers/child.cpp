@@ -48,10 +48,11 @@ void limit_memory() {
 // Touches memory and gives it back to this system, which hands it out again next. A virtual machine's host provides
 // memory when it is touched first, and takes back what is free, in large pieces: no run is to pay for that.
 void have_host_provide_memory() {
-  constexpr std::size_t kBytes = std::size_t{256} << 20;
+  constexpr std::size_t kBytes = std::size_t{2} << 30;
   constexpr std::size_t kPage = 4096;
   void* const memory = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) fail("mmap");
+  madvise(memory, kBytes, MADV_HUGEPAGE);
   for (std::size_t at = 0; at < kBytes; at += kPage) static_cast<volatile char*>(memory)[at] = 1;
   munmap(memory, kBytes);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -38,9 +39,21 @@ struct MeshPiece {
   std::span<const std::array<std::uint64_t, 3>> triangles{};  // over any vertices handed over so far
 };
 
+// What a piece of a mesh is going to hold.
+struct MeshPieceSize {
+  std::size_t vertices = 0, triangles = 0;
+  bool normals = false, values = false;
+};
+
+// Room for a piece, as MeshPiece: of its normals and values only if it has them.
+struct MeshRoom {
+  std::span<Point> vertices{}, normals{};
+  std::span<float> values{};
+  std::span<std::array<std::uint32_t, 3>> triangles{};
+};
+
 // Where finished pieces of a mesh go. Not thread-safe. mesh_volume calls append() from a thread of its own while it
-// makes the next piece, unless it was given one thread only; finish() and mark() are called when no append() is
-// underway.
+// makes the next piece, unless it was given one thread only; all other members are called when no append() is underway.
 class MeshSink {
  public:
   virtual ~MeshSink() = default;
@@ -48,6 +61,14 @@ class MeshSink {
   // Appends a piece. Mesh files refuse an index of no vertex, a coordinate that is not finite and missing normals or
   // values with std::invalid_argument.
   virtual void append(const MeshPiece& piece) = 0;
+
+  // Whether the sink has room() for pieces, all of them then, in which they are made by all threads at once. For one
+  // that keeps the mesh in memory: append() is a copy by one thread.
+  virtual bool has_room() const { return false; }
+
+  // Room for the next piece, which is filled before another member is called, unless the run fails. Throws
+  // std::logic_error where there is none.
+  virtual MeshRoom room(const MeshPieceSize&) { throw std::logic_error("this sink has no room for pieces"); }
 
   // Completes the mesh. Without it the destructor discards everything.
   virtual void finish() = 0;
@@ -58,6 +79,35 @@ class MeshSink {
 
   // What a user should know of the finished mesh, one line each: how far coordinates were rounded, say.
   virtual std::vector<std::string> notes() const { return {}; }
+};
+
+// Keeps a mesh in memory: 12 bytes for each vertex, normal and triangle, 4 for each value. Up to as much again is
+// reserved of addresses, not of memory. In a run all threads fill it. RunControl::memory does not count it.
+class MeshInMemory final : public MeshSink {
+ public:
+  MeshInMemory();
+  ~MeshInMemory() override;
+  MeshInMemory(MeshInMemory&&) noexcept;
+  MeshInMemory& operator=(MeshInMemory&&) noexcept;
+
+  // These throw std::length_error for more than 2^32 - 1 vertices, and std::bad_alloc.
+  void append(const MeshPiece& piece) override;
+  MeshRoom room(const MeshPieceSize& size) override;
+
+  bool has_room() const override { return true; }
+  void finish() override {}
+
+  // What there is so far, until the next piece comes.
+  std::span<const Point> vertices() const;
+  std::span<const Point> normals() const;
+  std::span<const float> values() const;
+  std::span<const std::array<std::uint32_t, 3>> triangles() const;
+
+  TriangleMesh copy() const;
+
+ private:
+  struct Arrays;
+  std::unique_ptr<Arrays> arrays_;
 };
 
 struct MeshFileOptions {

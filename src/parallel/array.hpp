@@ -38,6 +38,12 @@ class Array {
     size_ = size;
   }
 
+  // Takes memory for so many elements, at least as many as there are.
+  void reserve(std::size_t capacity) {
+    const std::size_t bytes = capacity * sizeof(T);
+    bytes < kHugePage ? take_from_heap((bytes + 63) / 64 * 64) : map((bytes + kHugePage - 1) / kHugePage * kHugePage);
+  }
+
  private:
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
@@ -45,11 +51,6 @@ class Array {
     std::size_t mapped = 0;  // bytes; 0: from the heap
     void operator()(T* memory) const { mapped > 0 ? void(munmap(memory, mapped)) : std::free(memory); }
   };
-
-  void reserve(std::size_t capacity) {
-    const std::size_t bytes = capacity * sizeof(T);
-    bytes < kHugePage ? take_from_heap((bytes + 63) / 64 * 64) : map((bytes + kHugePage - 1) / kHugePage * kHugePage);
-  }
 
   void take_from_heap(std::size_t bytes) {
     T* const memory = static_cast<T*>(std::aligned_alloc(64, bytes));

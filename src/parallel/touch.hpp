@@ -4,23 +4,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave {
 
-// Touches the pages that elements from `first` on begin, each by one thread. The elements are to be filled afterwards.
+// Touches the pages that begin among elements that are to be filled, each by one thread.
 template <class T>
-void touch(Array<T>& array, std::size_t first, const Executor& executor) {
+void touch(std::span<T> elements, const Executor& executor) {
   constexpr std::size_t kPage = std::size_t{2} << 20;
-  auto* const bytes = reinterpret_cast<volatile char*>(array.data());
-  const auto place = reinterpret_cast<std::uintptr_t>(array.data());
-  const std::size_t end = array.size() * sizeof(T);
-  const std::size_t begin = first * sizeof(T);
-  const std::size_t first_page = begin + (kPage - (place + begin) % kPage) % kPage;
-  if (first_page + kPage >= end) return;
-  const std::size_t pages = (end - first_page + kPage - 1) / kPage;
+  auto* const bytes = reinterpret_cast<volatile char*>(elements.data());
+  const auto place = reinterpret_cast<std::uintptr_t>(elements.data());
+  const std::size_t first_page = (kPage - place % kPage) % kPage;
+  if (first_page + kPage >= elements.size_bytes()) return;
+  const std::size_t pages = (elements.size_bytes() - first_page + kPage - 1) / kPage;
   executor.for_each(static_cast<std::int64_t>(pages), 1,
                     [&](std::int64_t n) { bytes[first_page + static_cast<std::size_t>(n) * kPage] = 0; });
 }

@@ -18,10 +18,9 @@ void FinalOutput::take(Simplifier& simplifier) {
   number_vertices(zone, triangles);
   const auto vertex = [&](std::size_t n, std::size_t c) { return zone.triangles[triangles[n]].sides[c].vertex; };
   output_.add_triangles(
-      triangles.size(),
-      [&](std::size_t n, std::span<std::array<std::uint64_t, 3>> out) {
+      [&]<class Number>(std::size_t n, std::span<std::array<Number, 3>> out) {
         for (auto& triangle : out) {
-          for (std::size_t c = 0; c < 3; ++c) triangle[c] = number(zone, vertex(n, c));
+          for (std::size_t c = 0; c < 3; ++c) triangle[c] = static_cast<Number>(number(zone, vertex(n, c)));
           ++n;
         }
       },
@@ -58,7 +57,7 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
       new_vertices_);
   const std::uint64_t first = output_.vertices();
   const std::uint32_t label = output_.add_vertices(
-      new_vertices_.size(), {!zone.normals.empty(), !zone.values.empty()},
+      {new_vertices_.size(), triangles.size(), !zone.normals.empty(), !zone.values.empty()},
       [&](std::size_t n) { return zone.vertices[new_vertices_[n]].position; },
       [&](std::size_t n) { return zone.normals[new_vertices_[n]]; },
       [&](std::size_t n) { return zone.values[new_vertices_[n]]; });

@@ -23,7 +23,7 @@ std::uint32_t least_corner(std::span<const std::array<std::uint32_t, 3>> triangl
 void FullOutput::take(const SurfacePiece& piece) {
   const std::uint64_t first_number = output_.vertices();
   const std::uint32_t first_label = output_.add_vertices(
-      piece.positions.size(), {!piece.normals.empty(), !piece.values.empty()},
+      {piece.positions.size(), piece.triangles.size(), !piece.normals.empty(), !piece.values.empty()},
       [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
       [&](std::size_t n) { return piece.values[n]; });
   const std::span<const Point> points = output_.added_points();
@@ -33,16 +33,16 @@ void FullOutput::take(const SurfacePiece& piece) {
     const std::uint32_t n = std::min(v, piece.inherited);
     return front_[n].number + (v - n);
   };
-  const auto number_all = [&](std::size_t first, std::span<std::array<std::uint64_t, 3>> out) {
+  const auto number_all = [&]<class Index>(std::size_t first, std::span<std::array<Index, 3>> out) {
     for (std::size_t begin = 0; begin < out.size(); begin += kFew) {
       const std::span few = out.subspan(begin, std::min(kFew, out.size() - begin));
       const auto* const corners = piece.triangles.data() + first + begin;
       if (least_corner({corners, few.size()}) < piece.inherited) {
         for (std::size_t n = 0; n < few.size(); ++n) {
-          for (std::size_t c = 0; c < 3; ++c) few[n][c] = number(corners[n][c]);
+          for (std::size_t c = 0; c < 3; ++c) few[n][c] = static_cast<Index>(number(corners[n][c]));
         }
       } else {
-        const std::uint64_t before = first_number - piece.inherited;
+        const auto before = static_cast<Index>(first_number - piece.inherited);
         for (std::size_t n = 0; n < few.size(); ++n) {
           for (std::size_t c = 0; c < 3; ++c) few[n][c] = before + corners[n][c];
         }
@@ -54,8 +54,7 @@ void FullOutput::take(const SurfacePiece& piece) {
     const std::uint32_t n = v - piece.inherited;
     return OutputCorner{first_number + n, first_label + n, points[n]};
   };
-  output_.add_triangles(piece.triangles.size(), number_all,
-                        [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
+  output_.add_triangles(number_all, [&](std::size_t n, std::size_t c) { return vertex(piece.triangles[n][c]); });
   std::vector<OutputCorner> front;
   front.reserve(piece.incomplete.size() + 1);
   front.resize(piece.incomplete.size());

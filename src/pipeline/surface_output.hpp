@@ -25,22 +25,18 @@ struct OutputCorner {
   Point point;           // where it lies in the output
 };
 
-// What vertices have beside their place.
-struct VertexKinds {
-  bool normals = false, values = false;
-};
-
 class SurfaceOutput {
  public:
-  // measure: digest and components. With several threads the sink gets a piece while the next one is made. observer:
-  // sees all triangles, if it is not null.
+  // measure: digest and components. A sink that has room gets each piece as it is made; with several threads another
+  // one gets it while the next one is made. observer: sees all triangles, if it is not null.
   SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure,
                 SweepObserver* observer = nullptr)
       : world_(world),
         executor_(executor),
         measure_(measure),
         observer_(observer),
-        sink_(sink, executor.threads() > 1) {}
+        sink_(sink),
+        overlapped_(sink, executor.threads() > 1) {}
 
   std::uint64_t vertices() const { return vertices_; }
 
@@ -52,70 +48,39 @@ class SurfaceOutput {
   // Of the next vertex that is added.
   std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
 
-  // Adds vertices with consecutive numbers from vertices() on and consecutive labels from the one returned.
-  // position(n), normal(n), value(n): of the n-th of them, called by any thread; the latter two where there are any.
+  // Begins a piece with its vertices, which get consecutive numbers from vertices() on and consecutive labels from the
+  // one returned. position(n), normal(n), value(n): of the n-th of them, called by any thread; the latter two where
+  // there are any.
   template <class Position, class Normal, class Value>
-  std::uint32_t add_vertices(std::size_t count, VertexKinds kinds, const Position& position, const Normal& normal,
+  std::uint32_t add_vertices(const MeshPieceSize& size, const Position& position, const Normal& normal,
                              const Value& value) {
-    Piece& piece = pieces_[next_];
-    piece.points.resize(count);
-    piece.normals.resize(kinds.normals ? count : 0);
-    piece.values.resize(kinds.values ? count : 0);
-    executor_.for_each(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t i) {
+    make_room(size);
+    executor_.for_each(static_cast<std::int64_t>(size.vertices), kBlock, [&](std::int64_t i) {
       const auto n = static_cast<std::size_t>(i);
-      piece.points[n] = world_.point(position(n));
-      if (kinds.normals) piece.normals[n] = world_.normal(normal(n));
-      if (kinds.values) piece.values[n] = value(n);
+      room_.vertices[n] = world_.point(position(n));
+      if (size.normals) room_.normals[n] = world_.normal(normal(n));
+      if (size.values) room_.values[n] = value(n);
     });
-    vertices_ += count;
-    return measure_ ? components_.add(count) : 0;
+    vertices_ += size.vertices;
+    return measure_ ? components_.add(size.vertices) : 0;
   }
 
   // Of the vertices that were added last, until others are.
-  std::span<const Point> added_points() const { return {pieces_[next_].points.data(), pieces_[next_].points.size()}; }
+  std::span<const Point> added_points() const { return room_.vertices; }
 
-  // Adds triangles and hands everything to the sink. number(first, out): writes the numbers in the output of the
-  // corners of consecutive triangles; corner(n, c): all of corner c of the n-th. Called by any thread.
+  // Completes the piece with its triangles, as many as it was begun for, and hands it to the sink. number(first, out):
+  // writes the numbers in the output of the corners of consecutive triangles, in 32 or 64 bits; corner(n, c): all of
+  // corner c of the n-th. Called by any thread.
   template <class Number, class CornerOf>
-  void add_triangles(std::size_t count, const Number& number, const CornerOf& corner) {
-    const std::array<std::size_t, 3> turn =
-        world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
-    Piece& piece = pieces_[next_];
-    piece.triangles.resize(count);
-    executor_.for_blocks(static_cast<std::int64_t>(count), kBlock, [&](std::int64_t from, std::int64_t to) {
-      const auto begin = static_cast<std::size_t>(from);
-      const auto end = static_cast<std::size_t>(to);
-      const std::span block(piece.triangles.data() + begin, end - begin);
-      number(begin, block);
-      if (world_.mirrors()) {
-        for (auto& triangle : block) std::swap(triangle[1], triangle[2]);
-      }
-      if (!measure_) return;
-      std::uint64_t digest = 0;
-      std::uint64_t joins = 0;
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
-        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point);
-        for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
-      }
-      digest_.fetch_add(digest, std::memory_order_relaxed);
-      components_.count_joins(joins);
-    });
-    triangles_ += count;
-    if (observer_ != nullptr) {
-      view_triangles(
-          count, [&](std::size_t n, std::size_t c) { return corner(n, turn.at(c)).point; }, executor_,
-          [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
-    }
-    sink_.append({.vertices = {piece.points.data(), piece.points.size()},
-                  .normals = {piece.normals.data(), piece.normals.size()},
-                  .values = {piece.values.data(), piece.values.size()},
-                  .triangles = {piece.triangles.data(), piece.triangles.size()}});
-    next_ ^= 1;
+  void add_triangles(const Number& number, const CornerOf& corner) {
+    if (sink_.has_room()) return write_triangles(room_.triangles, number, corner);
+    auto& triangles = buffer().triangles;
+    write_triangles(std::span(triangles.begin(), triangles.end()), number, corner);
+    hand_over();
   }
 
   // Returns when the sink has everything. Throws what it threw.
-  void wait() { sink_.wait(); }
+  void wait() { overlapped_.wait(); }
 
   // Fills in counts, Euler number, components and digest of what has been written.
   void report(std::uint64_t open_edges, SurfaceReport& report) const;
@@ -133,24 +98,62 @@ class SurfaceOutput {
  private:
   static constexpr std::int64_t kBlock = 4096;
 
-  struct Piece {
-    Array<Point> points;
+  // A piece on its way to a sink that has no room for it.
+  struct Buffer {
+    Array<Point> vertices;
     Array<Point> normals;
     Array<float> values;
     Array<std::array<std::uint64_t, 3>> triangles;
   };
+
+  Buffer& buffer() { return buffers_[next_]; }
+  void make_room(const MeshPieceSize& size);
+  void hand_over();
+
+  // Numbers, measures and shows triangles.
+  template <class Index, class Number, class CornerOf>
+  void write_triangles(std::span<std::array<Index, 3>> triangles, const Number& number, const CornerOf& corner) {
+    const std::array<std::size_t, 3> turn =
+        world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
+    executor_.for_blocks(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t from, std::int64_t to) {
+      const auto begin = static_cast<std::size_t>(from);
+      const auto end = static_cast<std::size_t>(to);
+      const std::span block = triangles.subspan(begin, end - begin);
+      number(begin, block);
+      if (world_.mirrors()) {
+        for (auto& triangle : block) std::swap(triangle[1], triangle[2]);
+      }
+      if (!measure_) return;
+      std::uint64_t digest = 0;
+      std::uint64_t joins = 0;
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
+        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point);
+        for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
+      }
+      digest_.fetch_add(digest, std::memory_order_relaxed);
+      components_.count_joins(joins);
+    });
+    triangles_ += triangles.size();
+    if (observer_ == nullptr) return;
+    view_triangles(
+        triangles.size(), [&](std::size_t n, std::size_t c) { return corner(n, turn.at(c)).point; }, executor_,
+        [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
+  }
 
   const World& world_;
   const Executor& executor_;
   bool measure_;
   SweepObserver* observer_;
   ComponentCounter components_;
-  std::array<Piece, 2> pieces_;  // one is made, the other one is with the sink
+  MeshSink& sink_;
+  MeshRoom room_;                  // for the piece that is made; in a buffer without its triangles
+  std::array<Buffer, 2> buffers_;  // one is filled, the other one is with the sink
   std::size_t next_ = 0;
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
   std::atomic<std::uint64_t> digest_{0};
-  OverlappedSink sink_;  // ends before what it reads
+  OverlappedSink overlapped_;  // ends before what it reads
 };
 
 }  // namespace isoweave

@@ -133,7 +133,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   if (options.normals_count) normal_quadric_array_.resize(end);
   if (!piece.manifold) corner_array_.resize(end);
   show_arrays();
-  touch(vertex_array_, first, executor);
+  touch(std::span(vertex_array_.begin() + first, vertex_array_.end()), executor);
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
     const auto from = static_cast<std::size_t>(n);
     Vertex& vertex = vertices[first + from];
@@ -153,7 +153,7 @@ void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
   const Index first = triangle_count();
   triangle_array_.resize(first + piece.triangles.size());
   show_arrays();
-  touch(triangle_array_, first, executor);
+  touch(std::span(triangle_array_.begin() + first, triangle_array_.end()), executor);
   executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
