@@ -9,18 +9,23 @@ namespace {
 
 class FlyingEdges : public Task {
  public:
-  FlyingEdges(const std::string& backend, const HeldVolume& volume, const Goal& goal) {
-    use_vtk_threads(backend.c_str(), goal.threads);
+  FlyingEdges(std::string backend, const HeldVolume& volume, const Goal& goal)
+      : backend_(std::move(backend)), threads_(goal.threads) {
     filter_->SetInputData(image_over(volume));
     filter_->SetValue(0, stored_iso(volume.info, volume.iso));
     filter_->ComputeNormalsOff();
     filter_->ComputeScalarsOff();
   }
-  void run() override { filter_->Update(); }
+  void run() override {
+    use_vtk_threads(backend_.c_str(), threads_);
+    filter_->Update();
+  }
   std::size_t triangles() const override { return static_cast<std::size_t>(filter_->GetOutput()->GetNumberOfPolys()); }
   isoweave::TriangleMesh mesh() const override { return to_mesh(filter_->GetOutput()); }
 
  private:
+  std::string backend_;
+  int threads_;
   vtkSmartPointer<vtkFlyingEdges3D> filter_ = vtkSmartPointer<vtkFlyingEdges3D>::New();
 };
 

@@ -11,7 +11,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kRowsPerBlock = 8;
+constexpr std::int64_t kSamplesPerBlock = 4096;
 
 std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
 
@@ -101,7 +101,7 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
 template <class Visit>
 void MarchingCubes::for_rows(std::size_t layers, const Visit& visit) const {
   const auto count = static_cast<std::int64_t>(layers * rows_);
-  executor_.for_blocks(count, kRowsPerBlock, [&](std::int64_t begin, std::int64_t end) {
+  executor_.for_blocks(count, kSamplesPerBlock / dims_[0] + 1, [&](std::int64_t begin, std::int64_t end) {
     std::size_t n = static_cast<std::size_t>(begin) / rows_;
     std::size_t row = static_cast<std::size_t>(begin) % rows_;
     for (auto number = static_cast<std::size_t>(begin); number < static_cast<std::size_t>(end); ++number) {

@@ -393,7 +393,7 @@ class VolumeSweep {
   const MeshOptions& options_;
   const RunControl& control_;
   const RunIdentity identity_ = identity_of(volume_, options_);  // when the run begins: a file may change meanwhile
-  const std::uint64_t resident_ = resident_process_bytes();
+  const std::uint64_t resident_ = control_.memory > 0 ? resident_process_bytes() : 0;
   const Executor executor_;
   SurfaceField field_;
   double voxel_;  // mean side of a voxel
