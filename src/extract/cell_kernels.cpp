@@ -1,5 +1,6 @@
 #include "extract/cell_kernels.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -16,17 +17,16 @@ std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::
 // Calls visit(bit, case) for the crossed cells of word w.
 template <class Visit>
 void for_cells(const CellRow& row, std::size_t w, const Visit& visit) {
-  std::array<std::uint64_t, 4> here;
-  std::array<std::uint64_t, 4> next;
+  std::array<std::array<std::uint64_t, 4>, 2> halves;  // 32 cells each, and the bit behind them
   for (std::size_t r = 0; r < 4; ++r) {
-    here[r] = row.inside[r][w];
-    next[r] = here[r] >> 1 | (w + 1 < row.words ? row.inside[r][w + 1] << 63 : 0);
+    const std::uint64_t next = w + 1 < row.words ? row.inside[r][w + 1] : 0;
+    halves[0][r] = row.inside[r][w];
+    halves[1][r] = row.inside[r][w] >> 32 | next << 32;
   }
   for (std::uint64_t crossed = row.crossed[w]; crossed != 0; crossed &= crossed - 1) {
     const int bit = std::countr_zero(crossed);
-    const auto pair = [&](std::size_t r) {
-      return static_cast<std::uint32_t>((here[r] >> bit & 1) | (next[r] >> bit & 1) << 1);
-    };
+    const auto& half = halves[static_cast<std::size_t>(bit >> 5)];
+    const auto pair = [&](std::size_t r) { return static_cast<std::uint32_t>(half[r] >> (bit & 31) & 3); };
     visit(bit, cell_case(pair(0), pair(1), pair(2), pair(3)));
   }
 }
@@ -48,35 +48,20 @@ std::array<std::uint32_t, 8> bases(const CellRow& row, std::size_t w) {
   return base;
 }
 
-// The edges of the cells of a word.
-struct Edges {
-  Edges(const CellRow& row, std::size_t w) : base(bases(row, w)), next_base{} {
-    for (std::size_t r = 0; r < 8; ++r) crossings[r] = row.crossings[r][w];
-    if (w + 1 < row.words) next_base = bases(row, w + 1);
-  }
-
-  // Numbers of the crossings at a bit of all rows, then at the next bit. Where there is none the number means nothing.
-  std::array<std::uint32_t, 16> numbers_at(int bit) const {
-    const std::uint64_t below = (std::uint64_t{1} << bit) - 1;
-    std::array<std::uint32_t, 16> numbers;
-    for (std::size_t r = 0; r < 8; ++r) {
-      numbers[r] = base[r] + ones(crossings[r] & below);
-      numbers[8 + r] = bit < 63 ? numbers[r] + (crossings[r] >> bit & 1) : next_base[r];
-    }
-    return numbers;
-  }
-
-  std::array<std::uint64_t, 8> crossings;
-  std::array<std::uint32_t, 8> base;
-  std::array<std::uint32_t, 8> next_base;  // of the next word
-};
-
 void write_triangles(const CellRow& row, std::array<std::uint32_t, 3>* out) {
   for (std::size_t w = 0; w < row.words; ++w) {
     if (row.crossed[w] == 0) continue;
-    const Edges edges(row, w);
+    std::array<std::uint64_t, 8> crossings;
+    for (std::size_t r = 0; r < 8; ++r) crossings[r] = row.crossings[r][w];
+    std::array<std::uint32_t, 8> next = bases(row, w);
     for_cells(row, w, [&](int bit, std::uint32_t cell) {
-      const std::array<std::uint32_t, 16> numbers = edges.numbers_at(bit);
+      // Of the crossings at the cell's bit of all rows, then of those at the next bit. Where there is none the number
+      // means nothing.
+      std::array<std::uint32_t, 16> numbers;
+      std::copy(next.begin(), next.end(), numbers.begin());
+      for (std::size_t r = 0; r < 8; ++r) next[r] += static_cast<std::uint32_t>(crossings[r] >> bit & 1);
+      if (bit == 63 && w + 1 < row.words) next = bases(row, w + 1);
+      std::copy(next.begin(), next.end(), numbers.begin() + 8);
       const std::uint8_t* place = kCornerPlaces[cell].data();
       for (std::size_t t = 0; t < kCaseTable[cell].triangles; ++t, ++out) {
         for (std::uint32_t& corner : *out) corner = numbers[*place++];

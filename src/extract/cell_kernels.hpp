@@ -10,7 +10,9 @@
 
 namespace isoweave {
 
-// A row of cells, one bit each, and what lies around it: rows of as many words.
+// A row of cells, one bit each, and what lies around it: rows of as many words. An edge with a crossing at some bit has
+// the ends that the cell at that bit has: the cell is crossed, unless it lies behind the last one of the volume. So
+// from one crossed cell to the next there is no other crossing than those at the first one's bit.
 struct CellRow {
   std::size_t words;
   const std::uint64_t* crossed;                   // the cells that the surface crosses

@@ -64,16 +64,14 @@ void write_triangles(const CellRow& row, std::array<std::uint32_t, 3>* out) {
     alignas(64) std::array<std::uint8_t, 64> cases;
     _mm512_store_si512(cases.data(), cases_of(row, w));
     const __m512i crossings = crossings_of(row, w);
-    const __m512i base = bases_of(row, w, crossings);
-    const bool goes_on = crossed >> 63 != 0 && w + 1 < row.words;
-    const __m512i next_base = goes_on ? bases_of(row, w + 1, crossings_of(row, w + 1)) : _mm512_setzero_si512();
+    __m512i next = bases_of(row, w, crossings);
     for (; crossed != 0; crossed &= crossed - 1) {
       const int bit = std::countr_zero(crossed);
       const std::uint8_t cell = cases[static_cast<std::size_t>(bit)];
-      const __m512i below = _mm512_set1_epi64(static_cast<long long>((std::uint64_t{1} << bit) - 1));
-      const __m512i here = _mm512_add_epi64(base, _mm512_popcnt_epi64(_mm512_and_si512(crossings, below)));
       const __m512i own = _mm512_and_si512(_mm512_srl_epi64(crossings, _mm_cvtsi32_si128(bit)), _mm512_set1_epi64(1));
-      const __m512i next = _mm512_mask_mov_epi64(_mm512_add_epi64(here, own), bit == 63 ? 0xff : 0, next_base);
+      const __m512i here = next;
+      next = _mm512_add_epi64(here, own);
+      if (bit == 63 && w + 1 < row.words) next = bases_of(row, w + 1, crossings_of(row, w + 1));
       const __m512i numbers =
           _mm512_inserti32x8(_mm512_castsi256_si512(_mm512_cvtepi64_epi32(here)), _mm512_cvtepi64_epi32(next), 1);
       const __m512i places =

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -20,7 +21,8 @@ bool bit_of(const Words& words, std::size_t bit) {
   return bit / 64 < words.size() && (words[bit / 64] >> (bit % 64) & 1) != 0;
 }
 
-// A row of cells with memory of its own. Crossings and numbers are random: kernels take them as they are.
+// A row of cells with memory of its own. Crossings are random where a cell is crossed and behind the last one of a
+// word, numbers everywhere: kernels take them as they are.
 class RandomRow {
  public:
   RandomRow(std::size_t words, std::mt19937_64& random) {
@@ -35,7 +37,10 @@ class RandomRow {
     };
     fill(crossed_);
     for (Words& row : inside_) fill(row);
-    for (Words& row : crossings_) fill(row);
+    for (Words& row : crossings_) {
+      fill(row);
+      for (std::size_t w = 0; w < words; ++w) row[w] &= crossed_[w] | behind(crossed_[w]);
+    }
     for (auto* const bases : {&x_base_[0], &x_base_[1], &x_base_[2], &x_base_[3], &z_base_[0], &z_base_[1]}) {
       for (std::uint32_t& base : * bases = Numbers(words)) base = static_cast<std::uint32_t>(random()) / 2;
     }
@@ -69,6 +74,12 @@ class RandomRow {
   }
 
  private:
+  // The bits above all that are set.
+  static std::uint64_t behind(std::uint64_t word) {
+    const int end = 64 - std::countl_zero(word);
+    return end < 64 ? ~std::uint64_t{0} << end : 0;
+  }
+
   // Of the crossing on an edge of the cell at a bit; any number where the row has ended.
   std::uint32_t number(CellEdge edge, std::size_t bit) const {
     const std::size_t at = bit + edge.dx;
