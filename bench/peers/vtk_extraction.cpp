@@ -1,5 +1,8 @@
 #include <vtkFlyingEdges3D.h>
 
+#include <string>
+#include <utility>
+
 #include "task.hpp"
 #include "vtk_data.hpp"
 #include "vtk_smp.hpp"

@@ -62,8 +62,8 @@ class MeshSink {
   // values with std::invalid_argument.
   virtual void append(const MeshPiece& piece) = 0;
 
-  // Whether the sink has room() for pieces, all of them then, in which they are made by all threads at once. For one
-  // that keeps the mesh in memory: append() is a copy by one thread.
+  // Whether there is room() for pieces: for all of them then, and all threads write them there. For sinks that keep the
+  // mesh in memory, where append() would be a copy by one thread.
   virtual bool has_room() const { return false; }
 
   // Room for the next piece, which is filled before another member is called, unless the run fails. Throws
@@ -81,8 +81,8 @@ class MeshSink {
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
-// Keeps a mesh in memory: 12 bytes for each vertex, normal and triangle, 4 for each value. Up to as much again is
-// reserved of addresses, not of memory. In a run all threads fill it. RunControl::memory does not count it.
+// Keeps a mesh in memory: 12 bytes for each vertex, normal and triangle, 4 for each value; addresses, not memory, are
+// reserved for up to as much again. In a run all threads fill it. RunControl::memory does not count it.
 class MeshInMemory final : public MeshSink {
  public:
   MeshInMemory();

@@ -11,7 +11,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kSamplesPerBlock = 4096;
+constexpr std::int64_t kSamplesPerBlock = 4096;  // of rows that go together: less is no work for a thread
 
 std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
 
