@@ -66,8 +66,9 @@ class MeshSink {
   // mesh in memory, where append() would be a copy by one thread.
   virtual bool has_room() const { return false; }
 
-  // Room for the next piece, which is filled before another member is called, unless the run fails. Throws
-  // std::logic_error where there is none.
+  // Room for the next piece, which is filled before another member is called, unless the run fails. It refuses more
+  // vertices in all than 32-bit indices can name, 2^32 - 1, with std::length_error. Throws std::logic_error where there
+  // is none.
   virtual MeshRoom room(const MeshPieceSize&) { throw std::logic_error("this sink has no room for pieces"); }
 
   // Completes the mesh. Without it the destructor discards everything.
