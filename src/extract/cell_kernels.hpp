@@ -45,8 +45,8 @@ struct CellKernels {
   // Triangles in the crossed cells. Looks at `crossed` and `inside` only.
   std::uint32_t (*count_triangles)(const CellRow& row);
 
-  // Writes them, cell by cell, and nothing behind the last.
-  void (*write_triangles)(const CellRow& row, std::array<std::uint32_t, 3>* out);
+  // Writes them, cell by cell, to a span of as many, and nothing behind it.
+  void (*write_triangles)(const CellRow& row, std::span<std::array<std::uint32_t, 3>> out);
 };
 
 // The best for this processor.

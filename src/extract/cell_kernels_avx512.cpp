@@ -57,7 +57,8 @@ __m512i bases_of(const CellRow& row, std::size_t w, __m512i crossings) {
   return _mm512_add_epi64(first, before);
 }
 
-void write_triangles(const CellRow& row, std::array<std::uint32_t, 3>* out) {
+void write_triangles(const CellRow& row, std::span<std::array<std::uint32_t, 3>> triangles) {
+  std::array<std::uint32_t, 3>* out = triangles.data();
   for (std::size_t w = 0; w < row.words; ++w) {
     std::uint64_t crossed = row.crossed[w];
     if (crossed == 0) continue;

@@ -326,8 +326,8 @@ CellRow MarchingCubes::cell_row(std::size_t n, std::size_t row) const {
 void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) const {
   for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
     const std::uint32_t first = rows_of_slab_[number].triangles;
-    if (first == rows_of_slab_[number + 1].triangles) return;
-    cell_kernels_.write_triangles(cell_row(n, row), piece.triangles.data() + first);
+    const std::uint32_t count = rows_of_slab_[number + 1].triangles - first;
+    if (count > 0) cell_kernels_.write_triangles(cell_row(n, row), {piece.triangles.data() + first, count});
   });
 }
 

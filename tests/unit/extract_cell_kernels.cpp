@@ -118,7 +118,7 @@ TEST(CellKernels, EverySetCountsAndWritesTheTrianglesOfTheCrossedCells) {
         Triangles expected = row.expected();
         ASSERT_EQ(kernels->count_triangles(row.view()), expected.size());
         Triangles written(expected.size() + 6, kUntouched);
-        kernels->write_triangles(row.view(), written.data());
+        kernels->write_triangles(row.view(), std::span(written).first(expected.size()));
         expected.resize(written.size(), kUntouched);
         ASSERT_EQ(written, expected) << words << " words, repetition " << repetition;
       }

@@ -1,0 +1,38 @@
+// The cases of the crossed cells of a row, one after the other.
+#pragma once
+
+#include <bit>
+
+#include "extract/cell_kernels.hpp"
+#include "extract/rules.hpp"
+
+namespace isoweave {
+
+// Calls visit(bit, case) for the crossed cells among the 32 of a half of word w, bits counted from the half's first.
+// Inlined always: what is compiled for one instruction set must not be linked into another.
+template <class Visit>
+[[gnu::always_inline]] inline void for_cells(const CellRow& row, std::size_t w, unsigned half, const Visit& visit) {
+  std::array<std::uint64_t, 4> inside;  // 32 cells, and the bit behind them
+  for (std::size_t r = 0; r < 4; ++r) {
+    const std::uint64_t next = w + 1 < row.words ? row.inside[r][w + 1] : 0;
+    inside[r] = half == 0 ? row.inside[r][w] : row.inside[r][w] >> 32 | next << 32;
+  }
+  for (auto crossed = static_cast<std::uint32_t>(row.crossed[w] >> 32 * half); crossed != 0; crossed &= crossed - 1) {
+    const int bit = std::countr_zero(crossed);
+    const auto pair = [&](std::size_t r) { return static_cast<std::uint32_t>(inside[r] >> bit & 3); };
+    visit(bit, cell_case(pair(0), pair(1), pair(2), pair(3)));
+  }
+}
+
+[[gnu::always_inline]] inline std::uint32_t count_triangles_of_cells(const CellRow& row) {
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < row.words; ++w) {
+    if (row.crossed[w] == 0) continue;
+    for (const unsigned half : {0U, 1U}) {
+      for_cells(row, w, half, [&](int, std::uint32_t cell) { count += kCaseTable[cell].triangles; });
+    }
+  }
+  return count;
+}
+
+}  // namespace isoweave
