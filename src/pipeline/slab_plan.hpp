@@ -26,10 +26,10 @@ inline const SlabGoal& slab_goal(bool simplifies, bool device = false) {
   return simplifies ? kSimplifiedSlab : kFullSlab;
 }
 
-// The goal beside a zone that holds so many triangles: each slab has passes over all of them, so it is to bring half as
+// The goal beside a zone that holds so many triangles: each slab has passes over all of them, so it is to bring as
 // many.
 inline SlabGoal beside_zone(SlabGoal goal, double held) {
-  const double factor = std::max(held / 2 / goal.triangles, 1.0);
+  const double factor = std::max(held / goal.triangles, 1.0);
   goal.triangles *= factor;
   goal.most_vertices = static_cast<std::uint64_t>(static_cast<double>(goal.most_vertices) * factor);
   return goal;

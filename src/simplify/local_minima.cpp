@@ -1,20 +1,19 @@
 #include "simplify/local_minima.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
 #include <span>
 #include <thread>
 
+#include "simplify/columns.hpp"
 #include "simplify/turns.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr double kPlaceSide = 24;  // mean voxels: what a worker has in hand at a time stays in its cache
-constexpr std::size_t kPlaces = 1024;
+constexpr std::size_t kPlaces = Columns::kCount;
 constexpr std::uint32_t kNowhere = 2 * kPlaces;
 
 // Asks for a line of memory before it is needed.
@@ -406,15 +405,9 @@ bool LocalMinima::stands_for_pair(Index v) const {
   return same_turn(zone_, v, other) && (v < other || other < zone_.settled.first_new);
 }
 
-// Groups vertices that have a turn by columns of the volume; after kColumns of them the numbers start again.
+// Groups vertices that have a turn by columns of the volume.
 void LocalMinima::group_by_place() {
-  constexpr std::uint32_t kColumns = 32;
-  static_assert(kColumns * kColumns == kPlaces);
-  const double side = kPlaceSide * std::sqrt(zone_.options.a0);
-  const auto column = [&](double p) {
-    const double number = std::clamp(std::floor(p / side), -1e15, 1e15);  // a mesh file may be anywhere
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(number)) % kColumns;
-  };
+  const Columns column(zone_.options.a0);
   place_.resize(zone_.settled.size() + woken_.size());
   triangle_.resize(place_.size());
   executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t i) {
@@ -422,8 +415,7 @@ void LocalMinima::group_by_place() {
     const Index v = awake(n);
     place_[n] = kNowhere;
     if (!has_turn(zone_, v)) return;
-    const Vec3 p = zone_.vertices[v].position;
-    place_[n] = 2 * (column(p.x) + kColumns * column(p.y)) + (stands_for_pair(v) ? 1 : 0);
+    place_[n] = 2 * column(zone_.vertices[v].position) + (stands_for_pair(v) ? 1 : 0);
     triangle_[n] = zone_.vertices[v].half_edge >> 2;
   });
   fill_buckets(

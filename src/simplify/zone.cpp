@@ -41,19 +41,21 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     throw OverMemory("the undecided zone would hold " + std::to_string(vertex_total) +
                      " vertices, expected fewer than 2^31: choose thinner slabs or a smaller error");
   }
+  order_.sort(piece, view(), front_, executor);
   const Index first_triangle = triangle_count();
   list_settled(static_cast<Index>(vertices.size() + piece.positions.size()));
   add_vertices(piece, executor);
-  add_triangles(piece, executor);
+  add_triangles(executor);
   std::vector<Index> front(piece.incomplete.size());
   std::vector<std::uint8_t> on_front(vertices.size(), 0);
   for (std::size_t n = 0; n < front.size(); ++n) {
-    front[n] = number_in_zone(piece, piece.incomplete[n]);
+    front[n] = index_of(order_.number(piece.incomplete[n]));
     on_front[front[n]] = 1;
   }
   link(piece, first_triangle, on_front, executor);
   if (extracted_surface_) know_more(piece, first_triangle, executor);
   if (piece.incomplete.empty()) {  // nothing is left to link to
+    order_ = {};
     first_side_ = {};
     next_side_ = {};
   }
@@ -128,39 +130,39 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   turn_key_array_.resize(end);
   turn_array_.resize(end);
   for (Array<LevelVertex>& level : levels) level.resize(end);
-  normal_array_.insert(normal_array_.end(), piece.normals.begin(), piece.normals.end());
-  value_array_.insert(value_array_.end(), piece.values.begin(), piece.values.end());
+  normal_array_.resize(normal_array_.size() + piece.normals.size());
+  value_array_.resize(value_array_.size() + piece.values.size());
   if (options.normals_count) normal_quadric_array_.resize(end);
   if (!piece.manifold) corner_array_.resize(end);
   show_arrays();
   touch(std::span(vertex_array_.begin() + first, vertex_array_.end()), executor);
   executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
-    const auto from = static_cast<std::size_t>(n);
-    Vertex& vertex = vertices[first + from];
-    vertex = Vertex();
-    vertex.position = piece.positions[from];
-    vertex.id = piece.ids[from];
-    states[first + from] = VertexState::kIncomplete;
-    turn_keys[first + from] = 0;
-    turns[first + from] = Turn();
-    if (options.normals_count) normal_quadrics[first + from] = NormalQuadric();
-    if (!piece.manifold) corner_array_[first + from] = 0;
-    for (Array<LevelVertex>& level : levels) level[first + from] = LevelVertex();
+    const std::size_t from = order_.place_of_vertex(static_cast<std::size_t>(n));
+    const std::size_t v = first + static_cast<std::size_t>(n);
+    vertices[v] = Vertex();
+    vertices[v].position = piece.positions[from];
+    vertices[v].id = piece.ids[from];
+    if (!piece.normals.empty()) normals[v] = piece.normals[from];
+    if (!piece.values.empty()) values[v] = piece.values[from];
+    states[v] = VertexState::kIncomplete;
+    turn_keys[v] = 0;
+    turns[v] = Turn();
+    if (options.normals_count) normal_quadrics[v] = NormalQuadric();
+    if (!piece.manifold) corner_array_[v] = 0;
+    for (Array<LevelVertex>& level : levels) level[v] = LevelVertex();
   });
 }
 
-void Zone::add_triangles(const SurfacePiece& piece, const Executor& executor) {
+void Zone::add_triangles(const Executor& executor) {
   const Index first = triangle_count();
-  triangle_array_.resize(first + piece.triangles.size());
+  const auto sorted = order_.triangles();
+  triangle_array_.resize(first + sorted.size());
   show_arrays();
   touch(std::span(triangle_array_.begin() + first, triangle_array_.end()), executor);
-  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(sorted.size()), kBlock, [&](std::int64_t n) {
     const Index t = first + static_cast<Index>(n);
     triangles[t] = Triangle();
-    for (Index c = 0; c < 3; ++c) {
-      const Index corner = piece.triangles[static_cast<std::size_t>(n)][c];
-      triangles[t].sides[c].vertex = number_in_zone(piece, corner);
-    }
+    for (Index c = 0; c < 3; ++c) triangles[t].sides[c].vertex = index_of(sorted[static_cast<std::size_t>(n)][c]);
   });
 }
 
@@ -341,7 +343,8 @@ std::uint64_t Zone::bytes() const {
          vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
          normal_quadric_array_.capacity() * sizeof(NormalQuadric) + value_array_.capacity() * sizeof(float) +
-         triangle_array_.capacity() * sizeof(Triangle) + corner_array_.capacity() * sizeof(std::uint32_t) +
+         order_.bytes() + triangle_array_.capacity() * sizeof(Triangle) +
+         corner_array_.capacity() * sizeof(std::uint32_t) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }
 

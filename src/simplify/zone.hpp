@@ -11,6 +11,7 @@
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/extracted_surface.hpp"
+#include "simplify/piece_order.hpp"
 #include "simplify/star.hpp"
 #include "simplify/zone_view.hpp"
 
@@ -95,12 +96,12 @@ class Zone : public ZoneView {
   void show_arrays();
   void forget_turns();
   void list_settled(Index end);
-  // Of a vertex that the piece gives a number.
-  Index number_in_zone(const SurfacePiece& piece, Index number) const {
-    return number < piece.inherited ? front_[number] : settled.first_new + (number - piece.inherited);
+  // Of a vertex of the last piece, by its number there once it is sorted.
+  Index index_of(Index number) const {
+    return number < front_.size() ? front_[number] : settled.first_new + (number - static_cast<Index>(front_.size()));
   }
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
-  void add_triangles(const SurfacePiece& piece, const Executor& executor);
+  void add_triangles(const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,
             const Executor& executor);
   void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
@@ -122,6 +123,7 @@ class Zone : public ZoneView {
   Array<Triangle> triangle_array_;
   Array<std::uint32_t> corner_array_;    // triangles that name each vertex, and whether an edge of it is bad; only
                                          // where pieces are no manifold by promise
+  PieceOrder order_;                     // of the last piece
   Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next piece
   std::vector<Index> front_;             // incomplete vertices, in the order of the piece that named them
   std::vector<Index> unkeyed_edges_;     // an end incomplete

@@ -88,9 +88,10 @@ class Zone::Linker {
  public:
   Linker(Zone& zone, const SurfacePiece& piece, Index first_triangle, const Executor& executor)
       : zone_(zone),
-        piece_(piece),
+        inherited_(piece.inherited),
+        triangles_(zone.order_.triangles()),
         first_new_(half_edge(first_triangle, 0)),
-        first_known_(half_edge(static_cast<Index>(piece.triangles.size()), 0)),
+        first_known_(half_edge(static_cast<Index>(triangles_.size()), 0)),
         known_(zone.known_sides_of(piece)) {
     zone.first_side_.resize(piece.inherited + piece.positions.size());
     zone.next_side_.resize(first_known_ + 2 * known_.size());
@@ -101,18 +102,21 @@ class Zone::Linker {
   // are one closed fan, and all in this piece, that is its star.
   bool link(Index n, Index v, std::vector<Index>& bad, Star& star) const {
     SidesAt sides;
-    Index least = kNone;
+    Index first = kNone;
+    std::uint32_t first_place = kNone;
     std::uint32_t corners = 0;
     each_side(
         n,
         [&](Index to, Index h) {
           sides.leaving.add(to, h);
           if (h < first_new_) return;
-          least = std::min(least, h);
+          const std::uint32_t place = zone_.order_.place_of_triangle((h - first_new_) >> 2);
+          first = place < first_place ? h : first;
+          first_place = std::min(first_place, place);
           ++corners;
         },
         [&](Index from, Index h) { sides.arriving.add(from, h); });
-    zone_.vertices[v].half_edge = std::min(zone_.vertices[v].half_edge, least);
+    if (zone_.vertices[v].half_edge == kNone) zone_.vertices[v].half_edge = first;
     if (!zone_.corner_array_.empty()) zone_.corner_array_[v] += corners;
     const auto see_bad = [&](Index h) { bad.push_back(h); };
     if (sides.most() > Sides::kRoom) {
@@ -124,21 +128,21 @@ class Zone::Linker {
     } else {
       link_leaving<Sides::kRoom>(zone_, sides, see_bad);
     }
-    return n >= piece_.inherited && gather(sides, v, star);
+    return n >= inherited_ && gather(sides, v, star);
   }
 
  private:
   // A triangle is listed at its corners, with the number of the half-edge that leaves there, counted from the first new
   // one. Known sides follow, each at both of its ends.
   void list_sides(const Executor& executor) {
-    const VertexOwners owners(executor, {piece_.triangles.data(), piece_.triangles.size()});
+    const VertexOwners owners(executor, triangles_);
     owners.for_parts(zone_.first_side_.size(), [&](const VertexOwners::Part& part) {
       std::fill_n(zone_.first_side_.data() + part.first, part.size, kNone);
       const auto list = [&](Index n, Index side) {
         if (part.has(n)) zone_.next_side_[side] = std::exchange(zone_.first_side_[n], side);
       };
       part.each_triangle([&](std::size_t t) {
-        for (Index c = 0; c < 3; ++c) list(piece_.triangles[t][c], half_edge(static_cast<Index>(t), c));
+        for (Index c = 0; c < 3; ++c) list(triangles_[t][c], half_edge(static_cast<Index>(t), c));
       });
       for (std::size_t i = 0; i < known_.size(); ++i) {
         const Index side = first_known_ + 2 * static_cast<Index>(i);
@@ -153,7 +157,7 @@ class Zone::Linker {
   void each_side(Index n, const Leave& leave, const Arrive& arrive) const {
     for (Index side = zone_.first_side_[n]; side != kNone; side = zone_.next_side_[side]) {
       if (side < first_known_) {
-        const auto& corners = piece_.triangles[side >> 2];
+        const auto& corners = triangles_[side >> 2];
         leave(corners[next(side) & 3], first_new_ + side);
         arrive(corners[previous(side) & 3], first_new_ + previous(side));
       } else {
@@ -188,7 +192,7 @@ class Zone::Linker {
     do {
       if (side == SidesAt::kNoSide || faces == leaving.count) return false;
       star.out[faces] = leaving.half_edge[side];
-      star.neighbour[faces++] = zone_.number_in_zone(piece_, leaving.other_end[side]);
+      star.neighbour[faces++] = zone_.index_of(leaving.other_end[side]);
       side = sides.after[side];
     } while (side != first);
     star.vertex = v;
@@ -197,7 +201,8 @@ class Zone::Linker {
   }
 
   Zone& zone_;
-  const SurfacePiece& piece_;
+  const Index inherited_;
+  const std::span<const std::array<std::uint32_t, 3>> triangles_;  // sorted
   const Index first_new_;
   const Index first_known_;
   const std::vector<std::array<Index, 3>> known_;  // their ends' numbers in the piece, and half-edge
@@ -214,7 +219,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const
       executor, static_cast<std::int64_t>(first_side_.size()), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto n = static_cast<Index>(begin); n < static_cast<Index>(end); ++n) {
-          const Index v = number_in_zone(piece, n);
+          const Index v = index_of(n);
           Star star;
           if (!linker.link(n, v, list, star) || on_front[v] != 0 || options.normals_count) continue;
           states[v] = VertexState::kComplete;

@@ -53,7 +53,7 @@ struct MemoryModel {
   }
 
   // On the way from extraction to the zone, or straight to the file.
-  double per_new() const { return (simplifies ? 65 : 115) + static_cast<double>(extras.extracted); }
+  double per_new() const { return (simplifies ? 85 : 115) + static_cast<double>(extras.extracted); }
 
   // In the zone, with half a vertex each.
   double per_held() const {

@@ -136,18 +136,35 @@ TEST(CliReport, AgreesWithTheFileInEveryFormat) {
 TEST(CliMesh, TheResultDoesNotDependOnHowItIsMade) {
   const files::Folder folder;
   const std::vector<std::string> common{"mesh", "generate:torus:40x40x40:uint8", "-o", "a.ply", "--iso", "127.5"};
-  succeed(folder, common);
-  const std::string expected = files::read_bytes(folder / "a.ply");
+  const auto digest = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = common;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    succeed(folder, arguments);
+    return Json::parse(succeed(folder, {"check", "a.ply", "--json"}).out)["digest"];
+  };
+  const Json expected = digest({});
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--slab", "1", "--threads", "1"},
                                                {"--slab", "whole", "--schedule", "rounds"},
                                                {"--slab", "3", "--schedule", "local"},
                                                {"--slab", "7", "--schedule", "queue"},
                                                {"--slab", "999999999999", "--threads", "3", "--device", "cpu"}}) {
+    EXPECT_EQ(digest(more), expected) << more[1] << " " << more[3];
+  }
+}
+
+TEST(CliMesh, TheFileDoesNotDependOnThreadsAndSchedule) {
+  const files::Folder folder;
+  const std::vector<std::string> common{
+      "mesh", "generate:torus:60x60x40:uint8", "-o", "a.ply", "--iso", "127.5", "--slab", "5"};
+  const auto file = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = common;
     arguments.insert(arguments.end(), more.begin(), more.end());
     succeed(folder, arguments);
-    EXPECT_TRUE(files::read_bytes(folder / "a.ply") == expected) << more[1] << " " << more[3];
-  }
+    return files::read_bytes(folder / "a.ply");
+  };
+  const std::string expected = file({"--threads", "1", "--schedule", "queue"});
+  EXPECT_TRUE(file({"--threads", "4", "--schedule", "local"}) == expected);
+  EXPECT_TRUE(file({"--threads", "2", "--schedule", "rounds"}) == expected);
 }
 
 TEST(CliMesh, AFileAndItsFormulaAgree) {

@@ -1,7 +1,9 @@
-// A device gives the host's mesh: vertices, triangles, their order and every count.
+// A device gives the host's mesh: triangles, normals and every count. Its order is its own.
 //
 // The passes that a device runs are run on processors here, always; on a CUDA device where there is one.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "device/bulk_engine.hpp"
 #include "device/cuda_engine.hpp"
@@ -48,9 +50,27 @@ SurfaceRun run_on_processors(const SurfaceCase& surface, std::int64_t slab) {
       *source, false, slab);
 }
 
+using Corner = std::array<Point, 2>;  // position, and normal where there are any
+
+// From the least corner on, in an order that does not depend on that in the mesh.
+std::vector<std::array<Corner, 3>> sorted_triangles(const TriangleMesh& mesh) {
+  std::vector<std::array<Corner, 3>> sorted;
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Corner, 3> corners{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c][0] = mesh.vertices[triangle[c]];
+      if (!mesh.normals.empty()) corners[c][1] = mesh.normals[triangle[c]];
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    sorted.push_back(corners);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
 void expect_same(const SurfaceRun& device, const SurfaceRun& host) {
-  EXPECT_EQ(device.mesh.vertices, host.mesh.vertices);
-  EXPECT_EQ(device.mesh.triangles, host.mesh.triangles);
+  EXPECT_EQ(device.mesh.vertices.size(), host.mesh.vertices.size());
+  EXPECT_TRUE(sorted_triangles(device.mesh) == sorted_triangles(host.mesh));
   EXPECT_EQ(digest_text(device.report.digest), digest_text(host.report.digest));
   EXPECT_EQ(device.report.triangles_extracted, host.report.triangles_extracted);
   EXPECT_EQ(device.report.vertices_extracted, host.report.vertices_extracted);
@@ -96,7 +116,7 @@ class Device : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
   }
 };
 
-TEST_P(Device, GivesTheHostsMeshInTheHostsOrder) { expect_host_results(run_on_processors); }
+TEST_P(Device, GivesTheHostsMesh) { expect_host_results(run_on_processors); }
 
 TEST_P(Device, GivesTheHostsMeshByCuda) {
   try {
@@ -147,9 +167,9 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
     const SurfaceRun run =
         sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, true, 4);
     EXPECT_GT(expected.mesh.triangles.size(), 100u);
-    EXPECT_EQ(run.mesh.vertices, expected.mesh.vertices);
-    EXPECT_EQ(run.mesh.normals, expected.mesh.normals);
-    EXPECT_EQ(run.mesh.triangles, expected.mesh.triangles);
+    EXPECT_EQ(run.mesh.vertices.size(), expected.mesh.vertices.size());
+    EXPECT_EQ(run.mesh.normals.size(), run.mesh.vertices.size());
+    EXPECT_TRUE(sorted_triangles(run.mesh) == sorted_triangles(expected.mesh));
   }
 }
 

@@ -171,6 +171,22 @@ TEST(Golden, DigestsOfTheRules) {
   }
 }
 
+// Several columns wide, which the zone holds one after the other, and a slab each its own.
+TEST(Golden, DigestOfAWideVolume) {
+  SurfaceCase surface;
+  surface.volume.kind = "noise";
+  surface.volume.dims = {100, 60, 24};
+  surface.volume.type = SampleType::kUint8;
+  surface.volume.seed = 3;
+  surface.closed = true;
+  surface.error = 0.3;
+  for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{7}, kWholeVolume}) {
+    const SurfaceRun run = sweep(surface, Schedule::kAutomatic, 3, slab);
+    EXPECT_EQ(run.report.triangles, 56050u) << slab;
+    EXPECT_EQ(digest_text(run.report.digest), "dc36dfebc427ba45") << slab;
+  }
+}
+
 // Where the walk around a vertex starts is chance: no sum may depend on it.
 void turn_starts(Zone& zone, std::mt19937& random) {
   for (Index v = 0; v < zone.vertices.size(); ++v) {

@@ -1,0 +1,48 @@
+// The order in which the zone holds a piece. Sources make pieces layer by layer, row by row: passes and walks around
+// vertices would find neighbours as far apart as a layer is large.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "extract/surface_piece.hpp"
+#include "parallel/bucket.hpp"
+#include "parallel/parallel.hpp"
+#include "simplify/zone_view.hpp"
+
+namespace isoweave {
+
+// Groups the new vertices and the triangles of a piece by columns; within each they keep their order.
+class PieceOrder {
+ public:
+  // front: the inherited vertices, in the zone. They keep their numbers.
+  void sort(const SurfacePiece& piece, const ZoneView& zone, std::span<const Index> front, const Executor& executor);
+
+  // Sorted, with the numbers that vertices have now.
+  std::span<const std::array<std::uint32_t, 3>> triangles() const { return {triangles_.data(), triangles_.size()}; }
+
+  // Of the n-th triangle, and of the n-th new vertex: its place in the piece.
+  std::uint32_t place_of_triangle(std::size_t n) const { return by_column_.items[n]; }
+  std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }
+
+  // Of a vertex that the piece gives a number.
+  std::uint32_t number(std::uint32_t in_piece) const { return numbers_[in_piece]; }
+
+  std::uint64_t bytes() const;
+
+ private:
+  void find_columns(const SurfacePiece& piece, const ZoneView& zone, std::span<const Index> front,
+                    const Executor& executor);
+  void number_vertices(const SurfacePiece& piece, const Executor& executor);
+  void move_triangles(const SurfacePiece& piece, const Executor& executor);
+
+  std::vector<std::uint16_t> columns_;  // of all vertices
+  Buckets new_vertices_;
+  Buckets by_column_;  // triangles
+  std::vector<std::uint32_t> numbers_;
+  Array<std::array<std::uint32_t, 3>> triangles_;
+};
+
+}  // namespace isoweave
