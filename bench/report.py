@@ -58,11 +58,12 @@ def plots(results, folder):
     return {block: [(name, text) for name, text in found if name] for block, found in made.items()}
 
 
-def with_one_simplified(results):
-    """What people read through: the simplification of the skull, which everybody can get, or of the smallest volume."""
+def with_few_simplified(results):
+    """What people read through: the simplification of the skull, which everybody can get, and of the largest surface."""
     found = suite(results, "simplify")
-    shown = next((result for result in found if volume_name(result) == "skull"), found[0] if found else None)
-    return [result for result in results if result not in found or result == shown]
+    shown = [result for result in found if volume_name(result) == "skull"] or found[:1]
+    largest = max(found, key=lambda result: result["full"]["triangles"], default=None)
+    return [result for result in results if result not in found or result in shown or result == largest]
 
 
 def blocks(results, folder, link, detailed):
@@ -89,7 +90,7 @@ def write_report(results, out):
 
 
 def rewrite_docs(results, path):
-    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_one_simplified(results))
+    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_few_simplified(results))
     for png in path.with_suffix("").glob("*.png"):
         png.unlink()
     text = path.read_text()
