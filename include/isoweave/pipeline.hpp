@@ -90,8 +90,10 @@ struct RunControl {
   std::uint64_t memory = 0;
   CheckpointOptions checkpoint{};  // mesh_volume only. The sink must be able to give marks
   const Checkpoint* resume =
-      nullptr;          // go on from there, with the same volume and options and a sink opened at its mark
-  bool measure = true;  // digest, components and range of the samples; without it these stay empty in the report
+      nullptr;  // go on from there, with the same volume and options and a sink opened at its mark
+  // Digest, components, non-manifold edges and vertices, and range of the samples: without it these stay empty in the
+  // report.
+  bool measure = true;
 };
 
 struct MeshOptions {

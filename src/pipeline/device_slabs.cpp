@@ -4,6 +4,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "pipeline/sweep.hpp"
+
 namespace isoweave {
 
 std::int64_t DeviceSlabs::extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
@@ -60,8 +62,7 @@ void DeviceSlabs::finish(MeshReport& report) const {
   report.rekeyed = counts.rekeyed;
   report.specks = counts.specks;
   report.rounds = engine_->rounds();
-  report.nonmanifold_edges = engine_->defects().nonmanifold_edges;
-  report.nonmanifold_vertices = engine_->defects().nonmanifold_vertices;
+  if (output_.measures()) report_defects(engine_->defects(), report);
 }
 
 void DeviceSlabs::exchange(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }

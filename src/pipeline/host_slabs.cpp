@@ -89,7 +89,8 @@ HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, c
       level_errors(options.levels, length_in(volume, options.error), voxel, options.triangles);
   HostSlabs::Options host;
   host.extract = {rule, options.normals != Normals::kAbsent};
-  host.simplify = {zone_options(volume, options), control.schedule, level_costs(levels, voxel * voxel)};
+  host.simplify = {zone_options(volume, options), control.schedule, level_costs(levels, voxel * voxel),
+                   control.measure};
   host.simplifies = simplifies(volume, options);
   host.triangles = options.triangles;
   host.voxel = voxel;

@@ -35,6 +35,7 @@ SimplifierOptions simplifier_options(const SimplifyOptions& options, const RunCo
                    options.quality};
   simplify.schedule = control.schedule;
   simplify.finer = level_costs(levels, a0);
+  simplify.inspect = control.measure;
   return simplify;
 }
 

@@ -65,6 +65,8 @@ class SurfaceOutput {
     return measure_ ? components_.add(size.vertices) : 0;
   }
 
+  bool measures() const { return measure_; }
+
   // Of the vertices that were added last, until others are.
   std::span<const Point> added_points() const { return room_.vertices; }
 

@@ -103,6 +103,21 @@ class LocalMinima::Worker {
     spare_ = &spare;
   }
 
+  // Gives the edges of new triangles their keys, turns to the vertices that have all of them now, and serves what
+  // follows.
+  void settle(TriangleRange range, const std::atomic<bool>* stop) {
+    zone_.settle_edges(range, unkeyed_);
+    for (Index t = range.begin; t < range.end; ++t) {
+      for (const HalfEdge& side : zone_.triangles[t].sides) {
+        if (zone_.countdown.count_off(side.vertex, t)) begin_turns(side.vertex);
+      }
+    }
+    serve_all(stop);
+  }
+
+  // Edges that got no keys.
+  std::vector<Index>& unkeyed() { return unkeyed_; }
+
   // Serves the pair that v belongs to and everything that follows from it.
   void serve(Index v, const std::atomic<bool>* stop) {
     todo_.push_back(v);
@@ -287,6 +302,15 @@ class LocalMinima::Worker {
     }
   }
 
+  // The first turn of a vertex, unless it is incomplete. Others may hold it, to wait for it.
+  void begin_turns(Index v) {
+    if (zone_.states[v] == VertexState::kIncomplete) return;
+    while (!hold(v)) std::this_thread::yield();
+    give_turn(zone_, v);
+    follow(v);
+    release();
+  }
+
   void end_turns(Index gone) {
     std::atomic_ref(zone_.turn_keys[gone]).store(kNoTurn, std::memory_order_relaxed);
     zone_.turns[gone].edge = kNone;
@@ -312,6 +336,7 @@ class LocalMinima::Worker {
   std::vector<Index> todo_;   // a stack: what was woken last lies nearest
   std::vector<Index> later_;  // met another worker
   std::vector<Index> held_;
+  std::vector<Index> unkeyed_;
 };
 
 LocalMinima::LocalMinima(Zone& zone, const Executor& executor) : zone_(zone), executor_(executor) {
@@ -329,7 +354,8 @@ DecisionCounts LocalMinima::counts() const {
 }
 
 void LocalMinima::run(const std::atomic<bool>* stop) {
-  give_turns(zone_, executor_);
+  zone_.settle_waiting_edges(executor_);
+  give_turns_to_old();
   wake_waiters_of_settled();
   group_by_place();
   const bool alone = workers_.size() == 1;
@@ -345,21 +371,42 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
     for (std::size_t m = 0; m < stretches.size(); ++m) {
       Stretch& stretch = stretches[(number + m) % stretches.size()];
       for (std::size_t place = stretch.next++; place < stretch.end; place = stretch.next++) {
+        worker.settle(zone_.unsettled(place), stop);
         serve_place(place, worker, stop);
       }
     }
     worker.help(stop);
   });
+  std::vector<Index> unkeyed;
+  for (const auto& worker : workers_) {
+    unkeyed.insert(unkeyed.end(), worker->unkeyed().begin(), worker->unkeyed().end());
+    worker->unkeyed().clear();
+  }
+  zone_.set_aside(unkeyed);
   ++rounds_;
+}
+
+// Of those settled that were there before the last piece. Those that are at new triangles get theirs with these.
+void LocalMinima::give_turns_to_old() {
+  const std::span<const Index> old = zone_.settled.old;
+  executor_.for_each(static_cast<std::int64_t>(old.size()), 4096, [&](std::int64_t n) {
+    const Index v = old[static_cast<std::size_t>(n)];
+    if (zone_.countdown.waits(v)) {
+      zone_.turn_keys[v] = kUnknownTurn;
+    } else {
+      give_turn(zone_, v);
+    }
+  });
 }
 
 // Every worker begins with a stretch of its own, so that they seldom meet, and share few lines of memory.
 void LocalMinima::share_places(std::span<Stretch> stretches) const {
-  const std::size_t vertices = places_.items.size();
+  const auto work_before = [&](std::size_t place) { return zone_.unsettled(place).begin + places_.start[place]; };
+  const std::size_t all = zone_.unsettled(kPlaces - 1).end - zone_.unsettled(0).begin + places_.items.size();
   std::size_t place = 0;
   for (std::size_t n = 0; n < stretches.size(); ++n) {
     stretches[n].next = place;
-    while (place < kPlaces && places_.start[place] * stretches.size() < vertices * (n + 1)) ++place;
+    while (place < kPlaces && (work_before(place) - work_before(0)) * stretches.size() < all * (n + 1)) ++place;
     stretches[n].end = place;
   }
 }
@@ -396,26 +443,24 @@ void LocalMinima::wake_waiters_of_settled() {
 }
 
 Index LocalMinima::awake(std::size_t n) const {
-  return n < zone_.settled.size() ? zone_.settled[n] : woken_[n - zone_.settled.size()];
+  const std::vector<Index>& old = zone_.settled.old;
+  return n < old.size() ? old[n] : woken_[n - old.size()];
 }
 
-// v, which has a turn, and the other end of its least edge are a pair, and v is the one of them to serve, or both are.
-bool LocalMinima::stands_for_pair(Index v) const {
-  const Index other = other_end(zone_, zone_.turns[v].edge, v);
-  return same_turn(zone_, v, other) && (v < other || other < zone_.settled.first_new);
-}
+// v, which has a turn, and the other end of its least edge are a pair.
+bool LocalMinima::is_in_pair(Index v) const { return same_turn(zone_, v, other_end(zone_, zone_.turns[v].edge, v)); }
 
 // Groups vertices that have a turn by columns of the volume.
 void LocalMinima::group_by_place() {
   const Columns column(zone_.options.a0);
-  place_.resize(zone_.settled.size() + woken_.size());
+  place_.resize(zone_.settled.old.size() + woken_.size());
   triangle_.resize(place_.size());
   executor_.for_each(static_cast<std::int64_t>(place_.size()), 4096, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const Index v = awake(n);
     place_[n] = kNowhere;
     if (!has_turn(zone_, v)) return;
-    place_[n] = 2 * column(zone_.vertices[v].position) + (stands_for_pair(v) ? 1 : 0);
+    place_[n] = 2 * column(zone_.vertices[v].position) + (is_in_pair(v) ? 1 : 0);
     triangle_[n] = zone_.vertices[v].half_edge >> 2;
   });
   fill_buckets(

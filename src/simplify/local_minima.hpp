@@ -31,10 +31,11 @@ class LocalMinima final : public Driver {
   class Spare;
   struct Shift;
 
+  void give_turns_to_old();
   void wake_waiters_of_settled();
   void group_by_place();
   Index awake(std::size_t n) const;
-  bool stands_for_pair(Index v) const;
+  bool is_in_pair(Index v) const;
   void share_places(std::span<Stretch> stretches) const;
   void serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const;
 

@@ -23,6 +23,12 @@ class PieceOrder {
   // Sorted, with the numbers that vertices have now.
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return {triangles_.data(), triangles_.size()}; }
 
+  // The triangles of column c: from column_starts()[c] to column_starts()[c + 1].
+  std::span<const std::size_t> column_starts() const { return by_column_.start; }
+
+  // The same of the new vertices.
+  std::span<const std::size_t> vertex_column_starts() const { return new_vertices_.start; }
+
   // Of the n-th triangle, and of the n-th new vertex: its place in the piece.
   std::uint32_t place_of_triangle(std::size_t n) const { return by_column_.items[n]; }
   std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }

@@ -34,6 +34,7 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
       stop_(stop),
       schedule_(options.schedule == Schedule::kAutomatic ? Schedule::kLocal : options.schedule),
       finer_(options.finer),
+      inspects_(options.inspect),
       driver_(make_driver(schedule_, zone_, executor)),
       defects_(levels()) {}
 
@@ -58,7 +59,7 @@ CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
 
 std::vector<Index> Simplifier::final_triangles(std::size_t level) {
   const std::vector<Index> vertices = name_final_vertices(level);
-  std::vector<std::uint32_t> corners(zone_.vertices.size(), 0);
+  std::vector<std::uint32_t> corners(inspects_ ? zone_.vertices.size() : 0, 0);
   std::vector<Index> triangles;
   collect(
       executor_, zone_.triangle_count(), kBlock,
@@ -68,18 +69,18 @@ std::vector<Index> Simplifier::final_triangles(std::size_t level) {
           int undecided = 0;
           for (const HalfEdge& side : zone_.triangles[t].sides) {
             undecided += undecided_[side.vertex];
-            if (undecided_[side.vertex]) continue;
+            if (undecided_[side.vertex] || !inspects_) continue;
             std::atomic_ref(corners[side.vertex]).fetch_add(1, std::memory_order_relaxed);
           }
           if (undecided == 0 && zone_.triangles[t].levels == level) list.push_back(t);
         }
       },
       triangles);
-  defects_[level] += inspect(vertices, corners);
+  if (inspects_) defects_[level] += inspect(vertices, corners);
   return triangles;
 }
 
-// Vertices that have become final in a level; those of them whose star can be walked.
+// Vertices that have become final in a level; those of them that are inspected, as their star can be walked.
 std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
   const CostBits within = is_last(level) ? zone_.options.retire : finer_[level];
   undecided_.resize(zone_.vertices.size());
@@ -90,7 +91,7 @@ std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
           undecided_[v] = zone_.states[v] == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= within;
           if (undecided_[v]) continue;
-          if (make_final(v, level) && zone_.walkable(v)) list.push_back(v);
+          if (make_final(v, level) && inspects_ && zone_.walkable(v)) list.push_back(v);
         }
       },
       walkable);

@@ -18,6 +18,7 @@ struct SimplifierOptions {
   Schedule schedule = Schedule::kAutomatic;
   // Costs at which finer meshes are taken out, ascending, all below what retires an edge.
   std::vector<CostBits> finer{};
+  bool inspect = true;  // what becomes final, for defects
 };
 
 class Simplifier {
@@ -29,6 +30,7 @@ class Simplifier {
 
   void append(const SurfacePiece& piece) {
     zone_.append(piece, executor_);
+    if (schedule_ != Schedule::kLocal) zone_.settle_edges(executor_);  // which does that while it decides
     appended_ += piece.triangles.size();
   }
 
@@ -43,8 +45,9 @@ class Simplifier {
   // changes what is final in it.
   void decide(std::size_t level);
 
-  // For a complete surface: decides in the order of the keys until no more than `triangles` of the surface are left, or
-  // no edge is. Returns the cost of the last edge decided, kUnknownCost if there was none. Throws Interrupted.
+  // For a complete surface, after decide(): decides in the order of the keys until no more than `triangles` of the
+  // surface are left, or no edge is. Returns the cost of the last edge decided, kUnknownCost if there was none. Throws
+  // Interrupted.
   CostBits decide_in_order(std::uint64_t triangles);
 
   // Triangles of a level all of whose vertices are final there and that have not been named before, in memory order.
@@ -96,6 +99,7 @@ class Simplifier {
   const std::atomic<bool>* stop_;
   Schedule schedule_;
   std::vector<CostBits> finer_;
+  bool inspects_;
   std::unique_ptr<Driver> driver_;
   std::vector<std::uint8_t> undecided_;  // per vertex
   std::uint64_t appended_ = 0;           // triangles

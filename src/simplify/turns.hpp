@@ -70,9 +70,9 @@ ISOWEAVE_HD inline void renew_turn(const ZoneView& zone, const Star& star) {
 // The turn of a vertex in whatever state it is.
 ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
   if (zone.states[v] == VertexState::kIncomplete || zone.states[v] == VertexState::kDeferred) {
-    zone.turn_keys[v] = kUnknownTurn;
+    publish(zone.turn_keys[v], kUnknownTurn);
   } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
-    zone.turn_keys[v] = kNoTurn;
+    publish(zone.turn_keys[v], kNoTurn);
   } else {
     renew_turn(zone, v);
   }

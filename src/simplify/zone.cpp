@@ -54,6 +54,8 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   }
   link(piece, first_triangle, on_front, executor);
   if (extracted_surface_) know_more(piece, first_triangle, executor);
+  first_unsettled_ = first_triangle;
+  column_starts_.assign(order_.column_starts().begin(), order_.column_starts().end());
   if (piece.incomplete.empty()) {  // nothing is left to link to
     order_ = {};
     first_side_ = {};
@@ -61,7 +63,6 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   }
   front_ = std::move(front);
   settle_vertices(on_front, executor);
-  settle_edges(first_triangle, executor);
 }
 
 // To be called when an array has changed its size.
@@ -151,19 +152,16 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
     if (!piece.manifold) corner_array_[v] = 0;
     for (Array<LevelVertex>& level : levels) level[v] = LevelVertex();
   });
+  countdown.begin(first, end);
+  for (const Index v : front_) countdown.expect_nothing(v);
 }
 
+// Their half-edges are written where their vertices are linked.
 void Zone::add_triangles(const Executor& executor) {
   const Index first = triangle_count();
-  const auto sorted = order_.triangles();
-  triangle_array_.resize(first + sorted.size());
+  triangle_array_.resize(first + order_.triangles().size());
   show_arrays();
   touch(std::span(triangle_array_.begin() + first, triangle_array_.end()), executor);
-  executor.for_each(static_cast<std::int64_t>(sorted.size()), kBlock, [&](std::int64_t n) {
-    const Index t = first + static_cast<Index>(n);
-    triangles[t] = Triangle();
-    for (Index c = 0; c < 3; ++c) triangles[t].sides[c].vertex = index_of(sorted[static_cast<std::size_t>(n)][c]);
-  });
 }
 
 // Shows the new triangles to the extracted surface, which forgets what lies too far below all that is held.
@@ -192,7 +190,10 @@ void Zone::settle_vertices(std::span<const std::uint8_t> on_front, const Executo
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] != VertexState::kIncomplete || on_front[v] != 0) return;
     states[v] = VertexState::kComplete;
-    if (!exists(vertices[v].half_edge)) return;
+    if (!exists(vertices[v].half_edge)) {
+      turn_keys[v] = kNoTurn;
+      return;
+    }
     Star star;
     star.gather(*this, v);
     if (!corner_array_.empty() && !is_one_fan(star)) {
@@ -229,8 +230,20 @@ struct Zone::EdgeBatch {
   std::size_t count = 0;
 };
 
-// Keys of the edges whose two ends are complete now: of those that waited, and of those of new triangles.
-void Zone::settle_edges(Index first_triangle, const Executor& executor) {
+void Zone::settle_edges(const Executor& executor) {
+  settle_waiting_edges(executor);
+  std::vector<Index> unkeyed;
+  collect(
+      executor, triangle_count() - first_unsettled_, kBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        settle_edges({first_unsettled_ + static_cast<Index>(begin), first_unsettled_ + static_cast<Index>(end)}, list);
+      },
+      unkeyed);
+  set_aside(unkeyed);
+  countdown.expect_nothing();
+}
+
+void Zone::settle_waiting_edges(const Executor& executor) {
   std::vector<Index> waiting;
   collect(
       executor, static_cast<std::int64_t>(unkeyed_edges_.size()), kBlock,
@@ -242,28 +255,38 @@ void Zone::settle_edges(Index first_triangle, const Executor& executor) {
         give_keys(batch);
       },
       waiting);
-  std::vector<Index> unkeyed;
-  collect(
-      executor, triangle_count() - first_triangle, kBlock,
-      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
-        EdgeBatch batch;
-        for (Index t = first_triangle + static_cast<Index>(begin); t < first_triangle + static_cast<Index>(end); ++t) {
-          // Which sides stand for their edges cannot be predicted: all are written, and passed over if they do not.
-          Index edges[3];
-          std::size_t count = 0;
-          for (Index c = 0; c < 3; ++c) {
-            edges[count] = half_edge(t, c);
-            count += static_cast<std::size_t>(represents_edge(edges[count]));
-          }
-          for (std::size_t n = 0; n < count; ++n) {
-            if (!settle_edge(edges[n], batch)) list.push_back(edges[n]);
-          }
-        }
-        give_keys(batch);
-      },
-      unkeyed);
   unkeyed_edges_ = std::move(waiting);
+}
+
+TriangleRange Zone::unsettled(std::size_t column) const {
+  if (first_unsettled_ == triangle_count()) return {};
+  return {first_unsettled_ + static_cast<Index>(column_starts_[column]),
+          first_unsettled_ + static_cast<Index>(column_starts_[column + 1])};
+}
+
+void Zone::settle_edges(TriangleRange range, std::vector<Index>& unkeyed) {
+  EdgeBatch batch;
+  for (Index t = range.begin; t < range.end; ++t) {
+    triangles[t].levels = 0;
+    // Which sides stand for their edges cannot be predicted: all are written, and passed over if they do not.
+    Index edges[3];
+    std::size_t count = 0;
+    for (Index c = 0; c < 3; ++c) {
+      edges[count] = half_edge(t, c);
+      count += static_cast<std::size_t>(represents_edge(edges[count]));
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      if (!settle_edge(edges[n], batch)) unkeyed.push_back(edges[n]);
+    }
+  }
+  give_keys(batch);
+}
+
+void Zone::set_aside(std::span<const Index> unkeyed) {
+  const auto end = static_cast<std::ptrdiff_t>(unkeyed_edges_.size());
   unkeyed_edges_.insert(unkeyed_edges_.end(), unkeyed.begin(), unkeyed.end());
+  std::sort(unkeyed_edges_.begin() + end, unkeyed_edges_.end());
+  first_unsettled_ = triangle_count();
 }
 
 // False when an end is incomplete. Else the edge gets its tie, and a key now or with the rest of the batch.
@@ -333,6 +356,7 @@ void Zone::compact(const Executor& executor) {
   show_arrays();
   for (Index& v : front_) move_vertex(v);
   for (Index& h : unkeyed_edges_) move_half_edge(h);
+  first_unsettled_ = triangle_count();
   settled.clear();
 }
 
@@ -343,7 +367,7 @@ std::uint64_t Zone::bytes() const {
          vertex_array_.capacity() * (sizeof(Vertex) + sizeof(VertexState)) +
          turn_array_.capacity() * (sizeof(Turn) + sizeof(Key)) + normal_array_.capacity() * sizeof(Point) +
          normal_quadric_array_.capacity() * sizeof(NormalQuadric) + value_array_.capacity() * sizeof(float) +
-         order_.bytes() + triangle_array_.capacity() * sizeof(Triangle) +
+         order_.bytes() + countdown.bytes() + triangle_array_.capacity() * sizeof(Triangle) +
          corner_array_.capacity() * sizeof(std::uint32_t) +
          (front_.capacity() + unkeyed_edges_.capacity() + settled.old.capacity()) * sizeof(Index);
 }

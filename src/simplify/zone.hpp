@@ -11,6 +11,7 @@
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/extracted_surface.hpp"
+#include "simplify/key_countdown.hpp"
 #include "simplify/piece_order.hpp"
 #include "simplify/star.hpp"
 #include "simplify/zone_view.hpp"
@@ -40,6 +41,11 @@ struct LevelVertex {
   bool final = false;                  // no edge has a key within the level's error
 };
 
+struct TriangleRange {
+  Index begin = 0;
+  Index end = 0;
+};
+
 // Owns what its view shows.
 class Zone : public ZoneView {
  public:
@@ -62,9 +68,22 @@ class Zone : public ZoneView {
   // Nothing more is to be decided: all edges are retired.
   void retire_all() { options.retire = limit = kUnknownCost; }
 
-  // Takes a piece in: links it to the front, then gives quadrics to the vertices and keys to the edges that are
-  // complete now. Throws OverMemory when the zone would hold 2^30 triangles.
+  // Takes a piece in: links it to the front, and gives quadrics to the vertices that are complete now. Throws
+  // OverMemory when the zone would hold 2^30 triangles.
   void append(const SurfacePiece& piece, const Executor& executor);
+
+  // To be called after an append: gives keys to the edges both of whose ends are complete now.
+  void settle_edges(const Executor& executor);
+
+  // The same in parts, for who decides edges meanwhile. First those that have waited for a vertex; then the new
+  // triangles of each column, by several threads at once, where `unkeyed` gets the edges that wait from now on; in the
+  // end these, of all threads in any order. An edge whose key is missing has no end in a star that is decided, and
+  // neither has a vertex that the countdown has not named.
+  void settle_waiting_edges(const Executor& executor);
+  TriangleRange unsettled(std::size_t column) const;
+  void settle_edges(TriangleRange range, std::vector<Index>& unkeyed);
+  void set_aside(std::span<const Index> unkeyed);
+  KeyCountdown countdown;  // of the new triangles that have not been settled
 
   // Drops what is gone. Keeps the order of triangles.
   void compact(const Executor& executor);
@@ -86,7 +105,10 @@ class Zone : public ZoneView {
     archive.list(front_);
     archive.list(unkeyed_edges_);
     archive.value(limit);
-    if constexpr (Archive::kReads) forget_turns();
+    if constexpr (Archive::kReads) {
+      forget_turns();
+      first_unsettled_ = triangle_count();
+    }
   }
 
  private:
@@ -109,7 +131,6 @@ class Zone : public ZoneView {
   std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor);
   void initial_quadric(Star& star);
-  void settle_edges(Index first_triangle, const Executor& executor);
   bool settle_edge(Index h, EdgeBatch& batch);
   void give_keys(EdgeBatch& batch);
 
@@ -121,12 +142,14 @@ class Zone : public ZoneView {
   Array<Key> turn_key_array_;
   Array<Turn> turn_array_;
   Array<Triangle> triangle_array_;
-  Array<std::uint32_t> corner_array_;    // triangles that name each vertex, and whether an edge of it is bad; only
-                                         // where pieces are no manifold by promise
-  PieceOrder order_;                     // of the last piece
-  Array<Index> first_side_, next_side_;  // lists of sides that link() pairs, kept for the next piece
-  std::vector<Index> front_;             // incomplete vertices, in the order of the piece that named them
-  std::vector<Index> unkeyed_edges_;     // an end incomplete
+  Array<std::uint32_t> corner_array_;       // triangles that name each vertex, and whether an edge of it is bad; only
+                                            // where pieces are no manifold by promise
+  PieceOrder order_;                        // of the last piece
+  Array<Index> first_side_, next_side_;     // lists of sides that link() pairs, kept for the next piece
+  std::vector<Index> front_;                // incomplete vertices, in the order of the piece that named them
+  std::vector<Index> unkeyed_edges_;        // an end incomplete
+  Index first_unsettled_ = 0;               // triangle: its edges and those of the ones behind it have no keys
+  std::vector<std::size_t> column_starts_;  // of these triangles
   bool turns_forgotten_ = false;
   std::unique_ptr<ExtractedSurface> extracted_surface_;  // where distances are bounded
 };

@@ -98,18 +98,34 @@ class Zone::Linker {
     list_sides(executor);
   }
 
+  // The triangles of the column that the n-th vertex of the piece, a new one, is in; `column` is one that is not behind
+  // that, and is moved on.
+  TriangleRange column_of(Index n, std::size_t& column) const {
+    if (n < inherited_) return {};
+    while (zone_.order_.vertex_column_starts()[column + 1] <= n - inherited_) ++column;
+    const Index first = first_new_ >> 2;
+    const auto starts = zone_.order_.column_starts();
+    return {first + static_cast<Index>(starts[column]), first + static_cast<Index>(starts[column + 1])};
+  }
+
   // The n-th vertex of the piece, v in the zone: its sides get their twins, or are added to the bad ones. If its faces
   // are one closed fan, and all in this piece, that is its star.
-  bool link(Index n, Index v, std::vector<Index>& bad, Star& star) const {
+  bool link(Index n, Index v, TriangleRange own_column, std::vector<Index>& bad, Star& star) const {
     SidesAt sides;
     Index first = kNone;
     std::uint32_t first_place = kNone;
     std::uint32_t corners = 0;
+    Index least = kNone;
+    Index last = 0;
     each_side(
         n,
         [&](Index to, Index h) {
           sides.leaving.add(to, h);
           if (h < first_new_) return;
+          zone_.half(h) = {v};
+          zone_.triangles[h >> 2].tie_low[h & 3] = 0;
+          least = std::min(least, h >> 2);
+          last = std::max(last, h >> 2);
           const std::uint32_t place = zone_.order_.place_of_triangle((h - first_new_) >> 2);
           first = place < first_place ? h : first;
           first_place = std::min(first_place, place);
@@ -117,6 +133,11 @@ class Zone::Linker {
         },
         [&](Index from, Index h) { sides.arriving.add(from, h); });
     if (zone_.vertices[v].half_edge == kNone) zone_.vertices[v].half_edge = first;
+    if (n >= inherited_ && least >= own_column.begin && last < own_column.end) {
+      zone_.countdown.expect_last(v, last);
+    } else if (corners > 0) {
+      zone_.countdown.expect(v, corners);
+    }
     if (!zone_.corner_array_.empty()) zone_.corner_array_[v] += corners;
     const auto see_bad = [&](Index h) { bad.push_back(h); };
     if (sides.most() > Sides::kRoom) {
@@ -218,10 +239,12 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const
   collect(
       executor, static_cast<std::int64_t>(first_side_.size()), kBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        std::size_t column = 0;
         for (auto n = static_cast<Index>(begin); n < static_cast<Index>(end); ++n) {
           const Index v = index_of(n);
           Star star;
-          if (!linker.link(n, v, list, star) || on_front[v] != 0 || options.normals_count) continue;
+          if (!linker.link(n, v, linker.column_of(n, column), list, star) || on_front[v] != 0 || options.normals_count)
+            continue;
           states[v] = VertexState::kComplete;
           initial_quadric(star);
         }

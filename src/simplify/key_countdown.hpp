@@ -1,0 +1,54 @@
+// Tells when a vertex has the keys of all its edges, while the edges of new triangles get theirs column by column.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "parallel/atomics.hpp"
+#include "simplify/zone_view.hpp"
+
+namespace isoweave {
+
+// Of every vertex, what it waits for. If all its new triangles are in one column one thread passes over them in their
+// order, and the last one is enough to know; those of a few vertices between columns are counted.
+class KeyCountdown {
+ public:
+  // So many vertices there are now; those from the first one on are new, and wait for nothing.
+  void begin(std::size_t first, std::size_t end) {
+    awaited_.resize(first, kNothing);
+    awaited_.resize(end, kNothing);
+  }
+
+  void expect_nothing() { awaited_.assign(awaited_.size(), kNothing); }
+  void expect_nothing(Index v) { awaited_[v] = kNothing; }
+  void expect(Index v, std::uint32_t triangles) { awaited_[v] = kCounted | triangles; }
+  void expect_last(Index v, Index triangle) { awaited_[v] = triangle; }
+
+  bool waits(Index v) const { return load_relaxed(awaited_[v]) != kNothing; }
+
+  // Triangle t, which names v, is through. Tells whether v has all its keys now, of whichever threads.
+  bool count_off(Index v, Index t) {
+    const Index awaited = load_relaxed(awaited_[v]);
+    if (awaited == t) {
+      awaited_[v] = kNothing;
+      return true;
+    }
+    if (awaited < kCounted || awaited == kNothing) return false;
+    const std::atomic_ref<Index> count(awaited_[v]);
+    if (count.fetch_sub(1, std::memory_order_acq_rel) != (kCounted | 1)) return false;
+    awaited_[v] = kNothing;
+    return true;
+  }
+
+  std::uint64_t bytes() const { return awaited_.capacity() * sizeof(Index); }
+
+ private:
+  static constexpr Index kCounted = Index{1} << 31;  // beside a number of triangles; the zone holds fewer than 2^30
+  static constexpr Index kNothing = kNone;
+
+  std::vector<Index> awaited_;
+};
+
+}  // namespace isoweave
