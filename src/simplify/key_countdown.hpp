@@ -15,14 +15,10 @@ namespace isoweave {
 // order, and the last one is enough to know; those of a few vertices between columns are counted.
 class KeyCountdown {
  public:
-  // So many vertices there are now; those from the first one on are new, and wait for nothing.
-  void begin(std::size_t first, std::size_t end) {
-    awaited_.resize(first, kNothing);
-    awaited_.resize(end, kNothing);
-  }
+  // So many vertices there are now, and none waits for anything yet.
+  void begin(std::size_t vertices) { awaited_.resize(vertices, kNothing); }
 
   void expect_nothing() { awaited_.assign(awaited_.size(), kNothing); }
-  void expect_nothing(Index v) { awaited_[v] = kNothing; }
   void expect(Index v, std::uint32_t triangles) { awaited_[v] = kCounted | triangles; }
   void expect_last(Index v, Index triangle) { awaited_[v] = triangle; }
 

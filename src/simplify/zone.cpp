@@ -152,8 +152,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
     if (!piece.manifold) corner_array_[v] = 0;
     for (Array<LevelVertex>& level : levels) level[v] = LevelVertex();
   });
-  countdown.begin(first, end);
-  for (const Index v : front_) countdown.expect_nothing(v);
+  countdown.begin(end);
 }
 
 // Their half-edges are written where their vertices are linked.
