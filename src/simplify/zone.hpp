@@ -60,6 +60,7 @@ class Zone : public ZoneView {
   SettledVertices settled;                 // with the last piece
   std::uint64_t locked = 0;                // vertices so far, those that are gone included
   std::vector<Array<LevelVertex>> levels;  // before the last one; each parallel to vertices
+  KeyCountdown countdown;                  // of the edges of new triangles
 
   // Edges with a higher cost wait: what is decided is what a run with that error would decide. All vertices count as
   // settled afterwards. At most what retires an edge; lowered, it leaves what has been decided as it is.
@@ -77,13 +78,12 @@ class Zone : public ZoneView {
 
   // The same in parts, for who decides edges meanwhile. First those that have waited for a vertex; then the new
   // triangles of each column, by several threads at once, where `unkeyed` gets the edges that wait from now on; in the
-  // end these, of all threads in any order. An edge whose key is missing has no end in a star that is decided, and
-  // neither has a vertex that the countdown has not named.
+  // end these, of all threads in any order. Meanwhile an edge may be decided once the countdown has named both its ends
+  // and all their neighbours.
   void settle_waiting_edges(const Executor& executor);
   TriangleRange unsettled(std::size_t column) const;
   void settle_edges(TriangleRange range, std::vector<Index>& unkeyed);
   void set_aside(std::span<const Index> unkeyed);
-  KeyCountdown countdown;  // of the new triangles that have not been settled
 
   // Drops what is gone. Keeps the order of triangles.
   void compact(const Executor& executor);
