@@ -173,10 +173,10 @@ TEST(KeyCountdown, NamesEveryVertexOnceWhenItHasItsKeys) {
   for (const bool closed : {true, false}) {
     const SurfaceCase surface{.volume = {.kind = "noise", .dims = {90, 75, 14}}, .closed = closed};
     const auto source = generate_volume(surface.volume);
-    MarchingCubes extractor(source->info(), {surface.rule(), false}, Executor(1));
+    ZonePair zones(surface);
+    MarchingCubes extractor(source->info(), {surface.rule(), false}, zones.executor);
     SliceWindow window(*source);
     SurfacePiece piece;
-    ZonePair zones(surface);
     for (std::uint32_t seed = 0; extractor.layers_left() > 0; ++seed) {
       const std::int64_t layers = std::min<std::int64_t>(4, extractor.layers_left());
       const auto [first, end] = extractor.slices_for(layers);
