@@ -17,6 +17,8 @@ class KernelsInLanes {
  private:
   using Real = Lanes<N>;
   using Vec = BasicVec3<Real>;
+  using Integers [[gnu::vector_size(64)]] = std::int32_t;
+  using IntegersInMemory [[gnu::vector_size(64), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
 
   // Position and quadric of N vertices.
   struct Ends {
@@ -135,15 +137,14 @@ class KernelsInLanes {
   }
 
   static int count_common(std::span<const Index> a, const Index* b, std::size_t count) {
-    constexpr std::size_t kWidth = 16;
-    std::int32_t equal[kWidth] = {};
+    constexpr std::size_t kWidth = sizeof(Integers) / sizeof(Index);
+    Integers equal{};
     for (std::size_t first = 0; first < count; first += kWidth) {
-      for (const Index x : a) {
-        for (std::size_t n = 0; n < kWidth; ++n) equal[n] += b[first + n] == x;
-      }
+      const Integers numbers = *reinterpret_cast<const IntegersInMemory*>(b + first);
+      for (const Index x : a) equal -= numbers == static_cast<std::int32_t>(x);
     }
     std::int32_t common = 0;
-    for (const std::int32_t n : equal) common += n;
+    for (std::size_t n = 0; n < kWidth; ++n) common += equal[n];
     return common;
   }
 };

@@ -48,19 +48,29 @@ void MeshInput::fail(const std::string& what) const {
   throw BadInput(message);
 }
 
+// Adds what comes next to what is left in the buffer.
 bool MeshInput::refill() {
-  if (position_ == size_) return false;
-  const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size(), remaining()));
+  const std::size_t left = filled_ - next_;
+  const std::uint64_t from = position_ + left;
+  if (from == size_) return false;
+  std::memmove(buffer_.data(), buffer_.data() + next_, left);
+  next_ = 0;
+  filled_ = left;
+  const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size() - left, size_ - from));
   ssize_t got = 0;
   do {
-    got = ::pread(fd_, buffer_.data(), wanted, static_cast<off_t>(position_));
+    got = ::pread(fd_, buffer_.data() + left, wanted, static_cast<off_t>(from));
   } while (got < 0 && errno == EINTR);
   if (got < 0) fail("cannot read: " + std::generic_category().message(errno));
-  if (got == 0)
-    fail("ends at byte " + std::to_string(position_) + ", it had " + std::to_string(size_) + " when opened");
-  next_ = 0;
-  filled_ = static_cast<std::size_t>(got);
+  if (got == 0) fail("ends at byte " + std::to_string(from) + ", it had " + std::to_string(size_) + " when opened");
+  filled_ += static_cast<std::size_t>(got);
   return true;
+}
+
+std::size_t MeshInput::buffered(std::size_t wanted) {
+  while (filled_ - next_ < wanted && wanted <= buffer_.size() && refill()) {
+  }
+  return filled_ - next_;
 }
 
 void MeshInput::read(std::span<std::byte> out) {

@@ -1,6 +1,7 @@
 // What the mesh readers share: a file read once from front to back through a bounded buffer, and numbers from text.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -39,6 +40,23 @@ class MeshInput {
   void read(std::span<std::byte> out);
   void skip(std::uint64_t bytes);
 
+  // Records of `bytes` bytes each, at most `most` of them: take(const std::byte*) sees one after the other until it
+  // answers false. That one, and what the file ends in before it is whole, has not been read then. Tells how many have.
+  template <class Take>
+  std::uint64_t read_records(std::uint64_t most, std::size_t bytes, const Take& take) {
+    std::uint64_t taken = 0;
+    while (taken < most && buffered(bytes) >= bytes) {
+      const std::uint64_t here = std::min<std::uint64_t>(most - taken, (filled_ - next_) / bytes);
+      std::uint64_t n = 0;
+      while (n < here && take(buffer_.data() + next_ + n * bytes)) ++n;
+      next_ += n * bytes;
+      position_ += n * bytes;
+      taken += n;
+      if (n < here) break;
+    }
+    return taken;
+  }
+
   // Goes on from this byte, wherever it was. Fails when the file is not so long.
   void move_to(std::uint64_t position);
 
@@ -55,6 +73,9 @@ class MeshInput {
 
  private:
   bool refill();
+
+  // How many of the next bytes the buffer holds: all that are wanted, if it and the file have so many.
+  std::size_t buffered(std::size_t wanted);
 
   std::string path_;
   std::uint64_t size_ = 0;

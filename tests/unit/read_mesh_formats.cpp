@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 #include "files.hpp"
 #include "isoweave/error.hpp"
@@ -185,6 +186,61 @@ TEST(ReadMesh, PlyBinaryInBothByteOrders) {
   }
 }
 
+std::string ply_header(const std::string& vertices, const std::string& faces, const std::string& format = "ascii") {
+  return "ply\nformat " + format + " 1.0\nelement vertex " + vertices +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+std::string raw_point(float x, float y, float z) { return raw(x) + raw(y) + raw(z); }
+
+std::string raw_face(const std::vector<std::int32_t>& corners) {
+  std::string bytes = raw(static_cast<std::uint8_t>(corners.size()));
+  for (const std::int32_t corner : corners) bytes += raw(corner);
+  return bytes;
+}
+
+// Larger than what is read at a time.
+TEST(ReadMesh, PlyOfTrianglesWithOtherPolygonsBetween) {
+  constexpr std::int32_t kVertices = 100'000;
+  constexpr std::int32_t kFaces = 99'990;
+  std::string bytes = ply_header(std::to_string(kVertices), std::to_string(kFaces), "binary_little_endian");
+  TriangleMesh expected;
+  for (std::int32_t v = 0; v < kVertices; ++v) {
+    const auto x = static_cast<float>(v);
+    bytes += raw_point(x, -x, 0.5F);
+    expected.vertices.push_back({x, -x, 0.5F});
+  }
+  for (std::int32_t f = 0; f < kFaces; ++f) {
+    const bool is_square = f % 30'000 == 7;
+    bytes += raw_face(is_square ? std::vector{f, f + 1, f + 2, f + 3} : std::vector{f, f + 1, f + 2});
+    const auto first = static_cast<std::uint32_t>(f);
+    expected.triangles.push_back({first, first + 1, first + 2});
+    if (is_square) expected.triangles.push_back({first, first + 2, first + 3});
+  }
+  const TriangleMesh mesh = parse("a.ply", bytes);
+  EXPECT_EQ(mesh.vertices, expected.vertices);
+  EXPECT_EQ(mesh.triangles, expected.triangles);
+}
+
+TEST(ReadMesh, PlyBinaryDataThatAreWrong) {
+  const std::string header = ply_header("3", "2", "binary_little_endian");
+  const std::string points = raw_point(0, 0, 0) + raw_point(1, 0, 0) + raw_point(0, 1, 0);
+  const std::string face = raw_face({0, 1, 2});
+  EXPECT_EQ(parse("a.ply", header + points + face + face).triangles.size(), 2U);
+  EXPECT_EQ(failure("a.ply", header + points + face + raw_face({0, 1, 3})),
+            "face 1 refers to vertex 3, the file has 3");
+  EXPECT_EQ(failure("a.ply", header + points + face + raw_face({0, -1, 2})),
+            "face 1 refers to vertex -1, the file has 3");
+  EXPECT_EQ(failure("a.ply", header + points + face + raw_face({0, 1}) + "1234"),
+            "face 1 has 2 corners, expected 3 or more");
+  EXPECT_TRUE(failure("a.ply", header + points + raw_face({0, 1, 2, 1}) + face.substr(4)).starts_with("truncated"));
+  EXPECT_EQ(failure("a.ply", header + points + face + face + "7"), "expected the end of the file, found 1 more bytes");
+  const std::string infinite = raw_point(0, std::numeric_limits<float>::infinity(), 0);
+  EXPECT_TRUE(failure("a.ply", header + raw_point(0, 0, 0) + infinite + points.substr(12, 12) + face + face)
+                  .starts_with("vertex 1 has 'y' = inf"));
+}
+
 TEST(ReadMesh, PlyOfPointsOnlyHasNoTriangles) {
   const TriangleMesh mesh = parse("a.ply",
                                   "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
@@ -227,12 +283,6 @@ TEST(ReadMesh, MissingFilesFoldersAndPipesAreErrors) {
   EXPECT_THROW(read_mesh(folder.path()), BadInput);
   EXPECT_THROW(read_mesh("/dev/null"), BadInput);
   EXPECT_THROW(read_mesh(""), BadInput);
-}
-
-std::string ply_header(const std::string& vertices, const std::string& faces, const std::string& format = "ascii") {
-  return "ply\nformat " + format + " 1.0\nelement vertex " + vertices +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
-         "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
 // Each of these asks for more memory or time than the file is worth, or would crash a careless reader.
