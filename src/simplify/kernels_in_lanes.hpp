@@ -17,8 +17,8 @@ class KernelsInLanes {
  private:
   using Real = Lanes<N>;
   using Vec = BasicVec3<Real>;
-  using Integers [[gnu::vector_size(64)]] = std::int32_t;
-  using IntegersInMemory [[gnu::vector_size(64), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
+  using Integers = typename LaneTypes<N>::Integers;
+  using IntegersInMemory = typename LaneTypes<N>::IntegersInMemory;
 
   // Position and quadric of N vertices.
   struct Ends {

@@ -19,6 +19,8 @@ struct LaneTypes<2> {
   using Vector [[gnu::vector_size(16)]] = double;
   using Mask [[gnu::vector_size(16)]] = std::int64_t;
   using InMemory [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+  using Integers [[gnu::vector_size(16)]] = std::int32_t;
+  using IntegersInMemory [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
 };
 
 template <>
@@ -26,6 +28,8 @@ struct LaneTypes<4> {
   using Vector [[gnu::vector_size(32)]] = double;
   using Mask [[gnu::vector_size(32)]] = std::int64_t;
   using InMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+  using Integers [[gnu::vector_size(32)]] = std::int32_t;
+  using IntegersInMemory [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
 };
 
 template <>
@@ -33,6 +37,8 @@ struct LaneTypes<8> {
   using Vector [[gnu::vector_size(64)]] = double;
   using Mask [[gnu::vector_size(64)]] = std::int64_t;
   using InMemory [[gnu::vector_size(64), gnu::aligned(8), gnu::may_alias]] = double;
+  using Integers [[gnu::vector_size(64)]] = std::int32_t;
+  using IntegersInMemory [[gnu::vector_size(64), gnu::aligned(4), gnu::may_alias]] = std::int32_t;
 };
 
 template <std::size_t N>
