@@ -71,11 +71,12 @@ def nonmanifold_edges(results, left):
 
 
 def memory_ratios(results):
-    """The leanest peer's memory in terms of ours."""
+    """The leanest peer's memory in terms of ours, with the most threads measured."""
     found = []
     for result in suite(results, "job"):
         for left in lefts(result):
-            rows = [row for row in equal_rows(result, None, 4, [left]) if not is_ours(row["peer"]["name"])]
+            rows = equal_rows(result, None, thread_counts(result)[-1], [left])
+            rows = [row for row in rows if not is_ours(row["peer"]["name"])]
             if samples(result) >= LARGE and rows:
                 leanest = min(added_bytes(row["peer"]) for row in rows)
                 most = max(added_bytes(row["ours"]) for row in rows)
