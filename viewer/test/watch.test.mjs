@@ -23,7 +23,7 @@ const kPhone = { width: 390, height: 844, touch: true };
 const kSlow = 'generate:gyroid:64x64x900:uint8';
 const kSlower = 'generate:gyroid:96x96x1600:uint8'; // many seconds, with one thread: the browser is faster
 const kLong = 'generate:gyroid:96x96x2000000:uint8';
-const kOpen = 'generate:gyroid:160x160x200:uint8'; // with --open most of it is final soon
+const kOpen = 'generate:gyroid:160x160x600:uint8'; // with --open most of it is final soon
 const kRough = 'generate:white:64x64x256:uint8'; // more triangles than are drawn
 
 rmSync(folder, { recursive: true, force: true });
