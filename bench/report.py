@@ -4,16 +4,22 @@
   bench/report.py RESULTS OUT            OUT/report.md and OUT/*.svg, *.png
   bench/report.py RESULTS --docs FILE    rewrites what lies in FILE between the lines <!-- begin NAME --> and
                                          <!-- end NAME -->; plots go to the folder named as FILE without its ending
+  bench/report.py RESULTS --docs FILE --block NAME
+                                         rewrites only that part, with the ratios of simplification and the jobs
 """
 import argparse
 import pathlib
 import re
 
-from reporting.results import failure, load, suite, volume_name
+from reporting.results import failure, load, suite, thread_counts, volume_name
 from reporting.tables import extraction_tables, job_tables, number, simplification_tables, summary_table
 from reporting.goals import goal_table
 from reporting.scaling import scaling_tables
 from reporting.plots import plot_error, plot_job_memory, plot_scaling, plot_speed
+
+
+def paragraphs(parts):
+    return "\n\n".join(part for part in parts if part) or "Not measured."
 
 
 def image(folder, name, text):
@@ -66,20 +72,24 @@ def with_few_simplified(results):
     return [result for result in results if result not in found or result in shown or result == largest]
 
 
+def summaries(results):
+    counts = {count for result in suite(results, "simplify") for count in thread_counts(result)}
+    return [summary_table(results, threads) for threads in sorted(counts, reverse=True)]
+
+
 def blocks(results, folder, link, detailed):
     """Every part of the report by its name. `detailed`: the results that are shown one by one."""
     made = plots(detailed, folder)
     images = {block: [image(link, name, text) for name, text in found] for block, found in made.items()}
-    summaries = [summary_table(results, threads) for threads in (4, 1)] if suite(results, "simplify") else []
     parts = {
         "machine": [machine_text(results), missing_text(results), failures(results)],
         "goals": [goal_table(results)],
         "extraction": list(extraction_tables(results)),
-        "simplification": summaries + images["simplification"] + list(simplification_tables(detailed)),
+        "simplification": summaries(results) + images["simplification"] + list(simplification_tables(detailed)),
         "job": images["job"] + list(job_tables(results)),
         "scaling": images["scaling"] + list(scaling_tables(results)),
     }
-    return {name: "\n\n".join(part for part in found if part) or "Not measured." for name, found in parts.items()}
+    return {name: paragraphs(found) for name, found in parts.items()}
 
 
 def write_report(results, out):
@@ -89,10 +99,7 @@ def write_report(results, out):
     print(out / "report.md")
 
 
-def rewrite_docs(results, path):
-    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_few_simplified(results))
-    for png in path.with_suffix("").glob("*.png"):
-        png.unlink()
+def replace_blocks(path, parts):
     text = path.read_text()
     for name, part in parts.items():
         pattern = re.compile(f"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
@@ -102,11 +109,23 @@ def rewrite_docs(results, path):
     path.write_text(text)
 
 
+def rewrite_docs(results, path):
+    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_few_simplified(results))
+    for png in path.with_suffix("").glob("*.png"):
+        png.unlink()
+    replace_blocks(path, parts)
+
+
+def rewrite_block(results, path, name):
+    replace_blocks(path, {name: paragraphs([machine_text(results), *summaries(results), *job_tables(results)])})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path, nargs="?")
     parser.add_argument("--docs", type=pathlib.Path)
+    parser.add_argument("--block")
     arguments = parser.parse_args()
     results = load(arguments.results)
     if not results:
@@ -115,7 +134,11 @@ def main():
         parser.error("expected OUT or --docs FILE")
     if arguments.out:
         write_report(results, arguments.out)
-    if arguments.docs:
+    if arguments.block and not arguments.docs:
+        parser.error("--block: expected --docs FILE")
+    if arguments.block:
+        rewrite_block(results, arguments.docs, arguments.block)
+    elif arguments.docs:
         rewrite_docs(results, arguments.docs)
 
 
