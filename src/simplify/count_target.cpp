@@ -67,7 +67,7 @@ CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add
 CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles,
                          std::uint64_t most_held)
     : simplifier_(simplifier), executor_(executor), target_(triangles), most_held_(most_held) {
-  simplifier_.zone().set_limit(kUnknownCost);
+  simplifier_.zone().limit = kUnknownCost;
 }
 
 void CountTarget::thin_out() {
@@ -77,7 +77,7 @@ void CountTarget::thin_out() {
     raise_limit(limit);
     const std::uint64_t before = held;
     held = simplifier_.triangles();
-    if (held > before - before / 16) return;  // the next slab tells more
+    if (held > before - before / 32) return;  // the next slab tells more
   }
 }
 
@@ -87,8 +87,9 @@ void CountTarget::finish() {
     const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each);
     if (limit <= simplifier_.zone().limit) break;
     raise_limit(limit);
+    simplifier_.close_gaps();
   }
-  simplifier_.zone().set_limit(simplifier_.zone().options.retire);
+  simplifier_.zone().limit = simplifier_.zone().options.retire;
   reached_ = std::max(reached_, simplifier_.decide_in_order(target_));
   simplifier_.zone().retire_all();
 }
@@ -120,7 +121,7 @@ CostBits CountTarget::limit_within(std::uint64_t edges) const {
 }
 
 void CountTarget::raise_limit(CostBits limit) {
-  simplifier_.zone().set_limit(limit);
+  simplifier_.zone().limit = limit;
   simplifier_.decide();
   reached_ = limit;
 }

@@ -23,7 +23,7 @@ class CountTarget {
   void thin_out();
 
   // What should be held between two slabs where so many triangles are wanted.
-  static std::uint64_t most_held(std::uint64_t triangles) { return 3 * triangles + 100'000; }
+  static std::uint64_t most_held(std::uint64_t triangles) { return triangles + triangles / 4 + 50'000; }
 
   // For a complete surface: decides in order until no more than the number is left, or until all edges are retired.
   // Then everything is final.

@@ -7,6 +7,7 @@
 #include <span>
 #include <thread>
 
+#include "parallel/collect.hpp"
 #include "simplify/columns.hpp"
 #include "simplify/turns.hpp"
 
@@ -356,6 +357,7 @@ DecisionCounts LocalMinima::counts() const {
 void LocalMinima::run(const std::atomic<bool>* stop) {
   zone_.settle_waiting_edges(executor_);
   give_turns_to_old();
+  list_let_through();
   wake_waiters_of_settled();
   group_by_place();
   const bool alone = workers_.size() == 1;
@@ -383,6 +385,8 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
     worker->unkeyed().clear();
   }
   zone_.set_aside(unkeyed);
+  zone_.settled.clear();
+  limit_ = zone_.limit;
   ++rounds_;
 }
 
@@ -411,26 +415,46 @@ void LocalMinima::share_places(std::span<Stretch> stretches) const {
   }
 }
 
-// The pairs of a place. Whoever walks around a vertex waits for one line of memory after the other: what is there is
-// asked for before.
+// Whoever walks around a vertex waits for one line of memory after the other: what is there is asked for before.
+void LocalMinima::fetch_around(std::uint32_t n) const {
+  const auto* const vertex = reinterpret_cast<const std::byte*>(&zone_.vertices[awake(n)]);
+  fetch(vertex);
+  fetch(vertex + sizeof(Vertex) / 2);
+  fetch(&zone_.turns[awake(n)]);
+  fetch(&zone_.triangles[triangle_[n]]);
+  fetch(&zone_.triangles[triangle_[n]] + 1);
+}
+
+// The pairs of a place.
 void LocalMinima::serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const {
   const auto items =
       std::span(places_.items).subspan(places_.start[place], places_.start[place + 1] - places_.start[place]);
-  for (const std::uint32_t n : items) {
-    const auto* const vertex = reinterpret_cast<const std::byte*>(&zone_.vertices[awake(n)]);
-    fetch(vertex);
-    fetch(vertex + sizeof(Vertex) / 2);
-    fetch(&zone_.turns[awake(n)]);
-    fetch(&zone_.triangles[triangle_[n]]);
-    fetch(&zone_.triangles[triangle_[n]] + 1);
-  }
-  for (const std::uint32_t n : items) {
-    if (place_[n] % 2 == 1) worker.serve(awake(n), stop);
+  constexpr std::size_t kAhead = 128;
+  for (std::size_t begin = 0; begin < items.size(); begin += kAhead) {
+    const auto next = items.subspan(begin, std::min(kAhead, items.size() - begin));
+    for (const std::uint32_t n : next) fetch_around(n);
+    for (const std::uint32_t n : next) {
+      if (place_[n] % 2 == 1) worker.serve(awake(n), stop);
+    }
   }
 }
 
-void LocalMinima::wake_waiters_of_settled() {
+// Turns know no limit: those beyond the last one are there already.
+void LocalMinima::list_let_through() {
   woken_.clear();
+  if (zone_.limit <= limit_) return;
+  collect(
+      executor_, static_cast<std::int64_t>(zone_.turn_keys.size()), 65536,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
+        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+          const CostBits cost = cost_of(zone_.turn_keys[v]);
+          if (cost > limit_ && cost <= zone_.limit) list.push_back(v);
+        }
+      },
+      woken_);
+}
+
+void LocalMinima::wake_waiters_of_settled() {
   for (const Index v : zone_.settled.old) {
     if (is_unknown(zone_.turn_keys[v])) continue;
     Turn& turn = zone_.turns[v];

@@ -32,18 +32,21 @@ class LocalMinima final : public Driver {
   struct Shift;
 
   void give_turns_to_old();
+  void list_let_through();
   void wake_waiters_of_settled();
   void group_by_place();
   Index awake(std::size_t n) const;
   bool is_in_pair(Index v) const;
   void share_places(std::span<Stretch> stretches) const;
+  void fetch_around(std::uint32_t n) const;
   void serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const;
 
   Zone& zone_;
   const Executor& executor_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<std::uint16_t> owners_;  // per vertex: the worker that holds it, 0 for none
-  std::vector<Index> woken_;           // vertices that waited for one that has settled
+  CostBits limit_ = kRetiredCost;      // of the run before
+  std::vector<Index> woken_;           // vertices that waited for one that has settled, or for a higher limit
   std::vector<std::uint32_t> place_;   // of those settled and those woken, doubled; odd if there is a pair to serve
   std::vector<Index> triangle_;        // one at each of them that has a place
   Buckets places_;                     // of their numbers

@@ -10,6 +10,8 @@ constexpr std::int64_t kBlock = 1024;
 }  // namespace
 
 void Rounds::run(const std::atomic<bool>* stop) {
+  if (zone_.limit > limit_) zone_.settle_all();
+  limit_ = zone_.limit;
   give_turns(zone_, executor_);
   marks_.assign(zone_.vertices.size(), 0);
   for (List* list : {&changed_, &candidates_, &minima_}) list->items.resize(zone_.vertices.size());
@@ -17,6 +19,7 @@ void Rounds::run(const std::atomic<bool>* stop) {
   for (std::size_t n = 0; n < changed_.size; ++n) changed_.items[n] = zone_.settled[n];
   const RoundPasses<VectorArithmetic> passes{zone_.view(), marks_.data(), changed_.view(), candidates_.view(),
                                              minima_.view()};
+  zone_.settled.clear();
   while (changed_.size > 0 && !(stop != nullptr && stop->load(std::memory_order_relaxed))) run_round(passes);
 }
 

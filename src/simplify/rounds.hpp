@@ -33,6 +33,7 @@ class Rounds final : public Driver {
   std::vector<std::uint32_t> marks_;
   List changed_, candidates_, minima_;
   DecisionCounts counts_;
+  CostBits limit_ = kRetiredCost;  // of the run before: turns beyond it have not been kept
   std::uint64_t rounds_ = 0;
 };
 

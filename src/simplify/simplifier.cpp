@@ -44,7 +44,7 @@ void Simplifier::decide() {
 }
 
 void Simplifier::decide(std::size_t level) {
-  if (levels() > 1) zone_.set_limit(is_last(level) ? zone_.options.retire : finer_[level]);
+  if (levels() > 1) zone_.limit = is_last(level) ? zone_.options.retire : finer_[level];
   decide();
 }
 
@@ -109,6 +109,10 @@ void Simplifier::drop(const std::vector<Index>& triangles) {
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
                      [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });
   dropped_ += triangles.size();
+  close_gaps();
+}
+
+void Simplifier::close_gaps() {
   const std::uint64_t gone = zone_.triangle_count() - live_triangles();
   if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
 }

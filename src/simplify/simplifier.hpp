@@ -55,6 +55,9 @@ class Simplifier {
   std::vector<Index> final_triangles(std::size_t level);
   void drop(const std::vector<Index>& triangles);
 
+  // Compacts the zone if much of it has gone.
+  void close_gaps();
+
   // Of the surface so far: held, and handed out.
   std::uint64_t triangles() const { return appended_ - counts().removed; }
 

@@ -87,8 +87,7 @@ void Zone::forget_turns() {
   turns_forgotten_ = true;
 }
 
-void Zone::set_limit(CostBits new_limit) {
-  limit = new_limit;
+void Zone::settle_all() {
   forget_turns();
   turns_forgotten_ = false;
   settled.clear();

@@ -62,9 +62,8 @@ class Zone : public ZoneView {
   std::vector<Array<LevelVertex>> levels;  // before the last one; each parallel to vertices
   KeyCountdown countdown;                  // of the edges of new triangles
 
-  // Edges with a higher cost wait: what is decided is what a run with that error would decide. All vertices count as
-  // settled afterwards. At most what retires an edge; lowered, it leaves what has been decided as it is.
-  void set_limit(CostBits limit);
+  // Forgets all turns: every undecided vertex counts as settled.
+  void settle_all();
 
   // Nothing more is to be decided: all edges are retired.
   void retire_all() { options.retire = limit = kUnknownCost; }

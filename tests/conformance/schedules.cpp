@@ -117,7 +117,7 @@ void drop_upper_ties(Zone& zone, const Executor& executor) {
     }
     zone.set_key(h, make_key(zone.cost(h), 0));
   }
-  zone.set_limit(zone.limit);
+  zone.settle_all();
 }
 
 TEST(Ties, EqualUpperHalvesLeaveTheOrderToTheLower) {

@@ -73,7 +73,7 @@ TEST_P(Specks, VanishAtACostThatNoErrorChanges) {
   const double voxel = surface.voxel();
   const SurfaceRun steps = sweep(surface, kWholeVolume, executor, simplifier, [&] {
     for (const double error : {0.2, 0.7, 1.5}) {
-      simplifier.zone().set_limit(retire_cost(error * voxel, voxel * voxel));
+      simplifier.zone().limit = retire_cost(error * voxel, voxel * voxel);
       simplifier.decide();
     }
   });
