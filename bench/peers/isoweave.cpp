@@ -1,5 +1,7 @@
 // Ours, through the public headers only.
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "isoweave/pipeline.hpp"
 #include "task.hpp"
@@ -12,10 +14,20 @@ using isoweave::Quality;
 // Errors, in mean voxels, between which every count of interest lies.
 constexpr Steering kErrors{1e-3, 50};
 
+// What stops us: an error, which is sought before, or the number of triangles that a peer gets.
+enum class Stop { kError, kTriangles };
+
+template <class Options>
+void stop_at(Stop stop, const Goal& goal, Options& options) {
+  options.error = {goal.length, false};
+  if (stop == Stop::kError) return;
+  options.error = {std::numeric_limits<double>::infinity(), false};
+  options.triangles = goal.triangles;
+}
+
 // Open, as the peers make no caps, and without origin and direction, which the peers do not apply.
-isoweave::MeshOptions mesh_options(double iso, double error, Quality quality) {
-  return {
-      .iso = iso, .closed = false, .error = {error, false}, .quality = quality, .space = isoweave::OutputSpace::kIndex};
+isoweave::MeshOptions mesh_options(double iso, Quality quality) {
+  return {.iso = iso, .closed = false, .quality = quality, .space = isoweave::OutputSpace::kIndex};
 }
 
 isoweave::RunControl on(int threads) {
@@ -30,7 +42,9 @@ class Extraction : public Task {
   Extraction(const HeldVolume& volume, const Goal& goal) : volume_(volume), threads_(goal.threads) {}
   void run() override {
     const std::unique_ptr<isoweave::SliceSource> source = volume_in_memory(volume_.info, volume_.samples);
-    mesh_volume(*source, mesh_, mesh_options(volume_.iso, 0, Quality::kNormal), on(threads_));
+    isoweave::MeshOptions options = mesh_options(volume_.iso, Quality::kNormal);
+    options.error = {0, false};
+    mesh_volume(*source, mesh_, options, on(threads_));
   }
   std::size_t triangles() const override { return mesh_.triangles().size(); }
   isoweave::TriangleMesh mesh() const override { return mesh_.copy(); }
@@ -43,47 +57,49 @@ class Extraction : public Task {
 
 class Simplification : public Task {
  public:
-  Simplification(const isoweave::TriangleMesh& full, const Goal& goal, Quality quality)
-      : full_(full), goal_(goal), quality_(quality) {}
-  void run() override {
-    simplify_mesh(full_, mesh_, {.error = {goal_.length, false}, .quality = quality_}, on(goal_.threads));
+  Simplification(const isoweave::TriangleMesh& full, const Goal& goal, Quality quality, Stop stop)
+      : full_(full), goal_(goal), options_{.quality = quality} {
+    stop_at(stop, goal, options_);
   }
+  void run() override { simplify_mesh(full_, mesh_, options_, on(goal_.threads)); }
   std::size_t triangles() const override { return mesh_.triangles().size(); }
   isoweave::TriangleMesh mesh() const override { return mesh_.copy(); }
 
  private:
   const isoweave::TriangleMesh& full_;
   Goal goal_;
-  Quality quality_;
+  isoweave::SimplifyOptions options_;
   isoweave::MeshInMemory mesh_;
 };
 
 class Job : public Task {
  public:
-  Job(const VolumeFile& file, const Goal& goal, Quality quality) : file_(file), goal_(goal), quality_(quality) {}
-  void run() override {
-    mesh_volume(*open_source(file_), mesh_, mesh_options(file_.iso, goal_.length, quality_), on(goal_.threads));
+  Job(const VolumeFile& file, const Goal& goal, Quality quality, Stop stop)
+      : file_(file), goal_(goal), options_(mesh_options(file.iso, quality)) {
+    stop_at(stop, goal, options_);
   }
+  void run() override { mesh_volume(*open_source(file_), mesh_, options_, on(goal_.threads)); }
   std::size_t triangles() const override { return mesh_.triangles().size(); }
   isoweave::TriangleMesh mesh() const override { return mesh_.copy(); }
 
  private:
   const VolumeFile& file_;
   Goal goal_;
-  Quality quality_;
+  isoweave::MeshOptions options_;
   isoweave::MeshInMemory mesh_;
 };
 
-void add_quality(Contestants& contestants, const std::string& name, Quality quality) {
+void add(Contestants& contestants, const std::string& name, Quality quality, Stop stop = Stop::kError) {
+  const std::optional<Steering> steering = stop == Stop::kError ? std::optional(kErrors) : std::nullopt;
   contestants.simplifiers.push_back({name, true,
-                                     [quality](const isoweave::TriangleMesh& full, const Goal& goal) {
-                                       return std::make_unique<Simplification>(full, goal, quality);
+                                     [=](const isoweave::TriangleMesh& full, const Goal& goal) {
+                                       return std::make_unique<Simplification>(full, goal, quality, stop);
                                      },
-                                     kErrors});
+                                     steering});
   contestants.jobs.push_back(
       {name, true,
-       [quality](const VolumeFile& file, const Goal& goal) { return std::make_unique<Job>(file, goal, quality); },
-       kErrors});
+       [=](const VolumeFile& file, const Goal& goal) { return std::make_unique<Job>(file, goal, quality, stop); },
+       steering});
 }
 
 }  // namespace
@@ -92,9 +108,10 @@ void add_isoweave(Contestants& contestants) {
   contestants.extractors.push_back({"isoweave", true, [](const HeldVolume& volume, const Goal& goal) {
                                       return std::make_unique<Extraction>(volume, goal);
                                     }});
-  add_quality(contestants, "isoweave normal", Quality::kNormal);
-  add_quality(contestants, "isoweave fast", Quality::kFast);
-  add_quality(contestants, "isoweave fine", Quality::kFine);
+  add(contestants, "isoweave normal", Quality::kNormal);
+  add(contestants, "isoweave normal, to a number", Quality::kNormal, Stop::kTriangles);
+  add(contestants, "isoweave fast", Quality::kFast);
+  add(contestants, "isoweave fine", Quality::kFine);
 }
 
 }  // namespace bench

@@ -108,7 +108,8 @@ struct MeshOptions {
   // nothing is promised. Costs time, and memory for the extracted surface around what is undecided.
   Length max_distance{};
   // Stop at the first collapse that leaves no more triangles than this, if the error does not stop it before; 0: no
-  // such number. The error may be infinite then. Up to three times as many triangles are held.
+  // such number. The error may be infinite then. A quarter more triangles than that are held between two slabs, and
+  // 50,000.
   std::uint64_t triangles = 0;
   Quality quality = Quality::kNormal;
   // A closed component that has shrunk to a tetrahedron goes when half its longest edge is no longer than the error.

@@ -107,8 +107,8 @@ struct ZoneView {
   std::span<Turn> turns;     // parallel to vertices; kept by the schedules that use them
   std::span<Triangle> triangles;
   ZoneOptions options;
-  // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide. At most
-  // options.retire; lowered, it leaves what has been decided as it is.
+  // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide. At
+  // most options.retire; lowered, it leaves what has been decided as it is.
   CostBits limit = 0;
   const ExtractedSurface* extracted = nullptr;  // where distances are bounded; on the host only
   std::span<NormalQuadric> normal_quadrics{};   // parallel to vertices, where normals count; on the host only

@@ -118,6 +118,39 @@ TEST(CountsOfSpecks, StopWhereTheReferenceQueueWould) {
   }
 }
 
+// The least cost of an edge that is to be decided; kRetiredCost if there is none.
+CostBits least_cost(const Zone& zone) {
+  CostBits least = kRetiredCost;
+  for (const auto turn : zone.turn_keys) least = std::min(least, cost_of(turn));
+  return least;
+}
+
+TEST(Limits, RaisedFromCostToCostGiveTheMeshOfTheReferenceQueue) {
+  for (const char* kind : {"noise", "box"}) {
+    SurfaceCase surface = make_case(kind, true);
+    surface.volume.dims = {8, 7, 9};
+    surface.error = 1.5;
+    const std::string expected = digest_text(oracle(surface, 1).report.digest);
+    const auto raised = [&](Schedule schedule, int threads) {
+      const Executor executor(threads);
+      Simplifier simplifier({zone_options(surface), schedule}, executor, nullptr);
+      Zone& zone = simplifier.zone();
+      const SurfaceRun found = sweep(surface, kWholeVolume, executor, simplifier, [&] {
+        for (zone.limit = kUnknownCost; zone.limit < zone.options.retire;) {
+          simplifier.decide();
+          zone.limit = std::min(least_cost(zone), zone.options.retire);
+        }
+        simplifier.decide();
+      });
+      EXPECT_GT(simplifier.rounds(), 20U);
+      return digest_text(found.report.digest);
+    };
+    EXPECT_EQ(raised(Schedule::kLocal, 1), expected) << kind;
+    EXPECT_EQ(raised(Schedule::kLocal, 3), expected) << kind;
+    EXPECT_EQ(raised(Schedule::kRounds, 2), expected) << kind;
+  }
+}
+
 TEST(CountsHeld, NoMoreThanIsNeeded) {
   SurfaceCase surface = make_case("smooth", true);
   surface.volume.dims = {40, 40, 160};
