@@ -1,8 +1,10 @@
 // Runs to a number of triangles stop where the reference queue would.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "oracle.hpp"
 #include "simplify/count_target.hpp"
@@ -136,11 +138,12 @@ TEST(Limits, RaisedFromCostToCostGiveTheMeshOfTheReferenceQueue) {
       Simplifier simplifier({zone_options(surface), schedule}, executor, nullptr);
       Zone& zone = simplifier.zone();
       const SurfaceRun found = sweep(surface, kWholeVolume, executor, simplifier, [&] {
-        for (zone.limit = kUnknownCost; zone.limit < zone.options.retire;) {
-          simplifier.decide();
-          zone.limit = std::min(least_cost(zone), zone.options.retire);
+        zone.limit = kUnknownCost;
+        for (simplifier.decide(); zone.limit < zone.options.retire; simplifier.decide()) {
+          const CostBits least = std::min(least_cost(zone), zone.options.retire);
+          if (least <= zone.limit) throw std::logic_error("an edge within the limit has not been decided");
+          zone.limit = least;
         }
-        simplifier.decide();
       });
       EXPECT_GT(simplifier.rounds(), 20U);
       return digest_text(found.report.digest);
