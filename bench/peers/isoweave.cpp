@@ -19,10 +19,9 @@ enum class Stop { kError, kTriangles };
 
 template <class Options>
 void stop_at(Stop stop, const Goal& goal, Options& options) {
-  options.error = {goal.length, false};
-  if (stop == Stop::kError) return;
-  options.error = {std::numeric_limits<double>::infinity(), false};
-  options.triangles = goal.triangles;
+  const bool counts = stop == Stop::kTriangles;
+  options.error = {counts ? std::numeric_limits<double>::infinity() : goal.length, false};
+  options.triangles = counts ? goal.triangles : 0;
 }
 
 // Open, as the peers make no caps, and without origin and direction, which the peers do not apply.

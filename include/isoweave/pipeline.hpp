@@ -108,8 +108,8 @@ struct MeshOptions {
   // nothing is promised. Costs time, and memory for the extracted surface around what is undecided.
   Length max_distance{};
   // Stop at the first collapse that leaves no more triangles than this, if the error does not stop it before; 0: no
-  // such number. The error may be infinite then. A quarter more triangles than that are held between two slabs, and
-  // 50,000.
+  // such number. The error may be infinite then. Between two slabs a quarter more triangles than that and 50,000
+  // are held, or as many as it takes to be sure of the result.
   std::uint64_t triangles = 0;
   Quality quality = Quality::kNormal;
   // A closed component that has shrunk to a tetrahedron goes when half its longest edge is no longer than the error.

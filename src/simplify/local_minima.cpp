@@ -429,7 +429,7 @@ void LocalMinima::fetch_around(std::uint32_t n) const {
 void LocalMinima::serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const {
   const auto items =
       std::span(places_.items).subspan(places_.start[place], places_.start[place + 1] - places_.start[place]);
-  constexpr std::size_t kAhead = 128;
+  constexpr std::size_t kAhead = 128;  // what is around them fits a cache
   for (std::size_t begin = 0; begin < items.size(); begin += kAhead) {
     const auto next = items.subspan(begin, std::min(kAhead, items.size() - begin));
     for (const std::uint32_t n : next) fetch_around(n);
