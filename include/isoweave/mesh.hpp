@@ -20,6 +20,13 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<Point> normals{};                         // one per vertex, or none
   std::vector<float> values{};                          // one per vertex, or none; not finite: unknown
+
+  // A vertex lies at offset + its coordinates: 32 bits are spent on the shape and not on how far away it is. All 0
+  // unless coordinates in 32 bits would lose the shape.
+  std::array<double, 3> offset{0, 0, 0};
+  std::string unit{};                // of the coordinates: "mm", "um", "nm" or "m"; empty: not said
+  std::string space{};               // "LPS", "RAS" or "index"; empty: not said
+  std::vector<std::string> notes{};  // things a user should know, one line each: what a file has and is not kept
 };
 
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
@@ -121,8 +128,9 @@ struct MeshFileOptions {
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 
   // What the coordinates are, as far as it is known; said in the file where the format has a place for it.
-  std::string unit{};   // "mm", "um", "nm" or "m"
-  std::string space{};  // "LPS", "RAS" or "index"
+  std::string unit{};                     // "mm", "um", "nm" or "m"
+  std::string space{};                    // "LPS", "RAS" or "index"
+  std::array<double, 3> offset{0, 0, 0};  // of all coordinates, as that of TriangleMesh
 
   // .glb: positions rounded to 16 bits of the longest side of their box (KHR_mesh_quantization), packed by
   // meshoptimizer (EXT_meshopt_compression). .precomputed: neuroglancer's multi-resolution format, one level of detail,

@@ -98,6 +98,12 @@ RawLayout parse_raw_layout(std::string_view text);
 // Reads "foot_256x256x256_uint8.raw" as a layout; nothing if the name does not say one.
 std::optional<RawLayout> raw_layout_from_name(std::string_view path);
 
+// What becomes of slices that are not evenly spaced (DICOM):
+//   refuse    BadInput, which names the distances
+//   resample  slices at an even distance, linear between the two nearest ones, on the way; a note says so
+//   mean      slices as they are, at their mean distance: not where they were
+enum class UnevenSlices : std::uint8_t { kRefuse, kResample, kMean };
+
 struct OpenOptions {
   std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
@@ -107,6 +113,8 @@ struct OpenOptions {
   std::optional<std::int64_t> level;             // 0: full size; of an image kept at several sizes (OME-Zarr, N5)
   std::optional<std::int64_t> channel;           // index along an array's axis of channels; none: the first
   std::optional<std::int64_t> time;              // index along an array's axis of time; none: the first
+  UnevenSlices uneven_slices = UnevenSlices::kResample;
+  bool external = true;  // whether a header may name other files; false, for files from strangers: BadInput
 };
 
 // Opens a volume; the format is told by its content, then by its name: NRRD/NHDR, MetaImage
