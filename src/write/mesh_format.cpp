@@ -42,7 +42,7 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
   if (options.segment != 1 && format != MeshFormat::kPrecomputed) {
     throw CannotWrite(path + ": expected a name that ends in .precomputed for an object with a number");
   }
-  if (options.values && format != MeshFormat::kPly && format != MeshFormat::kVtp) {
+  if (options.values && !holds_values(format)) {
     throw CannotWrite(path + ": expected a name that ends in .ply or .vtp for a mesh with values at its vertices");
   }
   if (options.segment == 0) throw CannotWrite(path + ": expected a number of 1 or more for the object, found 0");
@@ -68,6 +68,8 @@ MeshFormat mesh_format(const std::string& path) {
   }
   throw CannotWrite(path + ": expected a name that ends in " + names);
 }
+
+bool holds_values(MeshFormat format) { return format == MeshFormat::kPly || format == MeshFormat::kVtp; }
 
 MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options) {
   const MeshFormat format = mesh_format(path);

@@ -16,6 +16,9 @@ MeshFormat mesh_format(const std::string& path);
 // The same; throws as well for options that the format does not have.
 MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options);
 
+// Whether the format has a place for numbers at the vertices.
+bool holds_values(MeshFormat format);
+
 // Throws CannotWrite when `have` + `more` is more than the most that a format holds.
 void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more,
                       std::uint64_t most = 0xffffffffU);

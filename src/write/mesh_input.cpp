@@ -31,6 +31,14 @@ int open_regular(const std::string& path, std::uint64_t& size) {
   return fd;
 }
 
+void check_finite(const MeshInput& input, const std::vector<Point>& points, const std::string& what) {
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    for (const float coordinate : points[n]) {
+      if (!std::isfinite(coordinate)) input.fail(what + std::to_string(n) + " has a coordinate that is not finite");
+    }
+  }
+}
+
 }  // namespace
 
 MeshInput::MeshInput(const std::string& path) : path_(path), fd_(open_regular(path, size_)) {
@@ -110,15 +118,24 @@ void MeshInput::move_to(std::uint64_t position) {
   next_ = filled_ = 0;
 }
 
-bool MeshInput::read_line(std::string& line) {
+bool MeshInput::read_line(std::string& line, LineEnd end) {
   line.clear();
+  ended_in_return_ = false;
   int c = get();
   if (c < 0) return false;
-  for (; c >= 0 && c != '\n'; c = get()) {
+  const auto ends = [end](int at) {
+    return at < 0 || (at == '\n' && end != LineEnd::kReturn) || (at == '\r' && end != LineEnd::kNewline);
+  };
+  for (; !ends(c); c = get()) {
     if (line.size() == kLongestLine) fail("a line is longer than " + std::to_string(kLongestLine) + " bytes");
     line.push_back(static_cast<char>(c));
   }
-  if (!line.empty() && line.back() == '\r') line.pop_back();
+  if (c == '\r' && end == LineEnd::kAny && peek() == '\n') {
+    get();
+  } else {
+    ended_in_return_ = c == '\r';
+  }
+  if (end == LineEnd::kNewline && !line.empty() && line.back() == '\r') line.pop_back();
   return true;
 }
 
@@ -141,13 +158,8 @@ std::string MeshInput::head(std::size_t bytes) const {
 }
 
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
-  for (const std::vector<Point>* points : {&mesh.vertices, &mesh.normals}) {
-    for (const Point& point : *points) {
-      for (const float coordinate : point) {
-        if (!std::isfinite(coordinate)) input.fail("a vertex or normal has a coordinate that is not finite");
-      }
-    }
-  }
+  check_finite(input, mesh.vertices, "vertex ");
+  check_finite(input, mesh.normals, "the normal of vertex ");
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index < mesh.vertices.size()) continue;
@@ -155,6 +167,11 @@ void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
                  std::to_string(mesh.vertices.size()) + ", counted from 0");
     }
   }
+}
+
+void skip_byte_order_mark(MeshInput& input) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (input.head(kMark.size()) == kMark) input.skip(kMark.size());
 }
 
 std::string_view take_word(std::string_view& rest) {

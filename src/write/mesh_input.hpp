@@ -60,8 +60,15 @@ class MeshInput {
   // Goes on from this byte, wherever it was. Fails when the file is not so long.
   void move_to(std::uint64_t position);
 
-  // The next line without its end ("\n" or "\r\n"); false at the end of the file.
-  bool read_line(std::string& line);
+  // What ends a line: any of "\n", "\r\n" and "\r"; "\n", with a "\r" before it or not; or "\r" alone. With the last
+  // two, what follows a line may be binary data.
+  enum class LineEnd { kAny, kNewline, kReturn };
+
+  // The next line without its end; false at the end of the file.
+  bool read_line(std::string& line, LineEnd end = LineEnd::kAny);
+
+  // Whether the last line that was read ended in "\r" alone.
+  bool ended_in_return() const { return ended_in_return_; }
 
   // The next run of characters that are not blanks or line ends; empty at the end of the file.
   std::string_view read_token();
@@ -74,6 +81,9 @@ class MeshInput {
  private:
   bool refill();
 
+  // The next byte without taking it, or -1 at the end.
+  int peek() { return next_ == filled_ && !refill() ? -1 : std::to_integer<int>(buffer_[next_]); }
+
   // How many of the next bytes the buffer holds: all that are wanted, if it and the file have so many.
   std::size_t buffered(std::size_t wanted);
 
@@ -85,6 +95,7 @@ class MeshInput {
   std::size_t next_ = 0;
   std::size_t filled_ = 0;
   std::string token_;
+  bool ended_in_return_ = false;
 };
 
 // Longest line and token accepted; a file without line ends must not be read into memory whole.
@@ -92,6 +103,9 @@ inline constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 inline constexpr std::size_t kLongestToken = 256;
 
 inline bool is_blank(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+// Passes over the three bytes by which some programs say that what follows is UTF-8.
+void skip_byte_order_mark(MeshInput& input);
 
 // Takes the first word off `rest`; empty when there is none.
 std::string_view take_word(std::string_view& rest);
@@ -159,5 +173,11 @@ TriangleMesh read_obj(MeshInput& input);
 
 // Whether the file is exactly as long as the count in a binary STL header makes it.
 bool is_binary_stl(const MeshInput& input);
+
+// Whether a word is the first of an OFF file: 'OFF' with letters before it that say what vertices have.
+bool is_off_keyword(std::string_view word);
+
+// Whether bytes from the beginning of a file are those of a text: no control characters but those of blanks.
+bool looks_like_text(std::string_view head);
 
 }  // namespace isoweave::mesh_io

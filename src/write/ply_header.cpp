@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 
+#include "write/mesh_words.hpp"
+
 namespace isoweave::mesh_io {
 namespace {
 
@@ -17,7 +19,7 @@ struct NamedType {
   PlyType type;
 };
 
-constexpr std::array<NamedType, 16> kTypes{{{"char", PlyType::kInt8},
+constexpr std::array<NamedType, 18> kTypes{{{"char", PlyType::kInt8},
                                             {"uchar", PlyType::kUint8},
                                             {"short", PlyType::kInt16},
                                             {"ushort", PlyType::kUint16},
@@ -31,6 +33,8 @@ constexpr std::array<NamedType, 16> kTypes{{{"char", PlyType::kInt8},
                                             {"uint16", PlyType::kUint16},
                                             {"int32", PlyType::kInt32},
                                             {"uint32", PlyType::kUint32},
+                                            {"int64", PlyType::kInt64},
+                                            {"uint64", PlyType::kUint64},
                                             {"float32", PlyType::kFloat32},
                                             {"float64", PlyType::kFloat64}}};
 
@@ -41,31 +45,82 @@ const PlyProperty* find_property(const PlyElement& element, std::string_view nam
   return nullptr;
 }
 
+bool is_real(const PlyProperty& property) {
+  return property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
+}
+
+// Places, directions and looks: numbers of a vertex that say nothing when they are taken alone.
+bool is_part_of_more(std::string_view name) {
+  for (const char* known :
+       {"x", "y", "z", "nx",  "ny",    "nz",   "r",     "g",         "b",         "a",      "u",
+        "v", "s", "t", "red", "green", "blue", "alpha", "texture_u", "texture_v", "radius", "confidence"}) {
+    if (name == known) return true;
+  }
+  for (const char* known : {"diffuse_", "ambient_", "specular_", "normal_"}) {
+    if (name.starts_with(known)) return true;
+  }
+  return false;
+}
+
+// The name of the vertices' value: one of those that programs give it, or else the only real number that is no part of
+// anything else. Whole numbers of another name may be labels, which have nothing between them.
+std::string choose_values(const PlyElement& element) {
+  for (const std::string_view known : {"quality", "scalar", "value", "intensity", "scalar_"}) {
+    for (const PlyProperty& property : element.properties) {
+      const std::string name = lower_case(property.name);
+      const bool fits = known.back() == '_' ? name.starts_with(known) : name == known;
+      if (fits && !property.length_type) return property.name;
+    }
+  }
+  std::string only;
+  for (const PlyProperty& property : element.properties) {
+    if (property.length_type || !is_real(property) || is_part_of_more(lower_case(property.name))) continue;
+    if (!only.empty()) return {};
+    only = property.name;
+  }
+  return only;
+}
+
 class HeaderReader {
  public:
   explicit HeaderReader(MeshInput& input) : input_(input) {}
 
   PlyHeader read() {
-    next_line();
-    if (line_ != "ply") fail("expected 'ply'");
-    for (next_line(); line_ != "end_header"; next_line()) read_statement();
+    read_first_line();
+    do {
+      next_line();
+    } while (read_statement());
     if (!has_format_) input_.fail("its header has no 'format'");
     check_elements();
     return std::move(header_);
   }
 
  private:
+  // Its end is that of all lines; a byte order mark and empty lines before it are passed over.
+  void read_first_line() {
+    skip_byte_order_mark(input_);
+    std::string_view rest;
+    do {
+      next_line();
+      rest = line_;
+    } while (line_.empty());
+    if (lower_case(take_word(rest)) != "ply") fail("expected 'ply'");
+    line_end_ = input_.ended_in_return() ? MeshInput::LineEnd::kReturn : MeshInput::LineEnd::kNewline;
+  }
+
   void next_line() {
-    if (!input_.read_line(line_)) input_.fail("truncated: expected 'end_header', found the end of the file");
+    if (!input_.read_line(line_, line_end_)) input_.fail("truncated: expected 'end_header', found the end of the file");
     ++number_;
     bytes_ += line_.size() + 1;
     if (bytes_ > kLongestHeader) input_.fail("its header is longer than a megabyte");
     while (!line_.empty() && is_blank(line_.back())) line_.pop_back();
   }
 
-  void read_statement() {
+  // False at the last one.
+  bool read_statement() {
     std::string_view rest = line_;
-    const std::string_view keyword = take_word(rest);
+    const std::string keyword = lower_case(take_word(rest));
+    if (keyword == "end_header") return false;
     if (keyword == "format") {
       read_format(rest);
     } else if (keyword == "element") {
@@ -73,8 +128,9 @@ class HeaderReader {
     } else if (keyword == "property") {
       read_property(rest);
     } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      fail("expected element, property, comment or end_header, found '" + std::string(keyword.substr(0, 40)) + "'");
+      fail("expected element, property, comment or end_header, found '" + keyword.substr(0, 40) + "'");
     }
+    return true;
   }
 
   void read_format(std::string_view rest) {
@@ -95,7 +151,7 @@ class HeaderReader {
 
   void read_element(std::string_view rest) {
     PlyElement element;
-    element.name = take_word(rest);
+    element.name = lower_case(take_word(rest));
     const std::optional<std::uint64_t> count = parse_integer<std::uint64_t>(take_word(rest));
     if (element.name.empty() || !count || !take_word(rest).empty()) fail("expected 'element NAME COUNT'");
     element.count = *count;
@@ -110,7 +166,7 @@ class HeaderReader {
     if (header_.elements.empty()) fail("a property stands before the first element");
     PlyProperty property;
     std::string_view type = take_word(rest);
-    if (type == "list") {
+    if (lower_case(type) == "list") {
       property.length_type = read_type(take_word(rest));
       if (property.length_type == PlyType::kFloat32 || property.length_type == PlyType::kFloat64) {
         fail("expected an integer type for the length of a list");
@@ -128,31 +184,26 @@ class HeaderReader {
     element.properties.push_back(std::move(property));
   }
 
-  PlyType read_type(std::string_view name) const {
+  PlyType read_type(std::string_view written) const {
+    const std::string name = lower_case(written);
     for (const NamedType& known : kTypes) {
       if (known.name == name) return known.type;
     }
-    fail("expected a type such as 'float' or 'uchar', found '" + std::string(name.substr(0, 40)) + "'");
+    fail("expected a type such as 'float' or 'uchar', found '" + name.substr(0, 40) + "'");
   }
 
   void check_elements() {
     bool has_vertices = false;
-    bool has_faces = false;
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") {
         check_vertex(element);
+        header_.values = choose_values(element);
         has_vertices = true;
-      } else if (element.name == "face") {
-        check_face(element);
-        has_faces = true;
+      } else if (is_surface(element)) {
+        check_surface(element);
       }
     }
     if (!has_vertices) input_.fail("its header has no element 'vertex'");
-    // Strips are another way to say triangles; to skip them would be to lose the surface without a word.
-    for (const PlyElement& element : header_.elements) {
-      if (element.name == "tristrips" && element.count > 0 && !has_faces)
-        input_.fail("holds triangle strips, expected faces");
-    }
   }
 
   void check_vertex(const PlyElement& element) {
@@ -171,9 +222,11 @@ class HeaderReader {
     header_.vertices = element.count;
   }
 
-  void check_face(const PlyElement& element) const {
+  // Points alone may have faces without any property, but none of them.
+  void check_surface(const PlyElement& element) const {
     const auto lists = std::count_if(element.properties.begin(), element.properties.end(), is_corner_list);
-    if (lists != 1) input_.fail("expected one list 'vertex_indices' or 'vertex_index' in its faces");
+    if (lists == 1 || element.count == 0) return;
+    input_.fail("expected one list 'vertex_indices' or 'vertex_index' in element '" + element.name + "'");
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -181,6 +234,7 @@ class HeaderReader {
   }
 
   MeshInput& input_;
+  MeshInput::LineEnd line_end_ = MeshInput::LineEnd::kAny;
   std::string line_;
   std::size_t number_ = 0;
   std::size_t bytes_ = 0;
@@ -202,6 +256,8 @@ std::size_t bytes_of(PlyType type) {
     case PlyType::kUint32:
     case PlyType::kFloat32:
       return 4;
+    case PlyType::kInt64:
+    case PlyType::kUint64:
     case PlyType::kFloat64:
       return 8;
   }
@@ -220,6 +276,8 @@ bool has_lists(const PlyElement& element) {
   return std::any_of(element.properties.begin(), element.properties.end(),
                      [](const PlyProperty& property) { return property.length_type.has_value(); });
 }
+
+bool is_surface(const PlyElement& element) { return element.name == "face" || element.name == "tristrips"; }
 
 bool is_corner_list(const PlyProperty& property) {
   return property.length_type && (property.name == "vertex_indices" || property.name == "vertex_index");

@@ -11,7 +11,7 @@
 
 namespace isoweave::mesh_io {
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat32, kFloat64 };
 enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyProperty {
@@ -31,6 +31,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::uint64_t vertices = 0;
   bool has_normals = false;
+  std::string values;  // the property of vertices that is their value; empty: none is
 };
 
 std::size_t bytes_of(PlyType type);
@@ -39,9 +40,13 @@ std::size_t bytes_of(PlyType type);
 std::uint64_t least_bytes(const PlyElement& element, PlyEncoding encoding);
 
 bool has_lists(const PlyElement& element);
+
+// Whether its records are faces or strips of triangles.
+bool is_surface(const PlyElement& element);
 bool is_corner_list(const PlyProperty& property);
 
-// Reads up to and with the line "end_header" and checks that vertices have x, y, z and faces their corners.
+// Reads up to and with the line "end_header" and checks that vertices have x, y, z, and faces and strips
+// their corners.
 PlyHeader read_ply_header(MeshInput& input);
 
 }  // namespace isoweave::mesh_io

@@ -1,79 +1,141 @@
-// Wavefront OBJ: v, vn and f are read, polygons are fanned, all other statements are skipped.
-#include "write/mesh_input.hpp"
+// Wavefront OBJ: v, vn and f are read, polygons are fanned; other statements are skipped, and told where they are part
+// of the surface or of how it looks.
+#include <array>
+#include <utility>
+
+#include "write/mesh_leftovers.hpp"
+#include "write/mesh_words.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
+// What becomes of a statement that is skipped.
+enum class Fate { kIgnored, kNotKept, kLeftOut };
+
+struct Statement {
+  std::string_view keyword;
+  Fate fate;
+  std::string_view what;
+};
+
+constexpr std::string_view kFreeForm = "free-form curves and surfaces";
+
+constexpr std::array<Statement, 41> kSkipped{{{"vt", Fate::kNotKept, "texture coordinates"},
+                                              {"usemtl", Fate::kNotKept, "materials"},
+                                              {"mtllib", Fate::kNotKept, "materials"},
+                                              {"usemap", Fate::kNotKept, "materials"},
+                                              {"maplib", Fate::kNotKept, "materials"},
+                                              {"l", Fate::kLeftOut, "lines"},
+                                              {"p", Fate::kLeftOut, "elements of points"},
+                                              {"curv", Fate::kLeftOut, kFreeForm},
+                                              {"curv2", Fate::kLeftOut, kFreeForm},
+                                              {"surf", Fate::kLeftOut, kFreeForm},
+                                              {"call", Fate::kLeftOut, "calls of other files"},
+                                              {"g", Fate::kIgnored, ""},
+                                              {"o", Fate::kIgnored, ""},
+                                              {"s", Fate::kIgnored, ""},
+                                              {"mg", Fate::kIgnored, ""},
+                                              {"vp", Fate::kIgnored, ""},
+                                              {"deg", Fate::kIgnored, ""},
+                                              {"cstype", Fate::kIgnored, ""},
+                                              {"bmat", Fate::kIgnored, ""},
+                                              {"step", Fate::kIgnored, ""},
+                                              {"parm", Fate::kIgnored, ""},
+                                              {"trim", Fate::kIgnored, ""},
+                                              {"hole", Fate::kIgnored, ""},
+                                              {"scrv", Fate::kIgnored, ""},
+                                              {"sp", Fate::kIgnored, ""},
+                                              {"end", Fate::kIgnored, ""},
+                                              {"con", Fate::kIgnored, ""},
+                                              {"bevel", Fate::kIgnored, ""},
+                                              {"c_interp", Fate::kIgnored, ""},
+                                              {"d_interp", Fate::kIgnored, ""},
+                                              {"lod", Fate::kIgnored, ""},
+                                              {"shadow_obj", Fate::kIgnored, ""},
+                                              {"trace_obj", Fate::kIgnored, ""},
+                                              {"ctech", Fate::kIgnored, ""},
+                                              {"stech", Fate::kIgnored, ""},
+                                              {"csh", Fate::kIgnored, ""},
+                                              {"bsp", Fate::kIgnored, ""},
+                                              {"bzp", Fate::kIgnored, ""},
+                                              {"cdc", Fate::kIgnored, ""},
+                                              {"cdp", Fate::kIgnored, ""},
+                                              {"res", Fate::kIgnored, ""}}};
+
 class ObjReader {
  public:
-  explicit ObjReader(MeshInput& input) : input_(input) {}
+  explicit ObjReader(MeshInput& input) : input_(input), words_(input, true) {}
 
   TriangleMesh read() {
-    while (next_statement()) read_statement();
+    while (words_.next_line()) read_statement();
+    if (mesh_.vertices.empty() && !unknown_.empty()) {
+      input_.fail("expected OBJ statements such as 'v' and 'f', found '" + unknown_.substr(0, 40) + "'");
+    }
     check_indices();
-    // One normal per vertex is what a TriangleMesh holds; normals numbered otherwise have no place in it.
-    if (normals_follow_vertices_ && normals_.size() == mesh_.vertices.size()) mesh_.normals = std::move(normals_);
+    keep_normals();
+    leftovers_.note(mesh_);
     return std::move(mesh_);
   }
 
  private:
-  // Joins lines that end in a backslash.
-  bool next_statement() {
-    if (!input_.read_line(line_)) return false;
-    ++number_;
-    std::string more;
-    while (!line_.empty() && line_.back() == '\\') {
-      line_.back() = ' ';
-      if (!input_.read_line(more)) fail("truncated: expected a line after '\\', found the end of the file");
-      ++number_;
-      if (line_.size() + more.size() > kLongestLine) fail("a statement is longer than a megabyte");
-      line_ += more;
-    }
-    return true;
-  }
-
   void read_statement() {
-    std::string_view rest = line_;
-    const std::string_view keyword = take_word(rest);
-    if (keyword.empty() || keyword.front() == '#') return;
+    const std::string keyword = lower_case(words_.next_on_line());
     if (keyword == "v") {
-      if (mesh_.vertices.size() == kMostVertices) fail("more than 4294967295 vertices");
-      mesh_.vertices.push_back(read_point(rest));
+      read_vertex();
     } else if (keyword == "vn") {
-      normals_.push_back(read_point(rest));
-    } else if (keyword == "f") {
-      read_face(rest);
+      normals_.push_back(read_point());
+      count_numbers();
+    } else if (keyword == "f" || keyword == "fo") {
+      read_face();
     } else {
-      check_skipped(keyword);
+      skip(keyword);
     }
   }
 
   // Programs add statements of their own; a word that is no identifier shows that this is no OBJ file.
-  void check_skipped(std::string_view keyword) const {
-    for (const char c : keyword) {
-      const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-      if (!fits) fail("expected an OBJ statement such as 'v' or 'f'");
+  void skip(const std::string& keyword) {
+    for (const Statement& known : kSkipped) {
+      if (known.keyword != keyword) continue;
+      if (known.fate == Fate::kNotKept) leftovers_.not_kept(known.what);
+      if (known.fate == Fate::kLeftOut) leftovers_.left_out(1, known.what);
+      return;
     }
+    for (const char c : keyword) {
+      const bool fits = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+      if (!fits) words_.fail("expected an OBJ statement such as 'v' or 'f'", keyword);
+    }
+    if (unknown_.empty()) unknown_ = keyword;
   }
 
-  // The first three numbers; w and colours may follow.
-  Point read_point(std::string_view rest) const {
+  Point read_point() {
     Point point{};
-    for (float& coordinate : point) {
-      const std::optional<float> value = parse_real<float>(take_word(rest));
-      if (!value || !std::isfinite(*value)) fail("expected three finite numbers");
-      coordinate = *value;
-    }
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
-      if (!parse_real<double>(word)) fail("expected a number, found '" + std::string(word.substr(0, 40)) + "'");
-    }
+    for (float& coordinate : point) coordinate = words_.coordinate(words_.next_on_line());
     return point;
   }
 
-  void read_face(std::string_view rest) {
+  // Of the numbers behind the coordinates one is a weight, which counts for free-form surfaces, three are a colour.
+  void read_vertex() {
+    if (mesh_.vertices.size() == kMostVertices) words_.fail("more than 4294967295 vertices");
+    mesh_.vertices.push_back(read_point());
+    const std::size_t more = count_numbers();
+    if (more >= 3) leftovers_.not_kept("colours of vertices");
+  }
+
+  std::size_t count_numbers() {
+    std::size_t count = 0;
+    for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
+      if (!parse_real<double>(word)) words_.fail("expected a number", word);
+      ++count;
+    }
+    return count;
+  }
+
+  void read_face() {
     PolygonFan fan(mesh_.triangles);
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) fan.add(read_corner(word));
-    if (fan.corners() < 3) fail("expected a face of three corners or more, found " + std::to_string(fan.corners()));
+    for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
+      fan.add(read_corner(word));
+    }
+    if (fan.corners() < 3) leftovers_.left_out(1, kFewCorners);
   }
 
   // a, a/b, a//c or a/b/c: vertex, texture coordinate, normal.
@@ -81,9 +143,11 @@ class ObjReader {
     const std::string_view vertex = take_field(word);
     const std::string_view texture = take_field(word);
     const std::string_view normal = take_field(word);
-    if (!word.empty()) fail("expected a corner of at most three numbers");
+    if (!word.empty()) words_.fail("expected a corner of at most three numbers");
     const std::uint32_t index = read_index(vertex, mesh_.vertices.size());
-    if (!texture.empty() && !parse_integer<std::int64_t>(texture)) fail("expected a number between slashes");
+    if (!texture.empty() && !parse_integer<std::int64_t>(texture)) {
+      words_.fail("expected a number between slashes", texture);
+    }
     if (normal.empty() || read_index(normal, normals_.size()) != index) normals_follow_vertices_ = false;
     return index;
   }
@@ -100,7 +164,7 @@ class ObjReader {
     const std::optional<std::int64_t> value = parse_integer<std::int64_t>(text);
     const std::int64_t index = !value ? -1 : *value > 0 ? *value - 1 : static_cast<std::int64_t>(count) + *value;
     const bool fits = value && *value != 0 && index >= 0 && index < static_cast<std::int64_t>(kMostVertices);
-    if (!fits) fail("expected the number of a vertex or normal, found '" + std::string(text.substr(0, 40)) + "'");
+    if (!fits) words_.fail("expected the number of a vertex or normal", text);
     return static_cast<std::uint32_t>(index);
   }
 
@@ -115,14 +179,21 @@ class ObjReader {
     }
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    input_.fail("line " + std::to_string(number_) + ": " + what);
+  // One normal per vertex is what a TriangleMesh holds; normals numbered otherwise have no place in it.
+  void keep_normals() {
+    if (normals_.empty()) return;
+    if (normals_follow_vertices_ && normals_.size() == mesh_.vertices.size()) {
+      mesh_.normals = std::move(normals_);
+    } else {
+      leftovers_.not_kept("normals that are not numbered as the vertices are");
+    }
   }
 
   MeshInput& input_;
-  std::string line_;
-  std::uint64_t number_ = 0;
+  MeshWords words_;
+  std::string unknown_;  // the first statement that is not one of OBJ
   TriangleMesh mesh_;
+  MeshLeftovers leftovers_;
   std::vector<Point> normals_;
   bool normals_follow_vertices_ = true;
 };

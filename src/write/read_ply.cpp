@@ -1,7 +1,9 @@
-// PLY: any order and type of properties, lists, further elements; ascii, little- and big-endian.
+// PLY: any order and type of properties, lists, strips, further elements; ascii, little- and big-endian.
 #include <array>
 #include <bit>
 
+#include "volume/printable.hpp"
+#include "write/mesh_leftovers.hpp"
 #include "write/ply_header.hpp"
 
 namespace isoweave::mesh_io {
@@ -17,7 +19,7 @@ std::uint64_t load_bits(std::span<const std::byte> bytes, bool big_endian) {
   return bits;
 }
 
-// Every PLY type fits in a double exactly.
+// Every PLY type fits in a double exactly, but for integers beyond 2^53, which are no index.
 double number_from_bits(std::uint64_t bits, PlyType type) {
   switch (type) {
     case PlyType::kInt8:
@@ -26,9 +28,12 @@ double number_from_bits(std::uint64_t bits, PlyType type) {
       return static_cast<std::int16_t>(bits);
     case PlyType::kInt32:
       return static_cast<std::int32_t>(bits);
+    case PlyType::kInt64:
+      return static_cast<double>(static_cast<std::int64_t>(bits));
     case PlyType::kUint8:
     case PlyType::kUint16:
     case PlyType::kUint32:
+    case PlyType::kUint64:
       return static_cast<double>(bits);
     case PlyType::kFloat32:
       return double{std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
@@ -56,11 +61,14 @@ class PlyReader {
         read_vertices(element);
       } else if (element.name == "face") {
         read_faces(element);
+      } else if (element.name == "tristrips") {
+        read_strips(element);
       } else {
         skip_element(element);
       }
     }
     check_end();
+    note_leftovers();
     return std::move(mesh_);
   }
 
@@ -143,8 +151,8 @@ class PlyReader {
     for (std::uint64_t vertex = read_plain_vertices(element); vertex < element.count; ++vertex) {
       std::array<float, 6> values{};
       for (std::size_t i = 0; i < slots.size(); ++i) {
-        if (slots[i] == kQualitySlot) {
-          mesh_.values.push_back(next_quality(element.properties[i]));
+        if (slots[i] == kValueSlot) {
+          mesh_.values.push_back(next_value(element.properties[i]));
         } else if (slots[i] < 0) {
           skip_value(element.properties[i]);
         } else {
@@ -176,15 +184,15 @@ class PlyReader {
     });
   }
 
-  // Where each property belongs among x y z nx ny nz, or that it is the quality; -1 for all others.
+  // Where each property belongs among x y z nx ny nz, or that it is the value; -1 for all others.
   std::vector<int> coordinate_slots(const PlyElement& element) const {
     constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
     std::vector<int> slots;
     for (const PlyProperty& property : element.properties) {
       const auto found = std::find(kNames.begin(), kNames.begin() + (header_.has_normals ? 6 : 3), property.name);
       const bool used = found != kNames.begin() + (header_.has_normals ? 6 : 3);
-      const bool is_quality = property.name == "quality" && !property.length_type;
-      slots.push_back(used ? static_cast<int>(found - kNames.begin()) : is_quality ? kQualitySlot : -1);
+      const bool is_value = property.name == header_.values;
+      slots.push_back(used ? static_cast<int>(found - kNames.begin()) : is_value ? kValueSlot : -1);
     }
     return slots;
   }
@@ -198,7 +206,7 @@ class PlyReader {
     return static_cast<float>(value);
   }
 
-  float next_quality(const PlyProperty& property) {
+  float next_value(const PlyProperty& property) {
     const double value = next(property.type);
     const bool fits = std::abs(value) <= double{std::numeric_limits<float>::max()};
     return fits ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
@@ -242,17 +250,67 @@ class PlyReader {
 
   void read_corners(const PlyProperty& property, std::uint64_t face) {
     const std::uint64_t length = next_list_length(property);
-    if (length < 3) {
-      input_.fail("face " + std::to_string(face) + " has " + std::to_string(length) + " corners, expected 3 or more");
-    }
     PolygonFan fan(mesh_.triangles);
+    for (std::uint64_t i = 0; i < length; ++i) fan.add(checked_corner(next(property.type), "face ", face));
+    if (length < 3) leftovers_.left_out(1, kFewCorners);
+  }
+
+  std::uint32_t checked_corner(double index, const char* what, std::uint64_t record) const {
+    if (!(index >= 0 && index < static_cast<double>(header_.vertices)) || index != std::floor(index)) {
+      input_.fail(what + std::to_string(record) + " refers to vertex " + text_of(index) + ", the file has " +
+                  std::to_string(header_.vertices));
+    }
+    return static_cast<std::uint32_t>(index);
+  }
+
+  void read_strips(const PlyElement& element) {
+    for (std::uint64_t strip = 0; strip < element.count; ++strip) {
+      for (const PlyProperty& property : element.properties) {
+        is_corner_list(property) ? read_strip(property, strip) : skip_value(property);
+      }
+    }
+  }
+
+  // Every second triangle is turned over. A corner of -1 begins another strip; triangles that repeat a corner only lead
+  // from one part of a strip to the next.
+  void read_strip(const PlyProperty& property, std::uint64_t strip) {
+    const std::uint64_t length = next_list_length(property);
+    std::array<std::uint32_t, 3> last{};
+    std::uint64_t corners = 0;
     for (std::uint64_t i = 0; i < length; ++i) {
       const double index = next(property.type);
-      if (!(index >= 0 && index < static_cast<double>(header_.vertices)) || index != std::floor(index)) {
-        input_.fail("face " + std::to_string(face) + " refers to vertex " + text_of(index) + ", the file has " +
-                    std::to_string(header_.vertices));
+      if (index == -1) {
+        corners = 0;
+        continue;
       }
-      fan.add(static_cast<std::uint32_t>(index));
+      last = {last[1], last[2], checked_corner(index, "strip ", strip)};
+      if (++corners < 3 || last[0] == last[1] || last[1] == last[2] || last[2] == last[0]) continue;
+      const bool turned = corners % 2 == 0;
+      mesh_.triangles.push_back({last[turned ? 1 : 0], last[turned ? 0 : 1], last[2]});
+    }
+  }
+
+  void note_leftovers() {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") {
+        note_vertices(element);
+      } else if (!is_surface(element)) {
+        leftovers_.left_out(element.count, "of '" + element.name + "'");
+      } else if (element.count > 0) {
+        for (const PlyProperty& property : element.properties) {
+          if (!is_corner_list(property)) leftovers_.not_kept(property.name + " of faces");
+        }
+      }
+    }
+    leftovers_.note(mesh_);
+    if (header_.values.empty() || header_.values == "quality") return;
+    mesh_.notes.push_back("the values at its vertices are the property " + quoted(header_.values));
+  }
+
+  void note_vertices(const PlyElement& element) {
+    const std::vector<int> slots = coordinate_slots(element);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (slots[i] < 0) leftovers_.not_kept(element.properties[i].name);
     }
   }
 
@@ -265,12 +323,13 @@ class PlyReader {
     }
   }
 
-  static constexpr int kQualitySlot = 6;
+  static constexpr int kValueSlot = 6;
   static constexpr bool kIsLittleEndian = std::endian::native == std::endian::little;
 
   MeshInput& input_;
   PlyHeader header_;
   TriangleMesh mesh_;
+  MeshLeftovers leftovers_;
 };
 
 }  // namespace

@@ -256,6 +256,24 @@ void put_meshes(Seeds& seeds) {
   seeds.put("obj",
             "# c\nmtllib m\no a\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\n"
             "f 1/1/1 2/1/1 3/1/1\nf -4 -2 -1\nf 1//1 2//1 3//1 4//1\n");
+  seeds.put(
+      "ply",
+      "\xEF\xBB\xBFPLY\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\rproperty float z\r"
+      "property uchar red\rproperty float scalar_a\relement edge 1\rproperty list uint64 int8 l\relement tristrips "
+      "1\rproperty list int int64 vertex_index\rend_header\r0 0 0 9 1\r1 0 0 9 2\r0 1 0 9 3\r0 0 1 9 4\r2 1 2\r"
+      "8 0 1 2 3 -1 3 2 1\r");
+  seeds.put(
+      "stl",
+      "\n SOLID s facet normal nan 0 0 outer loop vertex 0D0 0 0\rvertex 1 0 0\rVERTEX 0 1 0 end loop\nend facet\n"
+      "end solid\nsolid\nendsolid");
+  seeds.put("stl", std::string(80, 's') + std::string("\0\0\0\0", 4) + std::string(100, '\1'));
+  seeds.put("stl", std::string(80, 's') + std::string("\1\0\0\0", 4) + std::string(70, '\0'));
+  seeds.put("obj",
+            "\xEF\xBB\xBF# c\\\nV 0 0 0 1 # w\r\nv 1 0 0 .5 .5 .5\rv 0 1 \\ \n 1e-400\nfo 1 \\\n2 3\nl 1 2\np 1\n"
+            "cstype bezier\ndeg 1\nsurf 0 1 0 1 1 2\nparm u 0 1\nend\nf 1 2\nplugin 3\nf\n");
+  seeds.put("off", "STCNOFF4 2\n0 0 0 0 0 1\n1 0 0 1 1 1 1\n0 1\n0 7\n0 0 1\n3 0 1 2 7\n4 0 1\n3 2 7\n");
+  seeds.put("off", "# c\nnoff # d\n3 2 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n2 0 1\n");
+  seeds.put("off", "3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2 0.5 0.5 1\r");
   seeds.put("off", "OFF # one line\n4 2 0\n0 0 0\n1 0 0\n\n0 1 0\n0 0 1\n4 0 1 2 3 255 0 0\n3 1 2 3\n");
   seeds.put(
       "3mf_model",

@@ -40,6 +40,15 @@ std::vector<Sample> samples() {
       {"b.stl",
        "solid name\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
        "endsolid name\n"},
+      {"c.ply",
+       "\xEF\xBB\xBFply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\rproperty float z\r"
+       "property float intensity\relement tristrips 1\rproperty list int int64 vertex_indices\rend_header\r"
+       "0 0 0 1\r1 0 0 2\r0 1 0 3\r0 0 1 4\r8 0 1 2 3 -1 3 2 1\r"},
+      {"c.stl",
+       "\n SOLID name\nFACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX 1D0 0 0\nVERTEX 0 1 0\nEND LOOP "
+       "END FACET\nEND SOLID\n"},
+      {"c.off", "STCNOFF4 2\n0 0 0 0 0 1\n1 0 0 1 1 1 1\n0 1\n0 7\n0 0 1\n3 0 1 2 7\n4 0 1\n3 2 7\n"},
+      {"c.obj", "# c\\\nV 0 0 0 # c\nv 1 0 0 1 1 1\nv 0 \\\n1 0\nl 1 2\np 1\nf 1 2\nsurf 0 1 0 1 1\nfo 1 2 3\n"},
       {"b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -1 -2 -3\n"}};
   all.insert(all.end(), others.begin(), others.end());
   return all;

@@ -1,0 +1,60 @@
+// Mesh files of text, word by word: what STL, OBJ and OFF have in common.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "write/mesh_input.hpp"
+
+namespace isoweave::mesh_io {
+
+// A byte order mark at the beginning of the file is passed over. Lines end as MeshInput::read_line says; a '#' that
+// begins a word begins a comment.
+class MeshWords {
+ public:
+  // continued: a line that ends in a backslash goes on in the next one.
+  explicit MeshWords(MeshInput& input, bool continued = false);
+
+  // Moves to the next line with a word on it; false at the end of the file.
+  bool next_line();
+
+  // The next word of the line; empty where there is none.
+  std::string_view next_on_line() { return take_word(rest_); }
+
+  // The next word of the file, on a later line where this one has no more; empty at the end of the file.
+  std::string_view next();
+
+  // The next word of the file as a number that is finite in 32 bits.
+  float next_coordinate() { return coordinate(next()); }
+  Point next_point() { return {next_coordinate(), next_coordinate(), next_coordinate()}; }
+
+  // What a word says as a number that is finite in 32 bits.
+  float coordinate(std::string_view word) const;
+
+  // What is left of the line, and where in it to go on.
+  std::string_view rest() const { return rest_; }
+  void go_on_at(std::string_view rest) { rest_ = rest; }
+  void skip_line() { rest_ = {}; }
+
+  // "PATH: line N: WHAT".
+  [[noreturn]] void fail(const std::string& what) const;
+
+  // "PATH: line N: expected EXPECTED, found 'WORD'", or the end of the file where there is no word.
+  [[noreturn]] void fail(const std::string& expected, std::string_view word) const;
+
+ private:
+  bool read_line();
+  void join_continued();
+
+  MeshInput& input_;
+  const bool continued_;
+  std::string line_, more_;
+  std::string_view rest_;
+  std::uint64_t number_ = 0;
+};
+
+// The word with its capitals A to Z as small letters.
+std::string lower_case(std::string_view word);
+
+}  // namespace isoweave::mesh_io
