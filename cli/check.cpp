@@ -2,7 +2,9 @@
 #include <cmath>
 #include <memory>
 
+#include "input_mesh.hpp"
 #include "isoweave/measure.hpp"
+#include "isoweave/weld.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -16,7 +18,7 @@ constexpr std::size_t kListedPairs = 10;
 
 struct CheckArguments {
   std::string path, threads = "all";
-  bool self_intersections = false, json = false;
+  bool self_intersections = false, json = false, weld = false;
 };
 
 std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
@@ -72,12 +74,28 @@ std::string self_intersections_text(const SelfIntersections& found) {
   return text;
 }
 
+// What there is to know beside the counts.
+void tell_input(const CheckArguments& arguments, const InputMesh& input, const MeshCheck& check, Json& json) {
+  std::vector<std::string> warnings = mesh_warnings(arguments.path, input.mesh);
+  if (check.open_edges > 0 && !arguments.weld) {
+    const std::uint64_t seam_edges = count_seam_edges(input.mesh);
+    json["seam_edges"] = seam_edges;
+    for (std::string& warning : seam_warnings(arguments.path, seam_edges)) warnings.push_back(std::move(warning));
+  }
+  if (arguments.weld) json["welded"] = input.welded;
+  json["warnings"] = warnings;
+  print_welded(arguments.path, arguments.weld, input.welded);
+  for (const std::string& warning : warnings) print_note("warning: " + warning);
+}
+
 void run_check(const CheckArguments& arguments) {
   const int threads = parse_threads(arguments.threads);
   exit_on_signal();
-  const TriangleMesh mesh = read_mesh(arguments.path);
+  const InputMesh input = read_input_mesh(arguments.path, arguments.weld);
+  const TriangleMesh& mesh = input.mesh;
   const MeshCheck check = check_mesh(mesh);
   Json json = check_json(check, arguments.path);
+  tell_input(arguments, input, check, json);
   std::string text = check_text(check, arguments.path);
   if (arguments.self_intersections) {
     const SelfIntersections found = count_self_intersections(mesh, kListedPairs, threads);
@@ -93,6 +111,7 @@ void add_check_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
   verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  add_weld_option(*verb, arguments->weld);
   verb->add_flag("--self-intersections", arguments->self_intersections,
                  "Count the pairs of triangles that meet beyond what they share, exactly");
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "input_mesh.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/mesh.hpp"
@@ -60,6 +61,7 @@ void write_distances(const CompareArguments& arguments, TriangleMesh& a, const T
 TriangleMesh read_surface(const std::string& path) {
   TriangleMesh mesh = read_mesh(path);
   if (mesh.triangles.empty()) throw BadInput(path + ": expected a mesh with triangles, found none");
+  print_mesh_warnings(path, mesh);
   return mesh;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "input_mesh.hpp"
 #include "isoweave/error.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -129,10 +130,11 @@ void run_render(const RenderArguments& arguments) {
   exit_on_signal();
   TriangleMesh mesh = read_mesh(arguments.path);
   if (mesh.triangles.empty()) throw BadInput(arguments.path + ": expected a mesh with triangles, found none");
+  if (!arguments.quiet) print_mesh_warnings(arguments.path, mesh);
   if (arguments.colour_by.empty()) {
     mesh.values.clear();
   } else if (mesh.values.empty()) {
-    throw BadInput(arguments.path + ": expected a PLY file with a number 'quality' at each vertex, found none");
+    throw BadInput(arguments.path + ": expected a PLY file with a number such as 'quality' at each vertex, found none");
   }
   write_png(arguments.output, render_mesh(mesh, options, mesh.values));
   if (!arguments.quiet) {

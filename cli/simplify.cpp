@@ -5,6 +5,8 @@
 
 #include "components.hpp"
 #include "evidence.hpp"
+#include "input_mesh.hpp"
+#include "isoweave/weld.hpp"
 #include "lods.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
@@ -13,6 +15,7 @@
 #include "signals.hpp"
 #include "stop.hpp"
 #include "verbs.hpp"
+#include "write/mesh_format.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -30,6 +33,7 @@ struct SimplifyArguments {
   OutputOptions output;
   RunOptions run;
   PageOptions page;
+  bool weld = false;
 };
 
 Json report_json(const MeshReport& report, const SimplifyArguments& arguments) {
@@ -45,8 +49,10 @@ Json report_json(const MeshReport& report, const SimplifyArguments& arguments) {
 }
 
 // How the mesh of a level is to be written.
-MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles) {
+MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles,
+                             bool values) {
   MeshFileOptions file;
+  file.values = values;
   file.comments = {"isoweave " ISOWEAVE_VERSION,
                    fmt::format("simplified, {} quality {}",
                                stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality) +
@@ -62,6 +68,27 @@ void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.vertices_extracted += dropped.vertices;
   if (dropped.components == 0 || report.triangles_dropped < report.triangles_extracted) return;
   report.warnings.push_back(fmt::format("nothing is left: each of {} components is dropped", dropped.components));
+}
+
+bool holds_values(const OutputOptions& output) {
+  return output.to_stdout.empty() ? isoweave::holds_values(mesh_format(output.path)) : output.to_stdout == "ply";
+}
+
+// What the input has and the output will not have.
+std::vector<std::string> input_warnings(const SimplifyArguments& arguments, const TriangleMesh& mesh) {
+  std::vector<std::string> warnings = mesh_warnings(arguments.input, mesh);
+  if (!mesh.values.empty() && !holds_values(arguments.output)) {
+    warnings.push_back(arguments.input + ": the values at its vertices are not kept, which needs .ply or .vtp");
+  }
+  return warnings;
+}
+
+// A border that stays may be a seam.
+void add_seams(const SimplifyArguments& arguments, const TriangleMesh& mesh, MeshReport& report) {
+  if (report.open_edges == 0 || arguments.weld) return;
+  for (std::string& warning : seam_warnings(arguments.input, count_seam_edges(mesh))) {
+    report.warnings.push_back(std::move(warning));
+  }
 }
 
 // The mesh as it is in the file, beside the one that was given.
@@ -94,23 +121,31 @@ void run_simplify(const SimplifyArguments& arguments) {
   }
 
   exit_on_signal();
-  TriangleMesh mesh = read_mesh(arguments.input);
+  InputMesh input = read_input_mesh(arguments.input, arguments.weld);
+  TriangleMesh& mesh = input.mesh;
+  const std::vector<std::string> warnings = input_warnings(arguments, mesh);
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
-  const LevelSinks sinks(outputs, [&](std::size_t level) { return file_options(arguments, level, options.triangles); });
+  const bool values = !mesh.values.empty() && holds_values(arguments.output);
+  const LevelSinks sinks(outputs,
+                         [&](std::size_t level) { return file_options(arguments, level, options.triangles, values); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
+  report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
+  add_seams(arguments, mesh, report);
   add_dropped(dropped, report);
   printer.finish();
   Json json = report_json(report, arguments);
+  if (arguments.weld) json["input"]["welded"] = input.welded;
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
+  print_welded(arguments.input, arguments.weld, input.welded);
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());
   print_dropped(report);
@@ -127,6 +162,7 @@ void add_simplify_verb(CLI::App& app) {
   verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
   add_output_options(*verb, arguments->output);
   add_stop_options(*verb, arguments->stop);
+  add_weld_option(*verb, arguments->weld);
   add_component_options(*verb, arguments->components, "mesh as it is given");
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   add_run_options(*verb, arguments->run);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "input_mesh.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
 #include "options.hpp"
@@ -76,6 +77,7 @@ void run_view(ViewArguments arguments) {
   check_different(
       {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
   PageContents contents{read_mesh(mesh_path)};
+  if (!arguments.quiet) print_mesh_warnings(mesh_path, contents.mesh);
   if (report.contains("levels")) {
     for (const Json& level : report["levels"]) contents.finer.push_back(read_mesh(mesh_of(level, arguments.input)));
   }

@@ -111,11 +111,13 @@ void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
       vertices_);
   piece.positions.resize(vertices_.size());
   piece.ids.resize(vertices_.size());
+  piece.values.resize(mesh_.values.empty() ? 0 : vertices_.size());
   executor_.for_each(static_cast<std::int64_t>(vertices_.size()), kBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const std::uint32_t v = vertices_[n];
     piece.positions[n] = position_of(mesh_.vertices[v]);
     piece.ids[n] = v;
+    if (!mesh_.values.empty()) piece.values[n] = mesh_.values[v];
     number_[v] = piece.inherited + static_cast<std::uint32_t>(n);
   });
 }

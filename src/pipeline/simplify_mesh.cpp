@@ -110,6 +110,7 @@ class MeshRun {
     if (surface_.dropped() > 0) {
       report_.warnings.push_back(std::to_string(surface_.dropped()) + " triangles that repeat a vertex are left out");
     }
+    if (!mesh_.normals.empty()) report_.warnings.push_back("the normals of the mesh are not kept");
     if (report_.locked_vertices > 0) {
       report_.warnings.push_back(std::to_string(report_.locked_vertices) +
                                  " vertices are not on an oriented manifold and stay where they are");
@@ -156,6 +157,10 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
 MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
                          const RunControl& control) {
   check_sinks(sinks.size(), options.levels.size());
+  if (!mesh.values.empty() && mesh.values.size() != mesh.vertices.size()) {
+    throw std::invalid_argument("values of a mesh: expected one for each of " + std::to_string(mesh.vertices.size()) +
+                                " vertices, found " + std::to_string(mesh.values.size()));
+  }
   if (control.device == Device::kCuda) {
     throw std::invalid_argument("a CUDA device: expected a volume, found a mesh, which takes processors");
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "isoweave/measure.hpp"
@@ -47,6 +48,13 @@ TriangleMesh two_squares_sharing_a_corner(std::uint32_t n) {
   return mesh;
 }
 
+// A grid of 24 x 24 squares in waves.
+TriangleMesh waves() {
+  TriangleMesh mesh = meshes::grid(24);
+  for (Point& p : mesh.vertices) p[2] = std::sin(p[0] * 0.4F) * std::cos(p[1] * 0.3F);
+  return mesh;
+}
+
 TEST(SimplifyMesh, AManifoldHasNothingLocked) {
   EXPECT_EQ(simplify(meshes::cube()).report.locked_vertices, 0u);
   const Result flat = simplify(meshes::grid(12));
@@ -83,6 +91,34 @@ TEST(SimplifyMesh, TrianglesThatRepeatAVertexAreLeftOut) {
   ASSERT_EQ(result.report.warnings.size(), 1u);
   EXPECT_NE(result.report.warnings.front().find("1 triangles that repeat a vertex"), std::string::npos);
   EXPECT_EQ(result.report.digest, simplify(meshes::grid(6)).report.digest);
+}
+
+// Of a plate whose values are the places along x: each is what its place asks for, in between too.
+TEST(SimplifyMesh, ValuesGoWithTheirPlaces) {
+  const TriangleMesh plain = waves();
+  TriangleMesh mesh = plain;
+  for (const Point& p : mesh.vertices) mesh.values.push_back(p[0]);
+  for (const int threads : {1, 3}) {
+    const Result with = simplify(mesh, threads);
+    EXPECT_EQ(with.report.digest, simplify(plain, threads).report.digest) << "the mesh is the same without values";
+    ASSERT_EQ(with.mesh.values.size(), with.mesh.vertices.size());
+    EXPECT_LT(with.mesh.vertices.size(), mesh.vertices.size() / 3);
+    double off = 0;
+    for (std::size_t v = 0; v < with.mesh.vertices.size(); ++v) {
+      off = std::max(off, std::abs(double{with.mesh.values[v]} - with.mesh.vertices[v][0]));
+    }
+    EXPECT_LT(off, 1) << "of 24 along x";
+    EXPECT_GT(off, 0) << "interpolated, not looked up";
+  }
+}
+
+TEST(SimplifyMesh, ValuesAndNormalsThatDoNotFit) {
+  TriangleMesh mesh = meshes::grid(6);
+  mesh.values.assign(3, 1);
+  EXPECT_THROW(simplify(mesh), std::invalid_argument);
+  mesh.values.clear();
+  mesh.normals.assign(mesh.vertices.size(), {0, 0, 1});
+  EXPECT_EQ(simplify(mesh).report.warnings, std::vector<std::string>{"the normals of the mesh are not kept"});
 }
 
 TEST(SimplifyMesh, AVertexThatTheMeshDoesNotHaveIsRefused) {

@@ -1,0 +1,34 @@
+// Meshes as verbs read them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave::cli {
+
+void add_weld_option(CLI::App& verb, bool& weld);
+
+struct InputMesh {
+  TriangleMesh mesh;
+  std::uint64_t welded = 0;  // vertices that --weld has taken away
+};
+
+InputMesh read_input_mesh(const std::string& path, bool weld);
+
+// What a user should know of a mesh that was read, one line each.
+std::vector<std::string> mesh_warnings(const std::string& path, const TriangleMesh& mesh);
+
+// A line for each of them on standard error.
+void print_mesh_warnings(const std::string& path, const TriangleMesh& mesh);
+
+// Says how many vertices were welded, if that was asked for.
+void print_welded(const std::string& path, bool weld, std::uint64_t welded);
+
+// A warning about so many edges of seams, with the way out; none where there are none.
+std::vector<std::string> seam_warnings(const std::string& path, std::uint64_t seam_edges);
+
+}  // namespace isoweave::cli
