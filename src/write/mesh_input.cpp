@@ -31,14 +31,6 @@ int open_regular(const std::string& path, std::uint64_t& size) {
   return fd;
 }
 
-void check_finite(const MeshInput& input, const std::vector<Point>& points, const std::string& what) {
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    for (const float coordinate : points[n]) {
-      if (!std::isfinite(coordinate)) input.fail(what + std::to_string(n) + " has a coordinate that is not finite");
-    }
-  }
-}
-
 }  // namespace
 
 MeshInput::MeshInput(const std::string& path) : path_(path), fd_(open_regular(path, size_)) {
@@ -158,8 +150,12 @@ std::string MeshInput::head(std::size_t bytes) const {
 }
 
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
-  check_finite(input, mesh.vertices, "vertex ");
-  check_finite(input, mesh.normals, "the normal of vertex ");
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+    for (const float coordinate : mesh.vertices[n]) {
+      if (!std::isfinite(coordinate))
+        input.fail("vertex " + std::to_string(n) + " has a coordinate that is not finite");
+    }
+  }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index < mesh.vertices.size()) continue;

@@ -5,25 +5,6 @@
 namespace isoweave::mesh_io {
 namespace {
 
-// A number that even a double cannot hold, because it is too small: 0 then.
-bool is_tiny(std::string_view word) {
-  double ignored = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
-  const bool whole = end == word.data() + word.size() && error == std::errc::result_out_of_range;
-  return whole && (word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos);
-}
-
-// Fortran writes the exponent of a double with a D.
-std::optional<float> parse_coordinate(std::string_view word) {
-  if (const std::optional<float> value = parse_real<float>(word)) return value;
-  if (is_tiny(word)) return 0.0F;
-  const std::size_t exponent = word.find_first_of("dD");
-  if (exponent == std::string_view::npos) return std::nullopt;
-  std::string text(word);
-  text[exponent] = 'e';
-  return parse_real<float>(text);
-}
-
 // The line before its comment, which begins a word: what Windows writes for infinity, 1.#INF, has none.
 std::string_view without_comment(std::string_view line) {
   for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
@@ -37,6 +18,19 @@ bool is_number(std::string_view word) {
 }
 
 }  // namespace
+
+// A number that even a double cannot hold, because it is too small.
+bool is_tiny_number(std::string_view word) {
+  double ignored = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
+  const bool whole = end == word.data() + word.size() && error == std::errc::result_out_of_range;
+  return whole && (word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos);
+}
+
+const char* expected_number(std::string_view found) {
+  const bool comma = found.find(',') != std::string_view::npos;
+  return comma ? "expected a number with a decimal point" : "expected a number";
+}
 
 std::string lower_case(std::string_view word) {
   std::string lower(word);
@@ -66,11 +60,14 @@ std::string_view MeshWords::next() {
 }
 
 float MeshWords::coordinate(std::string_view word) const {
-  const std::optional<float> value = parse_coordinate(word);
+  const std::optional<float> value = parse_number<float>(word);
   if (value && std::isfinite(*value)) return *value;
-  if (value || is_number(word)) fail("expected a finite number", word);
-  const bool comma = word.find(',') != std::string_view::npos;
-  fail(comma ? "expected a number with a decimal point" : "expected a number", word);
+  fail(value || is_number(word) ? "expected a finite number" : expected_number(word), word);
+}
+
+float MeshWords::component(std::string_view word) const {
+  const std::optional<float> value = parse_number<float>(word);
+  return value ? *value : coordinate(word);
 }
 
 void MeshWords::fail(const std::string& what) const { input_.fail("line " + std::to_string(number_) + ": " + what); }

@@ -9,6 +9,25 @@
 
 namespace isoweave::mesh_io {
 
+bool is_tiny_number(std::string_view word);
+
+// What stands for `expected` in messages about a word that is no number.
+const char* expected_number(std::string_view found);
+
+// The whole of a word as a number, in the ways of all programs: with a D before its exponent, as Fortran writes
+// doubles, or as 1.#INF and 1.#QNAN, as Windows once wrote what is not finite.
+template <class Real>
+std::optional<Real> parse_number(std::string_view word) {
+  if (const std::optional<Real> value = parse_real<Real>(word)) return value;
+  if (is_tiny_number(word)) return Real{0};
+  if (word.find(".#") != std::string_view::npos) return std::numeric_limits<Real>::quiet_NaN();
+  const std::size_t exponent = word.find_first_of("dD");
+  if (exponent == std::string_view::npos) return std::nullopt;
+  std::string text(word);
+  text[exponent] = 'e';
+  return parse_real<Real>(text);
+}
+
 // A byte order mark at the beginning of the file is passed over. Lines end as MeshInput::read_line says; a '#' that
 // begins a word begins a comment.
 class MeshWords {
@@ -31,6 +50,10 @@ class MeshWords {
 
   // What a word says as a number that is finite in 32 bits.
   float coordinate(std::string_view word) const;
+
+  // The same for a component of a normal, which need not be finite.
+  float component(std::string_view word) const;
+  Point next_normal() { return {component(next()), component(next()), component(next())}; }
 
   // What is left of the line, and where in it to go on.
   std::string_view rest() const { return rest_; }

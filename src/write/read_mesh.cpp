@@ -1,5 +1,6 @@
 // Tells the format of a mesh file by its content, then by its name.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -90,6 +91,17 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   input.fail("is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
 }
 
+// Programs write 'nan' as the normal of a vertex that has none. Such normals are of no use, and others are made from
+// the triangles where there are none.
+void drop_bad_normals(TriangleMesh& mesh) {
+  const auto bad = std::count_if(mesh.normals.begin(), mesh.normals.end(), [](const Point& normal) {
+    return !(std::isfinite(normal[0]) && std::isfinite(normal[1]) && std::isfinite(normal[2]));
+  });
+  if (bad == 0) return;
+  mesh.normals.clear();
+  mesh.notes.push_back("not kept: normals, of which " + std::to_string(bad) + " are not finite");
+}
+
 // A mesh of nothing at all is what an empty surface is written as.
 void note_missing_triangles(TriangleMesh& mesh) {
   if (!mesh.triangles.empty() || mesh.vertices.empty()) return;
@@ -106,6 +118,7 @@ TriangleMesh read_mesh(const std::string& path) {
   const bool named_obj = has_ending(path, ".obj");
   std::optional<TriangleMesh> told = read_by_content(input, head, named_obj);
   TriangleMesh mesh = told ? std::move(*told) : read_by_name(input, path, head, named_obj);
+  drop_bad_normals(mesh);
   note_missing_triangles(mesh);
   return mesh;
 }

@@ -83,7 +83,7 @@ class ObjReader {
     if (keyword == "v") {
       read_vertex();
     } else if (keyword == "vn") {
-      normals_.push_back(read_point());
+      normals_.push_back(read_normal());
       count_numbers();
     } else if (keyword == "f" || keyword == "fo") {
       read_face();
@@ -111,6 +111,12 @@ class ObjReader {
     Point point{};
     for (float& coordinate : point) coordinate = words_.coordinate(words_.next_on_line());
     return point;
+  }
+
+  Point read_normal() {
+    Point normal{};
+    for (float& component : normal) component = words_.component(words_.next_on_line());
+    return normal;
   }
 
   // Of the numbers behind the coordinates one is a weight, which counts for free-form surfaces, three are a colour.

@@ -106,7 +106,7 @@ class OffReader {
   void read_vertex() {
     expect_line("a vertex");
     mesh_.vertices.push_back(words_.next_point());
-    if (has_normals_) mesh_.normals.push_back(words_.next_point());
+    if (has_normals_) mesh_.normals.push_back(words_.next_normal());
     if (!says_more_ && !words_.next_on_line().empty())
       leftovers_.not_kept("numbers behind the coordinates of vertices");
     words_.skip_line();

@@ -4,6 +4,7 @@
 
 #include "volume/printable.hpp"
 #include "write/mesh_leftovers.hpp"
+#include "write/mesh_words.hpp"
 #include "write/ply_header.hpp"
 
 namespace isoweave::mesh_io {
@@ -103,11 +104,13 @@ class PlyReader {
     if (token.empty()) input_.fail("truncated: expected a number, found the end of the file");
     std::optional<double> value;
     if (type == PlyType::kFloat32) {
-      if (const std::optional<float> narrow = parse_real<float>(token)) value = *narrow;
+      if (const std::optional<float> narrow = parse_number<float>(token)) value = *narrow;
     } else {
-      value = parse_real<double>(token);
+      value = parse_number<double>(token);
     }
-    if (!value) input_.fail("expected a number, found '" + std::string(token.substr(0, 40)) + "'");
+    if (!value) {
+      input_.fail(expected_number(token) + (", found '" + std::string(token.substr(0, 40)) + "'"));
+    }
     return *value;
   }
 
@@ -156,7 +159,9 @@ class PlyReader {
         } else if (slots[i] < 0) {
           skip_value(element.properties[i]);
         } else {
-          values[static_cast<std::size_t>(slots[i])] = next_coordinate(element.properties[i], vertex);
+          const PlyProperty& property = element.properties[i];
+          values[static_cast<std::size_t>(slots[i])] =
+              slots[i] < kNormalSlot ? next_coordinate(property, vertex) : next_value(property);
         }
       }
       mesh_.vertices.push_back({values[0], values[1], values[2]});
@@ -323,6 +328,7 @@ class PlyReader {
     }
   }
 
+  static constexpr int kNormalSlot = 3;  // the first of three
   static constexpr int kValueSlot = 6;
   static constexpr bool kIsLittleEndian = std::endian::native == std::endian::little;
 

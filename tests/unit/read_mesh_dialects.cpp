@@ -84,8 +84,18 @@ TEST(ReadMeshDialects, DecimalCommasAndNumbersThatAreNone) {
   EXPECT_EQ(failure("a.stl", replaced(kStl, "vertex 1 1 0", "vertex nan 1 0")),
             "line 6: expected a finite number, found 'nan'");
   EXPECT_EQ(failure("a.off", replaced(kOff, "1 0 0", "-inf 0 0")), "line 4: expected a finite number, found '-inf'");
-  EXPECT_EQ(failure("a.obj", replaced(kObj, "v 1 0 0", "v 0 0 1.#INF")), "line 3: expected a number, found '1.#INF'")
+  EXPECT_EQ(failure("a.obj", replaced(kObj, "v 1 0 0", "v 0 0 1.#INF")),
+            "line 3: expected a finite number, found '1.#INF'")
       << "no comment begins inside a word";
+}
+
+TEST(ReadMeshDialects, NumbersInPlyText) {
+  const TriangleMesh mesh = parse("a.ply", replaced(kPly, "\n1 0 0\n", "\n+1.5E+03 2.5D-01 1e-400\n"));
+  EXPECT_EQ(mesh.vertices[1], (Point{1500, 0.25F, 0}));
+  EXPECT_EQ(failure("a.ply", replaced(kPly, "\n1 0 0\n", "\n1,5 0 0\n")),
+            "expected a number with a decimal point, found '1,5'");
+  EXPECT_EQ(failure("a.ply", replaced(kPly, "\n1 0 0\n", "\n0 0 1.#INF\n")),
+            "vertex 1 has 'z' = nan, expected a finite float32");
 }
 
 TEST(ReadMeshDialects, NumbersOfEveryProgram) {
@@ -276,6 +286,26 @@ TEST(ReadMeshDialects, FacesOfFewerThanThreeCornersAreLeftOut) {
   EXPECT_EQ(obj.notes, two);
   EXPECT_EQ(failure("a.off", replaced(kOff, "4 2 0", "4 3 0") + "2 0\n"),
             "line 9: expected the number of a vertex, found the end of the file");
+}
+
+// Vertices without an area have no normal, and programs say so in their ways.
+TEST(ReadMeshDialects, NormalsThatAreNone) {
+  const Notes one{"not kept: normals, of which 1 are not finite"};
+  const std::string properties = "property float nx\nproperty double ny\nproperty float nz\n";
+  std::string ply = ply_with(properties, "0 0 1");
+  EXPECT_EQ(parse("a.ply", ply).normals.size(), 3U);
+  for (const char* normal : {"nan nan nan", "0 -inf 0", "0 1e300 0"}) {
+    const TriangleMesh mesh = parse("a.ply", replaced(ply, "0 0 1", normal));
+    EXPECT_TRUE(mesh.normals.empty()) << normal;
+    EXPECT_EQ(mesh.notes, one) << normal;
+  }
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//3\nvn 0 0 1\nvn 0 0 1\n";
+  EXPECT_EQ(parse("a.obj", corners + "vn 0 0 1\n").normals.size(), 3U);
+  EXPECT_EQ(parse("a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 nan 0 0\n3 0 1 2\n").notes, one);
+  for (const char* normal : {"vn nan nan nan", "vn -nan(ind) 0 0", "vn -1.#IND 0 1.#QNAN"}) {
+    EXPECT_EQ(parse("a.obj", corners + normal).notes, one) << normal;
+  }
+  EXPECT_EQ(failure("a.obj", corners + "vn 0 0 up"), "line 7: expected a number, found 'up'");
 }
 
 TEST(ReadMeshDialects, CloudsOfPointsAreTold) {
