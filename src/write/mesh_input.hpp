@@ -102,6 +102,8 @@ class MeshInput {
 inline constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 inline constexpr std::size_t kLongestToken = 256;
 
+inline constexpr char kEndOfText = 0x1a;  // stands behind texts that come from DOS
+
 inline bool is_blank(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 // Passes over the three bytes by which some programs say that what follows is UTF-8.

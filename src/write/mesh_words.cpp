@@ -86,6 +86,7 @@ bool MeshWords::read_line() {
   }
   ++number_;
   line_.resize(without_comment(line_).size());
+  if (line_.ends_with(kEndOfText)) line_.pop_back();
   if (continued_) join_continued();
   rest_ = line_;
   return true;

@@ -322,7 +322,7 @@ class PlyReader {
   // More data than the header says means that one of them is wrong.
   void check_end() {
     for (int c = input_.get(); c >= 0; c = input_.get()) {
-      if (!is_blank(c)) {
+      if (!is_blank(c) && c != kEndOfText) {
         input_.fail("expected the end of the file, found " + std::to_string(input_.remaining() + 1) + " more bytes");
       }
     }

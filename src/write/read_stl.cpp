@@ -84,7 +84,7 @@ bool is_binary_stl(const MeshInput& input) {
 bool looks_like_text(std::string_view head) {
   return std::none_of(head.begin(), head.end(), [](const char c) {
     const auto byte = static_cast<unsigned char>(c);
-    return (byte < 0x20 && !is_blank(byte)) || byte == 0x7f;
+    return (byte < 0x20 && !is_blank(byte) && c != kEndOfText) || byte == 0x7f;
   });
 }
 

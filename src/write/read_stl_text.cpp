@@ -53,7 +53,8 @@ class StlText {
     skip_name();
     for (;;) {
       const std::string keyword = next_keyword();
-      if (keyword == "endsolid") break;
+      // Some leave out the blank before the name.
+      if (keyword.starts_with("endsolid")) break;
       if (keyword != "facet") check(keyword, keyword.empty() ? "endsolid" : "facet");
       read_facet();
     }

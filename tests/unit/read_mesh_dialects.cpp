@@ -55,6 +55,7 @@ TEST(ReadMeshDialects, TextsThatBeginAndEndAsTheyLike) {
     expect_square(parse(name, "\n \t" + text), name + " behind blanks");
     expect_square(parse(name, text.substr(0, text.size() - 1)), name + " without a last line end");
     expect_square(parse(name, text + "\n\n \n"), name + " before empty lines");
+    expect_square(parse(name, text + "\x1a"), name + " before the end of a text of DOS");
     for (const char* end : {"\r\n", "\r", " \t\n", "\n\n"}) {
       expect_square(parse(name, with_line_ends(text, end)), name + " with other line ends");
     }
@@ -122,6 +123,7 @@ TEST(ReadMeshDialects, StlTextWithOtherWords) {
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "end solid")), "end solid");
   expect_square(parse("a.stl", replaced(kStl, "solid part 1", "solid")), "no name");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "endsolid another name")), "another name");
+  expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "endsolidPart")), "no blank before the name");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1\n", "endsolid\n\nsolid empty\nendsolid")), "two solids");
 }
 
@@ -345,7 +347,7 @@ TEST(ReadMeshDialects, TextThatIsNoObj) {
 }
 
 TEST(ReadMeshDialects, OffKeywordsAndCounts) {
-  for (const char* head : {"OFF 4 2 0", "off\n4 2 0", "OFF4 2 5", "OFF\n\n# counts\n4 2",
+  for (const char* head : {"\t  OFF4 2 0 # on one line", "OFF 4 2 0", "off\n4 2 0", "OFF4 2 5", "OFF\n\n# counts\n4 2",
                            "# by hand\nOFF # shape\n4 2 0", "4 2 0", "OFF\n4\n2"}) {
     expect_square(parse("a.off", replaced(kOff, "OFF\n4 2 0", head)), head);
   }
