@@ -152,9 +152,12 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID");
   verb.add_option("--dataset", input.dataset,
                   "Which array of an HDF5 file or of a Zarr or N5 folder, by its path in it");
-  verb.add_option("--level", input.level, "Which of the sizes of an image in OME-Zarr or N5, 0 being the full one");
-  verb.add_option("--channel", input.channel, "Which channel of an array, from 0");
-  verb.add_option("--time", input.time, "Which time of an array, from 0");
+  verb.add_option("--level", input.level,
+                  "Which of the sizes of an image in OME-Zarr, N5 or Imaris, 0 being the full one");
+  verb.add_option("--channel", input.channel, "Which channel of a stack or array, from 0");
+  verb.add_option("--time", input.time, "Which time or frame of a stack or array, from 0");
+  verb.add_option("--slices-from", input.slices_from,
+                  "Take the axis of channels or of times for that of slices: channel or time");
   verb.add_option("--roi", input.roi,
                   "Only samples I0:I1,J0:J1,K0:K1, the last ones not included; an end left out is that of the volume");
   verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
@@ -168,7 +171,8 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
                                       {"--dataset", &input.dataset},
                                       {"--level", &input.level},
                                       {"--channel", &input.channel},
-                                      {"--time", &input.time}}) {
+                                      {"--time", &input.time},
+                                      {"--slices-from", &input.slices_from}}) {
     if (!value->empty()) throw std::invalid_argument(fmt::format("{} does not go with a generated volume", option));
   }
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
@@ -203,6 +207,10 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   options.level = parse_index("--level", input.level);
   options.channel = parse_index("--channel", input.channel);
   options.time = parse_index("--time", input.time);
+  if (!input.slices_from.empty()) {
+    options.slices_from = parse_choice<SliceAxis>("--slices-from", input.slices_from,
+                                                  {{"channel", SliceAxis::kChannels}, {"time", SliceAxis::kTimes}});
+  }
   return open_volume(input.path, options);
 }
 

@@ -52,7 +52,7 @@ Quality parse_quality(std::string_view text);
 // Where a volume comes from: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
 struct InputOptions {
   std::string path;
-  std::string raw, spacing, origin, series, dataset, level, channel, time, roi, step;
+  std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
 };
 
 void add_input_options(CLI::App& verb, InputOptions& input);

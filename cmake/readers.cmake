@@ -34,8 +34,9 @@ isoweave_reader(PNG "png.cpp;write_png.cpp" PNG::PNG PNG)
 isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveCharls)
 isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
 # Loaded when it is needed; headers only.
-isoweave_reader(HDF5 "hdf5.cpp;hdf5_dataset.cpp;hdf5_library.cpp" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5>
-                IsoweaveHdf5)
+set(hdf5_sources hdf5.cpp hdf5_dataset.cpp hdf5_dream3d.cpp hdf5_imaris.cpp hdf5_itk.cpp hdf5_library.cpp hdf5_minc.cpp
+    hdf5_place.cpp)
+isoweave_reader(HDF5 "${hdf5_sources}" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5> IsoweaveHdf5)
 # Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
 isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp"
                 $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
@@ -72,7 +73,7 @@ function(isoweave_select_reader_tests sources)
     list(FILTER left EXCLUDE REGEX "/volume_jpeg\\.cpp$")
   endif()
   if(NOT ISOWEAVE_HAS_HDF5)
-    list(FILTER left EXCLUDE REGEX "/volume_hdf5\\.cpp$")
+    list(FILTER left EXCLUDE REGEX "/volume_hdf5[a-z_]*\\.cpp$")
   endif()
   if(NOT ISOWEAVE_HAS_ZARR)
     list(FILTER left EXCLUDE REGEX "/volume_(zarr|n5|ome_zarr)\\.cpp$")

@@ -104,15 +104,19 @@ std::optional<RawLayout> raw_layout_from_name(std::string_view path);
 //   mean      slices as they are, at their mean distance: not where they were
 enum class UnevenSlices : std::uint8_t { kRefuse, kResample, kMean };
 
+// Which axis of a stack or array holds its slices. Some programs write slices as channels or as times.
+enum class SliceAxis : std::uint8_t { kSlices, kChannels, kTimes };
+
 struct OpenOptions {
   std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
   std::string series;                            // Series Instance UID: which one, where there are several (DICOM)
   std::string dataset;                           // path of an array inside the file or folder (HDF5, Zarr, N5)
-  std::optional<std::int64_t> level;             // 0: full size; of an image kept at several sizes (OME-Zarr, N5)
-  std::optional<std::int64_t> channel;           // index along an array's axis of channels; none: the first
-  std::optional<std::int64_t> time;              // index along an array's axis of time; none: the first
+  std::optional<std::int64_t> level;             // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
+  std::optional<std::int64_t> channel;           // index along the axis of channels; none: the first
+  std::optional<std::int64_t> time;              // index along the axis of time; none: the first
+  SliceAxis slices_from = SliceAxis::kSlices;    // where not kSlices, the axis of slices must have one sample
   UnevenSlices uneven_slices = UnevenSlices::kResample;
   bool external = true;  // whether a header may name other files; false, for files from strangers: BadInput
 };

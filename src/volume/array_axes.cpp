@@ -1,6 +1,8 @@
 #include "volume/array_axes.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "volume/header_text.hpp"
 #include "volume/input_file.hpp"
@@ -33,21 +35,6 @@ std::string text_of(const std::vector<ArrayAxis>& axes) {
   return text;
 }
 
-// Takes an index along an axis of channels or of time.
-void take_index(AxisChoice& choice, std::size_t n, const ArrayAxis& axis, const std::optional<std::int64_t>& asked,
-                std::string_view word, std::string_view path) {
-  const std::string what(word);
-  if (asked && (*asked < 0 || *asked >= axis.size)) {
-    bad_input(path, "--" + what + " below " + std::to_string(axis.size), std::to_string(*asked));
-  }
-  choice.at[n] = asked.value_or(0);
-  if (!asked && axis.size > 1) {
-    choice.notes.push_back("the first of " + std::to_string(axis.size) + " along " + what + " is read; --" + what +
-                           " chooses");
-  }
-  if (axis.size > 1) choice.part += (choice.part.empty() ? "" : ", ") + what + " " + std::to_string(choice.at[n]);
-}
-
 bool are_named(const std::vector<ArrayAxis>& axes) {
   bool x = false, y = false;
   for (const ArrayAxis& axis : axes) {
@@ -55,6 +42,31 @@ bool are_named(const std::vector<ArrayAxis>& axes) {
     y = y || kind_of(axis) == AxisKind::kY;
   }
   return x && y;
+}
+
+// Whether the axes that are i, j and k leave no more than one slice.
+bool is_flat(const std::vector<ArrayAxis>& axes) {
+  return std::none_of(axes.begin(), axes.end(),
+                      [](const ArrayAxis& axis) { return kind_of(axis) == AxisKind::kZ && axis.size > 1; });
+}
+
+// Takes an index along an axis of channels or of time.
+void take_index(AxisChoice& choice, std::size_t n, const std::vector<ArrayAxis>& axes,
+                const std::optional<std::int64_t>& asked, std::string_view word, std::string_view path) {
+  const std::string what(word);
+  const ArrayAxis& axis = axes[n];
+  if (asked && (*asked < 0 || *asked >= axis.size)) {
+    bad_input(path, "--" + what + " below " + std::to_string(axis.size), std::to_string(*asked));
+  }
+  choice.at[n] = asked.value_or(0);
+  if (!asked && axis.size > 1) {
+    choice.notes.push_back("the first of " + std::to_string(axis.size) + " along " + what + " is read; --" + what +
+                           " chooses");
+    if (are_named(axes) && is_flat(axes)) {
+      choice.notes.back() += ", --slices-from " + what + " takes them for slices";
+    }
+  }
+  if (axis.size > 1) choice.part += (choice.part.empty() ? "" : ", ") + what + " " + std::to_string(choice.at[n]);
 }
 
 void check_asked(bool there, const std::optional<std::int64_t>& asked, std::string_view word,
@@ -70,11 +82,11 @@ AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& o
   for (std::size_t n = 0; n < axes.size(); ++n) {
     const AxisKind kind = kind_of(axes[n]);
     if (kind == AxisKind::kChannel) {
-      take_index(choice, n, axes[n], options.channel, "channel", path);
-      channels = true;
+      if (std::exchange(channels, true)) bad_input(path, "one axis of channels", text_of(axes));
+      take_index(choice, n, axes, options.channel, "channel", path);
     } else if (kind == AxisKind::kTime) {
-      take_index(choice, n, axes[n], options.time, "time", path);
-      times = true;
+      if (std::exchange(times, true)) bad_input(path, "one axis of time", text_of(axes));
+      take_index(choice, n, axes, options.time, "time", path);
     } else if (kind == AxisKind::kOther) {
       if (axes[n].size > 1) bad_input(path, "axes x, y, z, channel and time", text_of(axes));
       choice.notes.push_back("axis " + isoweave::quoted(axes[n].name) + " has one sample and is left out");
@@ -89,6 +101,27 @@ AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& o
   return choice;
 }
 
+// Lets the axis of slices and the one that holds them change their names. Returns the place of the former, which says
+// how far slices are apart; kNoAxis where nothing changes.
+std::size_t take_slices_from(std::vector<ArrayAxis>& axes, SliceAxis from, std::string_view path) {
+  if (from == SliceAxis::kSlices) return kNoAxis;
+  const bool channels = from == SliceAxis::kChannels;
+  const std::string word = channels ? "channel" : "time";
+  const auto named = [&axes](AxisKind kind) {
+    return std::find_if(axes.begin(), axes.end(), [kind](const ArrayAxis& axis) { return kind_of(axis) == kind; });
+  };
+  const auto holder = named(channels ? AxisKind::kChannel : AxisKind::kTime);
+  const auto slices = named(AxisKind::kZ);
+  if (holder == axes.end()) bad_input(path, "an axis for --slices-from " + word, "axes of " + text_of(axes));
+  if (slices != axes.end() && slices->size > 1) {
+    bad_input(path, "one slice for --slices-from " + word, std::to_string(slices->size));
+  }
+  holder->name = "z";
+  if (slices == axes.end()) return kNoAxis;
+  slices->name = word;
+  return static_cast<std::size_t>(slices - axes.begin());
+}
+
 // Without names: which axes are left out for others to be k, j, i.
 AxisChoice choose_unnamed(const std::vector<ArrayAxis>& axes, const OpenOptions& options, std::string_view path) {
   AxisChoice choice;
@@ -97,7 +130,7 @@ AxisChoice choose_unnamed(const std::vector<ArrayAxis>& axes, const OpenOptions&
   const auto take_leading = [&](const std::optional<std::int64_t>& asked, std::string_view word) {
     if (!asked) return;
     if (axes.size() - first <= 3) bad_input(path, "an axis for --" + std::string(word), "axes of " + text_of(axes));
-    take_index(choice, first, axes[first], asked, word, path);
+    take_index(choice, first, axes, asked, word, path);
     choice.notes.push_back("axis " + std::to_string(first) + " has no name and is taken for " + std::string(word));
     ++first;
   };
@@ -131,14 +164,18 @@ std::array<std::int64_t, 3> AxisChoice::dims(const std::vector<ArrayAxis>& axes)
   return dims;
 }
 
-AxisChoice choose_axes(const std::vector<ArrayAxis>& axes, const OpenOptions& options, std::string_view path) {
+AxisChoice choose_axes(std::vector<ArrayAxis> axes, const OpenOptions& options, std::string_view path) {
   if (axes.size() > kMostAxes) {
     bad_input(path, "at most " + std::to_string(kMostAxes) + " axes", std::to_string(axes.size()));
   }
   for (const ArrayAxis& axis : axes) {
     if (axis.size < 1) bad_input(path, "axes of at least one sample", text_of(axes));
   }
-  return are_named(axes) ? choose_named(axes, options, path) : choose_unnamed(axes, options, path);
+  const std::size_t slices = take_slices_from(axes, options.slices_from, path);
+  AxisChoice choice = are_named(axes) ? choose_named(axes, options, path) : choose_unnamed(axes, options, path);
+  choice.place = choice.axis;
+  if (slices != kNoAxis) choice.place[kK] = slices;
+  return choice;
 }
 
 }  // namespace isoweave

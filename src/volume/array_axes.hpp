@@ -23,8 +23,9 @@ inline constexpr std::size_t kMostAxes = 16;
 inline constexpr std::size_t kNoAxis = std::numeric_limits<std::size_t>::max();
 
 struct AxisChoice {
-  std::array<std::size_t, 3> axis{kNoAxis, kNoAxis, kNoAxis};  // of the array, for i, j and k; kNoAxis: one sample
-  std::vector<std::int64_t> at;                                // index along every axis of the array; 0 along i, j, k
+  std::array<std::size_t, 3> axis{kNoAxis, kNoAxis, kNoAxis};   // of the array, for i, j and k; kNoAxis: one sample
+  std::array<std::size_t, 3> place{kNoAxis, kNoAxis, kNoAxis};  // where headers say their places, see SliceAxis
+  std::vector<std::int64_t> at;                                 // index along every axis of the array; 0 along i, j, k
   std::vector<std::string> notes;
   std::string part;  // what was chosen, for VolumeInfo::part
 
@@ -36,6 +37,6 @@ struct AxisChoice {
 // time the index in `options` is taken, else the first with a note; any other must have one sample. Axes without names
 // are k, j, i; where there are more than three, those of one sample are left out, and --channel and --time say what the
 // leading ones are. Throws BadInput naming `path` where that does not leave a volume.
-AxisChoice choose_axes(const std::vector<ArrayAxis>& axes, const OpenOptions& options, std::string_view path);
+AxisChoice choose_axes(std::vector<ArrayAxis> axes, const OpenOptions& options, std::string_view path);
 
 }  // namespace isoweave

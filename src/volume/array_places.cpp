@@ -1,24 +1,13 @@
 #include "volume/array_places.hpp"
 
 #include <array>
-#include <string_view>
 #include <utility>
 
 #include "volume/geometry.hpp"
-#include "volume/stack_description.hpp"
+#include "volume/length_units.hpp"
 
 namespace isoweave {
 namespace {
-
-// Metres of a unit that Geometry knows; 0 for none.
-double metres(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
-      {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}}};
-  for (const auto& [name, length] : kUnits) {
-    if (name == unit) return length;
-  }
-  return 0;
-}
 
 // A list for the axes of the array, from one for them or for k, j and i; empty for any other.
 template <class Value>
@@ -28,7 +17,7 @@ std::vector<Value> for_axes(const std::vector<Value>& list, const AxisChoice& ch
   if (list.size() != choice.axis.size()) return values;
   values.assign(choice.at.size(), otherwise);
   for (std::size_t a = 0; a < choice.axis.size(); ++a) {
-    if (choice.axis.at(a) != kNoAxis) values[choice.axis.at(a)] = list[list.size() - 1 - a];
+    if (choice.place.at(a) != kNoAxis) values[choice.place.at(a)] = list[list.size() - 1 - a];
   }
   return values;
 }
@@ -58,32 +47,28 @@ AxisPlaces places_of_attributes(const ArrayAttributes& attributes, const AxisCho
   return places;
 }
 
-void place_axes(VolumeInfo& info, const AxisChoice& choice, const AxisPlaces& places) {
+void place_axes(OpenedVolume& volume, const AxisChoice& choice, const AxisPlaces& places) {
+  VolumeInfo& info = volume.info;
   info.notes.insert(info.notes.end(), places.notes.begin(), places.notes.end());
+  std::array<std::optional<std::string>, 3> texts;
+  for (std::size_t a = 0; a < texts.size(); ++a) {
+    const std::size_t axis = choice.place.at(a);
+    if (axis < places.step.size()) texts.at(a) = axis < places.units.size() ? places.units[axis] : std::string();
+  }
+  const CommonUnit unit = common_unit(texts);
+  take_unit(volume, unit);
   Axes axes;
-  std::string unit;
   for (std::size_t a = 0; a < axes.steps.size(); ++a) {
-    const std::size_t axis = choice.axis.at(a);
+    const std::size_t axis = choice.place.at(a);
     if (axis == kNoAxis) continue;
-    const LengthUnit own = length_unit(axis < places.units.size() ? places.units[axis] : std::string());
-    if (!own.note.empty()) info.notes.push_back(own.note);
-    if (a == 0) unit = own.unit;
-    double scale = own.scale;
-    if (own.unit != unit) {
-      const bool convertible = metres(own.unit) > 0 && metres(unit) > 0;
-      if (convertible) scale *= metres(own.unit) / metres(unit);
-      info.notes.push_back("axis " + std::to_string(a) + " is in '" + own.unit + "', axis 0 in '" + unit + "'" +
-                           (convertible ? "; all are given in that of axis 0" : ""));
-    }
     if (axis < places.step.size()) {
-      axes.steps.at(a).at(a) = places.step[axis] * scale;
+      axes.steps.at(a).at(a) = places.step[axis] * unit.scale.at(a);
     } else {
       info.notes.push_back("the spacing of axis " + std::to_string(a) + " is not given and taken as 1");
     }
-    if (axis < places.begin.size()) axes.origin.at(a) = places.begin[axis] * scale;
+    if (axis < places.begin.size()) axes.origin.at(a) = places.begin[axis] * unit.scale.at(a);
   }
   set_geometry(info.geometry, axes, info.path);
-  info.geometry.unit = unit;
 }
 
 }  // namespace isoweave

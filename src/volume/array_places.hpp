@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "volume/array_axes.hpp"
+#include "volume/stream_source.hpp"
 
 namespace isoweave {
 
@@ -28,8 +29,8 @@ struct ArrayAttributes {
 // element_size_um (micrometres), or resolution or voxel_size with units and offset. Lists of three are of k, j, i.
 AxisPlaces places_of_attributes(const ArrayAttributes& attributes, const AxisChoice& choice);
 
-// Sets spacing, origin and unit; what is not said is taken as 1 and 0 with a note. Units that differ are made those of
-// i. Throws BadInput for steps of no length.
-void place_axes(VolumeInfo& info, const AxisChoice& choice, const AxisPlaces& places);
+// Sets spacing, origin and unit; what is not said is taken as 1 and 0 with a note. Units that differ are made one.
+// Throws BadInput for steps of no length.
+void place_axes(OpenedVolume& volume, const AxisChoice& choice, const AxisPlaces& places);
 
 }  // namespace isoweave

@@ -8,6 +8,7 @@
 
 #include "volume/header_text.hpp"
 #include "volume/printable.hpp"
+#include "volume/text_streams.hpp"
 
 namespace isoweave {
 namespace {
@@ -66,6 +67,22 @@ std::unique_ptr<ByteStream> open_compressed(const FilePtr& file, std::uint64_t b
     bad_input(file->path(), "samples behind " + std::to_string(skip) + " inflated bytes", "fewer bytes");
   }
   return samples;
+}
+
+std::unique_ptr<ByteStream> open_text(const FilePtr& file, std::uint64_t begin, const DataLayout& layout,
+                                      std::uint64_t bytes) {
+  if (layout.byte_skip < 0) bad_input(file->path(), "a byte skip of at least 0", std::to_string(layout.byte_skip));
+  const std::uint64_t available = file->size() - std::min(begin, file->size());
+  const auto skip = std::min<std::uint64_t>(static_cast<std::uint64_t>(layout.byte_skip), available);
+  auto text = std::make_unique<FileStream>(file, begin + skip, file->size());
+  if (layout.encoding == DataLayout::Encoding::kHex) {
+    check_plausible(file->path(), bytes, (available - skip) / 2, 1);
+    return std::make_unique<HexStream>(std::move(text), file->path());
+  }
+  // A digit and a blank for each sample, but for the last.
+  const std::uint64_t samples = bytes / sample_bytes(layout.type);
+  check_plausible(file->path(), samples, (available - skip + 1) / 2, 1);
+  return std::make_unique<NumberStream>(std::move(text), layout.type, samples, file->path());
 }
 
 // The only conversion that a file name pattern may hold, cut in three.
@@ -128,8 +145,16 @@ std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begi
                                          std::uint64_t bytes) {
   if (layout.line_skip < 0) bad_input(file->path(), "a line skip of at least 0", std::to_string(layout.line_skip));
   const std::uint64_t from = behind_lines(file, begin, layout.line_skip);
-  return layout.compressed ? open_compressed(file, from, layout.byte_skip, bytes)
-                           : open_plain(file, from, layout.byte_skip, bytes);
+  switch (layout.encoding) {
+    case DataLayout::Encoding::kRaw:
+      return open_plain(file, from, layout.byte_skip, bytes);
+    case DataLayout::Encoding::kDeflate:
+      return open_compressed(file, from, layout.byte_skip, bytes);
+    case DataLayout::Encoding::kNumbers:
+    case DataLayout::Encoding::kHex:
+      break;
+  }
+  return open_text(file, from, layout, bytes);
 }
 
 std::unique_ptr<ByteStream> open_samples(const DataFiles& files, const DataLayout& layout, std::uint64_t bytes,

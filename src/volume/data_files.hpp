@@ -15,8 +15,10 @@ namespace isoweave {
 
 // How samples are kept in each file.
 struct DataLayout {
-  bool compressed = false;     // gzip or zlib
-  std::int64_t line_skip = 0;  // lines before the samples, in the file as stored
+  enum class Encoding { kRaw, kDeflate, kNumbers, kHex };
+  Encoding encoding = Encoding::kRaw;    // as they are, gzip or zlib, numbers in text, two hexadecimal digits a byte
+  SampleType type = SampleType::kUint8;  // of numbers in text, which become the machine's samples
+  std::int64_t line_skip = 0;            // lines before the samples, in the file as stored
   std::int64_t byte_skip = 0;  // bytes before them, once inflated; -1: they end the file, -n: n - 1 bytes follow them
 };
 

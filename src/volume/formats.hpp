@@ -1,5 +1,5 @@
 // One reader per format: reads the header, checks its claims, and gives the stream of samples.
-// All throw BadInput. Geometry overrides are applied by open_volume.
+// All throw BadInput. Geometry overrides are applied by open_volume; `options` are for what is chosen of a file.
 #pragma once
 
 #include <memory>
@@ -19,15 +19,15 @@ OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout);
 // Whether `head`, the first bytes of a file (of its inflated data where `gzip`), are a NIfTI header.
 bool is_nifti(std::string_view head);
 // `gzip`: the header and the samples are in a gzip stream.
-OpenedVolume open_nifti(const FilePtr& file, bool gzip);
+OpenedVolume open_nifti(const FilePtr& file, bool gzip, const OpenOptions& options);
 // Bytes of a file that is_nifti needs.
 inline constexpr std::size_t kNiftiHeadBytes = 540;
 
-OpenedVolume open_nrrd(const FilePtr& file);
+OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options);
 
 // Whether `head` begins as a MetaImage header does.
 bool is_metaimage(std::string_view head);
-OpenedVolume open_metaimage(const FilePtr& file);
+OpenedVolume open_metaimage(const FilePtr& file, const OpenOptions& options);
 
 bool is_pvm(std::string_view head);
 OpenedVolume open_pvm(const FilePtr& file);
@@ -41,7 +41,7 @@ OpenedVolume open_vtk_legacy(const FilePtr& file);
 // The readers below stand on libraries that a build may lack; what tells their files does not.
 bool is_tiff(std::string_view head);
 // `one_of_series`: the file is one slice of a series, and may describe the whole of it.
-OpenedVolume open_tiff(const FilePtr& file, bool one_of_series);
+OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOptions& options);
 
 bool is_png(std::string_view head);
 OpenedVolume open_png(const FilePtr& file);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "volume/header_text.hpp"
 #include "volume/input_file.hpp"
@@ -71,22 +70,6 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
     if (!std::isfinite(coordinate)) bad_input(path, "a finite origin", number_text(coordinate));
   }
   geometry.origin = axes.origin;
-}
-
-std::string_view known_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kSpellings{{
-      {"mm", "mm"},          {"millimeter", "mm"}, {"millimeters", "mm"}, {"millimetre", "mm"},
-      {"um", "um"},          {"\xc2\xb5m", "um"},  // the micro sign
-      {"\xce\xbcm", "um"},                         // the Greek letter
-      {"micron", "um"},      {"microns", "um"},    {"micrometer", "um"},  {"micrometre", "um"},
-      {"nm", "nm"},          {"nanometer", "nm"},  {"nanometre", "nm"},   {"m", "m"},
-      {"meter", "m"},        {"meters", "m"},      {"metre", "m"},        {"micrometers", "um"},
-      {"micrometres", "um"}, {"nanometers", "nm"}, {"nanometres", "nm"},
-  }};
-  for (const auto& [spelling, unit] : kSpellings) {
-    if (spelling == text) return unit;
-  }
-  return {};
 }
 
 void apply_overrides(Geometry& geometry, const OpenOptions& options) {

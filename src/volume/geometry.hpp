@@ -23,9 +23,6 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
 // A unit vector orthogonal to `a` and `b`: the missing third axis of a plane image.
 Vector3 normal_of(const Vector3& a, const Vector3& b);
 
-// One of the units that Geometry allows, for a header's spelling of it; empty for any other.
-std::string_view known_unit(std::string_view text);
-
 // Applies the caller's overrides. Throws std::invalid_argument when they are not usable.
 void apply_overrides(Geometry& geometry, const OpenOptions& options);
 

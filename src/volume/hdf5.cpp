@@ -11,6 +11,8 @@
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/hdf5_dataset.hpp"
+#include "volume/hdf5_place.hpp"
+#include "volume/length_units.hpp"
 #include "volume/printable.hpp"
 
 namespace isoweave {
@@ -106,14 +108,19 @@ std::string text_of(const Hdf5Dataset& dataset) {
   return text + " " + dataset.type_text + ")";
 }
 
+constexpr std::string_view kReadTypes = "integers of 8, 16 or 32 bits or floats of 32 or 64 bits";
+
 // The one that is taken when none is named: the only one of three axes or more whose samples can be read.
 std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::string& path) {
   constexpr std::size_t kMostNamed = 12;
-  std::vector<const Hdf5Dataset*> volumes;
+  std::vector<const Hdf5Dataset*> volumes, unread;
   for (const Hdf5Dataset& dataset : found) {
-    if (dataset.type && dataset.shape.size() > 2) volumes.push_back(&dataset);
+    if (dataset.shape.size() > 2) (dataset.type ? volumes : unread).push_back(&dataset);
   }
   if (volumes.size() == 1) return volumes[0]->name;
+  if (volumes.empty() && unread.size() == 1) {
+    bad_input(path, std::string(kReadTypes) + " in " + isoweave::quoted(unread[0]->name), unread[0]->type_text);
+  }
   std::string listed;
   for (std::size_t n = 0; n < std::min(found.size(), kMostNamed); ++n)
     listed += (n == 0 ? "" : ", ") + text_of(found[n]);
@@ -199,48 +206,126 @@ std::int64_t band_depth(const VolumeInfo& info, const AxisChoice& choice, const 
   return std::min(chunk[choice.axis[2]], info.dims[2]);
 }
 
-}  // namespace
+// The dataset that is read, and what a format says of it.
+struct FoundDataset {
+  std::string name;
+  std::optional<Hdf5Place> place;
+  std::vector<std::string> notes;
+};
 
-OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
-  const std::string& path = file->path();
-  if (options.level) bad_input(path, "an image of several levels for --level", "HDF5");
-  const Hdf5Session session(path);
-  const Hdf5Functions& h5 = session.h5();
-  OpenDataset open;
-  open.file = Hdf5Handle(h5.fopen(path.c_str(), kReadOnly, kDefault), h5.fclose);
-  if (!open.file) session.refuse(path, "a readable HDF5 file");
-  const bool named = !options.dataset.empty();
-  const std::string name = named ? options.dataset : only_dataset(find_datasets(session, open.file.id()), path);
-  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), name.c_str(), kDefault), h5.oclose);
-  if (!open.dataset) session.refuse(path, "a dataset " + isoweave::quoted(name));
-  if (h5.iget_type(open.dataset.id()) != H5I_DATASET) bad_input(path, "a dataset " + isoweave::quoted(name), "a group");
-
-  const Hdf5Dataset dataset = describe_dataset(session, open.dataset.id(), name);
-  if (!dataset.type) {
-    bad_input(path, "integers of 8, 16 or 32 bits or floats of 32 or 64 bits in " + isoweave::quoted(name),
-              dataset.type_text);
+FoundDataset find_dataset(const Hdf5File& file, const OpenOptions& options) {
+  FoundDataset found;
+  found.name = options.dataset;
+  if (!found.name.empty() && !found.name.starts_with('/')) found.name.insert(0, "/");
+  found.place = find_hdf5_place(file, found.name, options);
+  if (found.place) {
+    found.name = found.place->dataset;
+    found.notes = found.place->notes;
+  } else if (found.name.empty()) {
+    found.name = only_dataset(find_datasets(file.session, file.id), file.path);
+    found.notes.push_back(isoweave::quoted(found.name) + " is the only dataset of 3 axes or more, and is read");
+    found.place = find_hdf5_place(file, found.name, options);
+    if (found.place) found.notes.insert(found.notes.end(), found.place->notes.begin(), found.place->notes.end());
   }
+  const bool chosen = found.place && found.place->chosen;
+  if (options.level && !chosen) bad_input(file.path, "an image of several levels for --level", "HDF5");
+  return found;
+}
+
+// The axes of a dataset with their names; those of a padded one end where its samples that count end.
+std::vector<ArrayAxis> axes_of(const Hdf5Dataset& dataset, const FoundDataset& found, const ArrayAttributes& attributes,
+                               const std::string& path) {
+  std::vector<ArrayAxis> axes;
+  for (const std::int64_t size : dataset.shape) axes.push_back({size, {}});
+  if (!found.place) {
+    name_hdf5_axes(attributes, axes);
+    return axes;
+  }
+  const std::vector<std::string>& names = found.place->axis_names;
+  if (names.size() != axes.size()) {
+    bad_input(path, std::to_string(names.size()) + " axes in " + isoweave::quoted(found.name),
+              std::to_string(axes.size()));
+  }
+  for (std::size_t n = 0; n < axes.size(); ++n) {
+    axes[n].name = names[n];
+    if (found.place->shape.empty()) continue;
+    if (found.place->shape[n] > axes[n].size) {
+      bad_input(path, std::to_string(found.place->shape[n]) + " samples along " + names[n],
+                std::to_string(axes[n].size));
+    }
+    axes[n].size = found.place->shape[n];
+  }
+  return axes;
+}
+
+void take_place(OpenedVolume& volume, const Hdf5Place& place) {
+  VolumeInfo& info = volume.info;
+  const CommonUnit unit = common_unit({place.units[0], place.units[1], place.units[2]});
+  Axes axes = place.axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (double& component : axes.steps[axis]) component *= unit.scale[axis];
+    axes.origin[axis] *= unit.scale[axis];
+  }
+  set_geometry(info.geometry, axes, info.path);
+  take_unit(volume, unit);
+  info.geometry.space = place.space;
+  info.slope = place.slope;
+  info.intercept = place.intercept;
+}
+
+OpenedVolume describe_volume(const Hdf5Dataset& dataset, const FoundDataset& found, const ArrayAttributes& attributes,
+                             const std::vector<ArrayAxis>& axes, const AxisChoice& choice, const std::string& path) {
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = path;
   info.format = "hdf5";
   info.type = *dataset.type;
-  const ArrayAttributes attributes = hdf5_attributes(session, open.dataset.id());
-  std::vector<ArrayAxis> axes;
-  for (const std::int64_t size : dataset.shape) axes.push_back({size, {}});
-  name_hdf5_axes(attributes, axes);
-  const AxisChoice choice = choose_axes(axes, options, path);
   info.dims = choice.dims(axes);
-  info.part = "dataset " + name + (choice.part.empty() ? "" : ", " + choice.part);
-  if (!named) info.notes.push_back(isoweave::quoted(name) + " is the only dataset of 3 axes or more, and is read");
+  info.part = "dataset " + found.name;
+  for (const std::string& part : {found.place ? found.place->part : std::string(), choice.part}) {
+    if (!part.empty()) info.part += ", " + part;
+  }
+  info.notes = found.notes;
   info.notes.insert(info.notes.end(), choice.notes.begin(), choice.notes.end());
   checked_volume_bytes(info);
-  const std::vector<std::int64_t> chunk = chunks_of(session, open.dataset.id(), axes.size(), path);
-  const std::int64_t depth = band_depth(info, choice, chunk);
-  check_stored(info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
-  place_axes(info, choice, places_of_attributes(attributes, choice));
+  if (found.place) {
+    take_place(volume, *found.place);
+  } else {
+    place_axes(volume, choice, places_of_attributes(attributes, choice));
+  }
   volume.swap_bytes = dataset.big_endian != (std::endian::native == std::endian::big);
-  volume.samples = std::make_unique<DatasetStream>(path, std::move(open), info, choice, depth);
+  return volume;
+}
+
+}  // namespace
+
+OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
+  const std::string& path = file->path();
+  const Hdf5Session session(path);
+  const Hdf5Functions& h5 = session.h5();
+  OpenDataset open;
+  open.file = Hdf5Handle(h5.fopen(path.c_str(), kReadOnly, kDefault), h5.fclose);
+  if (!open.file) session.refuse(path, "a readable HDF5 file");
+  const FoundDataset found = find_dataset({session, open.file.id(), path}, options);
+  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), found.name.c_str(), kDefault), h5.oclose);
+  if (!open.dataset) session.refuse(path, "a dataset " + isoweave::quoted(found.name));
+  if (h5.iget_type(open.dataset.id()) != H5I_DATASET) {
+    bad_input(path, "a dataset " + isoweave::quoted(found.name), "a group");
+  }
+  const Hdf5Dataset dataset = describe_dataset(session, open.dataset.id(), found.name);
+  if (!dataset.type) {
+    bad_input(path, std::string(kReadTypes) + " in " + isoweave::quoted(found.name), dataset.type_text);
+  }
+  const ArrayAttributes attributes = hdf5_attributes(session, open.dataset.id());
+  const std::vector<ArrayAxis> axes = axes_of(dataset, found, attributes, path);
+  OpenOptions left = options;
+  if (found.place && found.place->chosen) left.channel = left.time = std::nullopt;
+  const AxisChoice choice = choose_axes(axes, left, path);
+  OpenedVolume volume = describe_volume(dataset, found, attributes, axes, choice, path);
+  const std::vector<std::int64_t> chunk = chunks_of(session, open.dataset.id(), axes.size(), path);
+  const std::int64_t depth = band_depth(volume.info, choice, chunk);
+  check_stored(volume.info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
+  volume.samples = std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth);
   return volume;
 }
 

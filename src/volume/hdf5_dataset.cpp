@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <functional>
 
 #include "volume/samples.hpp"
 #include "volume/stream_source.hpp"
@@ -52,13 +53,30 @@ std::optional<SampleType> sample_type_of(const Number& number) {
   return std::nullopt;
 }
 
+// What a type is called in messages, where it is no number that machines have.
+std::string text_of_class(const Hdf5Functions& h5, hid_t type) {
+  const std::string bits = std::to_string(8 * h5.tget_size(type));
+  switch (h5.tget_class(type)) {
+    case H5T_FLOAT:
+      return "float" + bits;
+    case H5T_INTEGER:
+      return "integers in " + bits + " bits";
+    case H5T_COMPOUND:
+      return "compounds";
+    case H5T_STRING:
+      return "texts";
+    default:
+      return "of another kind";
+  }
+}
+
 // Reads the type of a dataset; h5py keeps truth values as enumerations of integers.
 void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
   const Hdf5Handle stored(h5.dget_type(dataset), h5.tclose);
   const bool enumeration = stored && h5.tget_class(stored.id()) == H5T_ENUM;
   const Hdf5Handle inner(enumeration ? h5.tget_super(stored.id()) : -1, h5.tclose);
   const hid_t type = enumeration ? inner.id() : stored.id();
-  found.type_text = "of another kind";
+  found.type_text = type < 0 ? "of another kind" : text_of_class(h5, type);
   const std::optional<Number> number = type < 0 ? std::nullopt : plain_number(h5, type);
   if (!number) return;
   found.type = sample_type_of(*number);
@@ -142,21 +160,28 @@ std::vector<double> as_doubles(const std::vector<std::byte>& bytes) {
   return values;
 }
 
-std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
-  const Hdf5Handle type(h5.aget_type(attribute), h5.tclose);
-  const Hdf5Handle space(h5.aget_space(attribute), h5.sclose);
-  if (!type || !space) return std::nullopt;
-  const std::optional<Number> number = plain_number(h5, type.id());
-  const hssize_t count = h5.sget_simple_extent_npoints(space.id());
-  if (!number || count < 1 || count > kMostValues) return std::nullopt;
+// Numbers of a type and a space; `read` fills the memory with them as they are stored.
+std::optional<std::vector<double>> read_plain(const Hdf5Functions& h5, hid_t type, hid_t space, hssize_t most,
+                                              const std::function<herr_t(void*)>& read) {
+  const std::optional<Number> number = plain_number(h5, type);
+  const hssize_t count = h5.sget_simple_extent_npoints(space);
+  if (!number || count < 1 || count > most) return std::nullopt;
   const std::optional<SampleType> known = sample_type_of(*number);
   if (!known && number->bytes != sizeof(std::int64_t)) return std::nullopt;
   std::vector<std::byte> values(static_cast<std::size_t>(count) * number->bytes);
-  if (h5.aread(attribute, type.id(), values.data()) < 0) return std::nullopt;
+  if (read(values.data()) < 0) return std::nullopt;
   const bool swap = number->big_endian != (std::endian::native == std::endian::big);
   if (swap) swap_sample_bytes(values, number->bytes);
   if (!known) return number->is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
   return visit_sample_type(*known, [&]<class Value>() { return as_doubles<Value>(values); });
+}
+
+std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
+  const Hdf5Handle type(h5.aget_type(attribute), h5.tclose);
+  const Hdf5Handle space(h5.aget_space(attribute), h5.sclose);
+  if (!type || !space) return std::nullopt;
+  return read_plain(h5, type.id(), space.id(), kMostValues,
+                    [&](void* to) { return h5.aread(attribute, type.id(), to); });
 }
 
 std::vector<std::string> read_texts(const Hdf5Functions& h5, hid_t attribute) {
@@ -217,6 +242,16 @@ ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
     return attribute ? read_texts(h5, attribute.id()) : std::vector<std::string>();
   };
   return {numbers, texts};
+}
+
+std::optional<std::vector<double>> hdf5_numbers(const Hdf5Session& session, hid_t dataset) {
+  constexpr hssize_t kMostNumbers = 1 << 20;
+  const Hdf5Functions& h5 = session.h5();
+  const Hdf5Handle type(h5.dget_type(dataset), h5.tclose);
+  const Hdf5Handle space(h5.dget_space(dataset), h5.sclose);
+  if (!type || !space) return std::nullopt;
+  return read_plain(h5, type.id(), space.id(), kMostNumbers,
+                    [&](void* to) { return h5.dread(dataset, type.id(), H5S_ALL, H5S_ALL, kDefault, to); });
 }
 
 void name_hdf5_axes(const ArrayAttributes& attributes, std::vector<ArrayAxis>& axes) {

@@ -27,6 +27,9 @@ Hdf5Dataset describe_dataset(const Hdf5Session& session, hid_t dataset, const st
 // Attributes of an object, as long as the session lasts.
 ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object);
 
+// The numbers of a small dataset; nothing for one of other things, or of too many.
+std::optional<std::vector<double>> hdf5_numbers(const Hdf5Session& session, hid_t dataset);
+
 // Names of the axes as ilastik (axistags) or HDF5's dimension scales (DIMENSION_LABELS) give them.
 void name_hdf5_axes(const ArrayAttributes& attributes, std::vector<ArrayAxis>& axes);
 

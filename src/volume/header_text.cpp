@@ -55,6 +55,12 @@ std::string number_text(double value) {
   return error == std::errc{} ? std::string(text.data(), end) : std::string();
 }
 
+std::string rounded_text(double value) {
+  std::array<char, 32> text;
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return error == std::errc{} ? std::string(text.data(), end) : std::string();
+}
+
 std::optional<std::string_view> LineReader::next() {
   if (position_ >= text_.size()) return std::nullopt;
   const std::size_t end = text_.find('\n', position_);

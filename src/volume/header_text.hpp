@@ -27,6 +27,9 @@ std::optional<double> parse_double(std::string_view text);
 // The shortest text that reads back as the same number.
 std::string number_text(double value);
 
+// A number for people, to six digits.
+std::string rounded_text(double value);
+
 // Cuts a text into lines ended by "\n" or "\r\n".
 class LineReader {
  public:

@@ -2,16 +2,20 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "volume/array_axes.hpp"
 #include "volume/data_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/length_units.hpp"
+#include "volume/picked_stream.hpp"
 #include "volume/printable.hpp"
 
 namespace isoweave {
@@ -117,41 +121,67 @@ void check_kind(const MetaFields& fields, std::string_view path) {
   if (!object.empty() && lower_case(object) != "image") {
     bad_input(path, "ObjectType Image", quoted(object));
   }
-  const auto channels = integer_of(fields, {"elementnumberofchannels"}, path);
-  if (channels && *channels != 1) {
-    bad_input(path, "one channel per sample", std::to_string(*channels) + " channels");
-  }
   const std::string_view binary = fields.get({"binarydata"});
   if (!binary.empty() && !is_true(binary)) bad_input(path, "BinaryData True", quoted(binary));
 }
 
-// Number of axes in the file, of which those beyond the third have one sample.
-std::size_t set_dims(VolumeInfo& info, const MetaFields& fields) {
-  const std::vector<std::string_view> words = words_of(fields.get({"dimsize"}));
-  const std::int64_t axes = integer_of(fields, {"ndims"}, info.path).value_or(0);
-  constexpr std::int64_t kMostAxes = 10;
-  if (axes < 1 || axes > kMostAxes || words.size() != static_cast<std::size_t>(axes)) {
-    bad_input(info.path, "NDims of 1 to 10 and as many numbers in DimSize",
-              "NDims " + std::to_string(axes) + " and " + std::to_string(words.size()) + " numbers");
+// Values of one sample, which lie together. They are no choice of volumes, unless the caller chooses.
+std::int64_t channels_of(const MetaFields& fields, const OpenOptions& options, std::string_view path) {
+  const std::int64_t channels = integer_of(fields, {"elementnumberofchannels"}, path).value_or(1);
+  if (channels < 1 || (channels > 1 && !options.channel)) {
+    bad_input(path, "one channel per sample", std::to_string(channels) + " channels (--channel chooses one)");
   }
-  info.dims = {1, 1, 1};
-  for (std::size_t n = 0; n < words.size(); ++n) {
-    const auto side = parse_integer(words[n]);
-    if (!side || *side < 1) bad_input(info.path, "DimSize of at least 1", quoted(words[n]));
-    if (n < 3) info.dims[n] = *side;
-    if (n >= 3 && *side > 1) {
-      bad_input(info.path, "3 dimensions", "axis " + std::to_string(n) + " with " + std::to_string(*side) + " samples");
-    }
-  }
-  return words.size();
+  return channels;
 }
 
-void set_axes(VolumeInfo& info, const MetaFields& fields, std::size_t axes) {
+// From the slowest axis to the fastest: the fourth one is time, further ones have one sample.
+std::vector<ArrayAxis> axes_of(const MetaFields& fields, const OpenOptions& options, std::string_view path) {
+  const std::vector<std::string_view> words = words_of(fields.get({"dimsize"}));
+  const std::int64_t axes = integer_of(fields, {"ndims"}, path).value_or(0);
+  constexpr std::int64_t kMostAxes = 10;
+  if (axes < 1 || axes > kMostAxes || words.size() != static_cast<std::size_t>(axes)) {
+    bad_input(path, "NDims of 1 to 10 and as many numbers in DimSize",
+              "NDims " + std::to_string(axes) + " and " + std::to_string(words.size()) + " numbers");
+  }
+  constexpr std::array<const char*, 4> kNames{"x", "y", "z", "time"};
+  std::vector<ArrayAxis> named{{channels_of(fields, options, path), "channel"}};
+  for (std::size_t n = 0; n < words.size(); ++n) {
+    const auto side = parse_integer(words[n]);
+    if (!side || *side < 1) bad_input(path, "DimSize of at least 1", quoted(words[n]));
+    if (n >= kNames.size() && *side > 1) {
+      bad_input(path, "3 dimensions, or 4 with time",
+                "axis " + std::to_string(n) + " with " + std::to_string(*side) + " samples");
+    }
+    if (n < kNames.size()) named.push_back({*side, kNames[n]});
+  }
+  // A line is a plane of one row.
+  if (words.size() == 1) named.push_back({1, "y"});
+  std::reverse(named.begin(), named.end());
+  return named;
+}
+
+// ElementSize is the extent of a sample, which is the distance of samples where nothing else is said.
+std::vector<double> spacing_of(VolumeInfo& info, const MetaFields& fields, std::size_t axes) {
+  const auto spacing = numbers_of(fields, {"elementspacing"}, axes, info.path);
+  const auto size = numbers_of(fields, {"elementsize"}, axes, info.path);
+  if (spacing.empty() && size.empty()) info.notes.emplace_back("the spacing is not given and taken as 1");
+  if (spacing.empty()) return size;
+  constexpr double kRounding = 1e-3;
+  for (std::size_t n = 0; n < std::min<std::size_t>(size.size(), 3); ++n) {
+    if (std::abs(size[n] - spacing[n]) <= kRounding * std::abs(spacing[n])) continue;
+    info.notes.push_back("the spacing of axis " + std::to_string(n) + " is " + rounded_text(spacing[n]) +
+                         " by ElementSpacing, which is taken, and " + rounded_text(size[n]) + " by ElementSize");
+  }
+  return spacing;
+}
+
+void set_axes(OpenedVolume& volume, const MetaFields& fields, std::size_t axes) {
+  VolumeInfo& info = volume.info;
   const auto matrix = numbers_of(fields, {"transformmatrix", "rotation", "orientation"}, axes * axes, info.path);
   const auto origin = numbers_of(fields, {"offset", "position", "origin"}, axes, info.path);
-  auto spacing = numbers_of(fields, {"elementspacing"}, axes, info.path);
-  if (spacing.empty()) spacing = numbers_of(fields, {"elementsize"}, axes, info.path);
-  if (spacing.empty()) info.notes.push_back("the spacing is not given and taken as 1");
+  const std::vector<double> spacing = spacing_of(info, fields, axes);
+  const std::string text(fields.get({"distanceunits"}));
+  const CommonUnit unit = common_unit({text, text, text});
   Axes out;
   const std::size_t used = std::min<std::size_t>(axes, 3);
   for (std::size_t n = 0; n < used; ++n) {
@@ -159,12 +189,12 @@ void set_axes(VolumeInfo& info, const MetaFields& fields, std::size_t axes) {
       // The file lists the directions of the axes one after another.
       if (!matrix.empty()) out.steps[n][row] = matrix[n * axes + row];
     }
-    for (double& component : out.steps[n]) component *= spacing.empty() ? 1 : spacing[n];
-    if (!origin.empty()) out.origin[n] = origin[n];
+    for (double& component : out.steps[n]) component *= (spacing.empty() ? 1 : spacing[n]) * unit.scale[n];
+    if (!origin.empty()) out.origin[n] = origin[n] * unit.scale[n];
   }
   set_geometry(info.geometry, out, info.path);
   info.geometry.space = Space::kLps;
-  info.geometry.unit = known_unit(fields.get({"distanceunits"}));
+  take_unit(volume, unit);
 }
 
 // HeaderSize counts bytes of the file as stored; -1 means that the samples end the file.
@@ -175,6 +205,24 @@ std::uint64_t compressed_begin(const FilePtr& file, const MetaFields& fields, st
     bad_input(file->path(), "a CompressedDataSize within the file, for HeaderSize -1", "none");
   }
   return file->size() - static_cast<std::uint64_t>(*stored);
+}
+
+// What is stored behind the header, or in the one other file, is as long as the header says. Nobody needs the number:
+// the stream ends by itself.
+void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaFields& fields) {
+  const std::string value = lower_case(fields.get({kDataFile}));
+  const auto said = integer_of(fields, {"compresseddatasize"}, info.path);
+  const bool local = value == "local";
+  if (!said || !is_true(fields.get({"compresseddata"})) || is_list(value) || value.find('%') != std::string::npos)
+    return;
+  const std::int64_t skip =
+      local ? static_cast<std::int64_t>(fields.end) : integer_of(fields, {"headersize"}, info.path).value_or(0);
+  if (skip < 0) return;
+  const FilePtr data = local ? file : open_file(beside(info.path, std::string(fields.get({kDataFile}))));
+  const auto found = static_cast<std::int64_t>(data->size()) - skip;
+  if (found == *said) return;
+  info.notes.push_back("CompressedDataSize is " + std::to_string(*said) + ", and the file has " +
+                       std::to_string(found) + " bytes of compressed samples, which are read");
 }
 
 // "name%03d.raw 1 100 1", where the step may be missing.
@@ -195,7 +243,7 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const MetaFields& fi
   const std::string& path = file->path();
   const std::string value(fields.get({kDataFile}));
   DataLayout layout;
-  layout.compressed = is_true(fields.get({"compresseddata"}));
+  if (is_true(fields.get({"compresseddata"}))) layout.encoding = DataLayout::Encoding::kDeflate;
   layout.byte_skip = integer_of(fields, {"headersize"}, path).value_or(0);
   if (layout.byte_skip < -1) bad_input(path, "a HeaderSize of at least -1", std::to_string(layout.byte_skip));
   if (lower_case(value) == "local") {
@@ -205,7 +253,7 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const MetaFields& fi
   if (is_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
   if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
   const FilePtr data = open_file(beside(path, value));
-  if (!layout.compressed) return open_samples(data, 0, layout, bytes);
+  if (layout.encoding == DataLayout::Encoding::kRaw) return open_samples(data, 0, layout, bytes);
   const std::uint64_t begin = compressed_begin(data, fields, std::exchange(layout.byte_skip, 0));
   return open_samples(data, begin, layout, bytes);
 }
@@ -221,7 +269,7 @@ bool is_metaimage(std::string_view head) {
   return known && line.find('=') != std::string_view::npos;
 }
 
-OpenedVolume open_metaimage(const FilePtr& file) {
+OpenedVolume open_metaimage(const FilePtr& file, const OpenOptions& options) {
   const MetaFields fields = parse_fields(file->head(kLargestHeader), file->path());
   check_kind(fields, file->path());
   OpenedVolume volume;
@@ -229,12 +277,18 @@ OpenedVolume open_metaimage(const FilePtr& file) {
   info.path = file->path();
   info.format = "metaimage";
   info.type = sample_type_of(fields, info.path);
-  const std::size_t axes = set_dims(info, fields);
-  const std::uint64_t bytes = checked_volume_bytes(info);
-  set_axes(info, fields, axes);
+  const std::vector<ArrayAxis> axes = axes_of(fields, options, info.path);
+  const AxisChoice choice = choose_axes(axes, options, info.path);
+  info.dims = choice.dims(axes);
+  info.part = choice.part;
+  info.notes = choice.notes;
+  set_axes(volume, fields, words_of(fields.get({"dimsize"})).size());
+  note_compressed_size(info, file, fields);
   const bool big = is_true(fields.get({"binarydatabyteordermsb", "elementbyteordermsb"}));
   volume.swap_bytes = big != (std::endian::native == std::endian::big);
-  volume.samples = samples_of(file, fields, bytes);
+  const std::size_t each = sample_bytes(info.type);
+  auto samples = samples_of(file, fields, checked_bytes_of(axes, each, info.path));
+  volume.samples = pick_volume(std::move(samples), axes, choice, each, info.path);
   return volume;
 }
 

@@ -4,15 +4,19 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "isoweave/error.hpp"
+#include "volume/array_axes.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/picked_stream.hpp"
 
 namespace isoweave {
 namespace {
@@ -154,22 +158,21 @@ SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
   bad_input(path, "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
 }
 
-void set_dims(VolumeInfo& info, const NiftiHeader& header) {
+// From the slowest axis to the fastest: channels (dimensions 5 to 7 as one), time, z, y, x.
+std::vector<ArrayAxis> axes_of(const NiftiHeader& header, std::string_view path) {
   const std::int64_t rank = header.dim[0];
-  if (rank < 1 || rank > 7) bad_input(info.path, "1 to 7 dimensions", std::to_string(rank));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    info.dims[axis] = static_cast<std::int64_t>(axis) < rank ? header.dim[axis + 1] : 1;
-  }
-  std::int64_t volumes = 1;
-  for (std::size_t axis = 4; static_cast<std::int64_t>(axis) <= rank; ++axis) {
-    const std::int64_t count = std::max<std::int64_t>(1, header.dim[axis]);
-    if (__builtin_mul_overflow(volumes, count, &volumes)) {
-      bad_input(info.path, "fewer than 2^63 volumes", "dimensions whose product is larger");
+  if (rank < 1 || rank > 7) bad_input(path, "1 to 7 dimensions", std::to_string(rank));
+  std::vector<ArrayAxis> axes{{1, "channel"}, {1, "time"}, {1, "z"}, {1, "y"}, {1, "x"}};
+  for (std::size_t n = 1; static_cast<std::int64_t>(n) <= rank; ++n) {
+    ArrayAxis& axis = axes[n < axes.size() ? axes.size() - n : 0];
+    // Beyond space a size of 0 stands for none.
+    const std::int64_t size = n > 3 ? std::max<std::int64_t>(1, header.dim[n]) : header.dim[n];
+    if (size < 1) bad_input(path, "dimensions of at least 1", std::to_string(size));
+    if (__builtin_mul_overflow(axis.size, size, &axis.size)) {
+      bad_input(path, "fewer than 2^63 volumes", "dimensions whose product is larger");
     }
   }
-  if (volumes > 1) {
-    info.notes.push_back(std::to_string(rank) + "-D: the first of " + std::to_string(volumes) + " volumes is read");
-  }
+  return axes;
 }
 
 // Sample distances along the axes; files in use leave them zero or negative.
@@ -224,20 +227,70 @@ Axes axes_from_quaternion(const NiftiHeader& header, const Vector3& spacing) {
   return axes;
 }
 
-void set_axes(VolumeInfo& info, const NiftiHeader& header) {
-  Axes axes;
-  info.geometry.space = Space::kRas;
-  if (header.sform > 0) {
-    axes = axes_from_rows(header);
-  } else if (header.qform > 0) {
-    axes = axes_from_quaternion(header, grid_spacing(info, header));
-  } else {
-    const Vector3 spacing = grid_spacing(info, header);
-    for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][axis] = spacing[axis];
-    info.geometry.space = Space::kUnknown;
-    info.notes.push_back("the file gives no orientation (neither sform nor qform)");
+// The largest distance between where two sets of axes put a corner of the volume.
+double apart(const Axes& a, const Axes& b, const std::array<std::int64_t, 3>& dims) {
+  double largest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector3 between{};
+    for (std::size_t row = 0; row < 3; ++row) {
+      between[row] = a.origin[row] - b.origin[row];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool far = (corner >> axis & 1) != 0;
+        if (far) between[row] += static_cast<double>(dims[axis] - 1) * (a.steps[axis][row] - b.steps[axis][row]);
+      }
+    }
+    largest = std::max(largest, std::hypot(between[0], between[1], between[2]));
   }
-  set_geometry(info.geometry, axes, info.path);
+  return largest;
+}
+
+double shortest_step(const Axes& axes) {
+  double shortest = HUGE_VAL;
+  for (const Vector3& step : axes.steps) shortest = std::min(shortest, std::hypot(step[0], step[1], step[2]));
+  return shortest;
+}
+
+// Both forms are kept as floats, the one as a rotation, so that they differ by rounding; more is told.
+void note_other_form(VolumeInfo& info, const NiftiHeader& header, const Axes& taken) {
+  constexpr double kRounding = 1e-2;  // of a step between samples
+  VolumeInfo ignored;
+  const double distance = apart(taken, axes_from_quaternion(header, grid_spacing(ignored, header)), info.dims);
+  if (distance <= kRounding * shortest_step(taken)) return;
+  info.notes.push_back("sform and qform differ: the sform (code " + std::to_string(header.sform) +
+                       ") is taken, the qform (code " + std::to_string(header.qform) + ") puts corners up to " +
+                       rounded_text(distance) + " away");
+}
+
+// The rows give the steps, also where the field for the spacing says otherwise.
+void note_other_spacing(VolumeInfo& info, const NiftiHeader& header) {
+  constexpr double kRounding = 1e-3;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double said = std::abs(header.pixdim[axis + 1]), taken = info.geometry.spacing[axis];
+    if (said == 0 || info.dims[axis] == 1 || std::abs(said - taken) <= kRounding * taken) continue;
+    info.notes.push_back("the spacing of axis " + std::to_string(axis) + " is " + rounded_text(taken) +
+                         " by the sform, which is taken, and " + rounded_text(said) + " by pixdim");
+  }
+}
+
+Axes axes_of_form(VolumeInfo& info, const NiftiHeader& header) {
+  if (header.sform > 0) {
+    const Axes axes = axes_from_rows(header);
+    if (header.qform > 0) note_other_form(info, header, axes);
+    return axes;
+  }
+  const Vector3 spacing = grid_spacing(info, header);
+  if (header.qform > 0) return axes_from_quaternion(header, spacing);
+  Axes axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][axis] = spacing[axis];
+  info.geometry.space = Space::kUnknown;
+  info.notes.push_back("the file gives no orientation (neither sform nor qform)");
+  return axes;
+}
+
+void set_axes(VolumeInfo& info, const NiftiHeader& header) {
+  info.geometry.space = Space::kRas;
+  set_geometry(info.geometry, axes_of_form(info, header), info.path);
+  if (header.sform > 0 && header.qform <= 0) note_other_spacing(info, header);
   constexpr std::array<std::string_view, 4> kUnits{"", "m", "mm", "um"};
   const auto unit = static_cast<std::size_t>(header.units & 7);
   if (unit < kUnits.size()) info.geometry.unit = kUnits[unit];
@@ -249,12 +302,15 @@ void set_scaling(VolumeInfo& info, const NiftiHeader& header) {
   info.intercept = std::isfinite(header.intercept) ? header.intercept : 0;
 }
 
-VolumeInfo read_info(const NiftiHeader& header, const std::string& path) {
+VolumeInfo read_info(const NiftiHeader& header, const std::vector<ArrayAxis>& axes, const AxisChoice& choice,
+                     const std::string& path) {
   VolumeInfo info;
   info.path = path;
   info.format = "nifti";
   info.type = sample_type_of(header, path);
-  set_dims(info, header);
+  info.dims = choice.dims(axes);
+  info.notes = choice.notes;
+  info.part = choice.part;
   checked_volume_bytes(info);
   set_axes(info, header);
   set_scaling(info, header);
@@ -311,21 +367,28 @@ void check_size(const FilePtr& file, bool gzip, std::uint64_t needed) {
 
 bool is_nifti(std::string_view head) { return parse_header(head).has_value(); }
 
-OpenedVolume open_nifti(const FilePtr& file, bool gzip) {
+OpenedVolume open_nifti(const FilePtr& file, bool gzip, const OpenOptions& options) {
   std::string head(kNiftiHeadBytes, '\0');
   head.resize(whole_file(file, gzip)->read(std::as_writable_bytes(std::span(head))));
   const std::optional<NiftiHeader> header = parse_header(head);
   if (!header) bad_input(file->path(), "a NIfTI header (size 348 or 540 and its magic)", "other bytes");
+  const std::vector<ArrayAxis> axes = axes_of(*header, file->path());
+  const AxisChoice choice = choose_axes(axes, options, file->path());
   OpenedVolume volume;
-  volume.info = read_info(*header, file->path());
+  volume.info = read_info(*header, axes, choice, file->path());
   const std::uint64_t offset = data_offset(*header, file->path());
   const FilePtr image = header->single_file ? file : image_of(file->path());
   const bool packed = header->single_file ? gzip : starts_as_gzip(image);
-  check_size(image, packed, offset + checked_volume_bytes(volume.info));
-  volume.samples = whole_file(image, packed);
-  if (volume.samples->skip(offset) < offset) {
+  const std::size_t each = sample_bytes(volume.info.type);
+  check_size(image, packed, offset + picked_extent(axes, choice, each, file->path()));
+  if (!packed && image->size() < offset + checked_bytes_of(axes, each, file->path())) {
+    volume.info.notes.emplace_back("the file ends before the last of the volumes that its header says");
+  }
+  auto samples = whole_file(image, packed);
+  if (samples->skip(offset) < offset) {
     bad_input(image->path(), "samples from byte " + std::to_string(offset) + " on", "fewer bytes");
   }
+  volume.samples = pick_volume(std::move(samples), axes, choice, each, file->path());
   volume.swap_bytes = header->swapped;
   return volume;
 }

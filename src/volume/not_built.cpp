@@ -17,7 +17,9 @@ namespace {
 }  // namespace
 
 #ifndef ISOWEAVE_HAS_TIFF
-OpenedVolume open_tiff(const FilePtr& file, bool) { not_built(file->path(), "TIFF", "libtiff", "ISOWEAVE_TIFF"); }
+OpenedVolume open_tiff(const FilePtr& file, bool, const OpenOptions&) {
+  not_built(file->path(), "TIFF", "libtiff", "ISOWEAVE_TIFF");
+}
 #endif
 
 #ifndef ISOWEAVE_HAS_PNG

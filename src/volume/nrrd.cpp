@@ -3,8 +3,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,91 +12,13 @@
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/length_units.hpp"
+#include "volume/nrrd_header.hpp"
+#include "volume/picked_stream.hpp"
 #include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {
-
-constexpr double kNotSaid = std::numeric_limits<double>::quiet_NaN();
-
-// The header as text: names of fields in lower case and without blanks.
-struct NrrdFields {
-  std::map<std::string, std::string> values;
-  std::vector<std::string> listed;  // the lines behind "data file: LIST"
-  std::size_t end = 0;              // bytes of the header, blank line included
-  bool blank_line = false;
-
-  std::string_view get(const std::string& name) const {
-    const auto found = values.find(name);
-    return found == values.end() ? std::string_view() : std::string_view(found->second);
-  }
-};
-
-struct NrrdAxis {
-  std::int64_t size = 0;
-  std::string kind;
-  std::optional<Vector3> step;
-  double spacing = kNotSaid;
-  double least = kNotSaid;  // "axis mins"
-  bool node_centred = false;
-  std::string unit;
-};
-
-std::string field_name(std::string_view text) {
-  std::string name = lower_case(text);
-  std::erase(name, ' ');
-  std::erase(name, '\t');
-  return name;
-}
-
-bool is_list(std::string_view value) { return value == "LIST" || value.starts_with("LIST "); }
-
-void read_list(NrrdFields& fields, LineReader& lines) {
-  while (const auto line = lines.next()) {
-    const std::string_view name = trimmed(*line);
-    if (!name.empty()) fields.listed.emplace_back(name);
-  }
-}
-
-NrrdFields parse_fields(const std::string& text, const std::string& path) {
-  LineReader lines(text);
-  const std::string_view magic = lines.next().value_or("");
-  if (magic.size() != 8 || magic < "NRRD0001" || magic > "NRRD0005") {
-    bad_input(path, "the magic NRRD0001 to NRRD0005", quoted(magic));
-  }
-  NrrdFields fields;
-  while (const auto line = lines.next()) {
-    if (line->empty() && lines.ended()) {
-      fields.blank_line = true;
-      break;
-    }
-    const std::size_t colon = line->find(':');
-    const bool comment = line->starts_with('#');
-    const bool key_and_value = line->substr(std::min(colon, line->size())).starts_with(":=");
-    if (comment || key_and_value) continue;
-    if (colon == std::string_view::npos) {
-      bad_input(path, "header lines 'field: value'", quoted(*line));
-    }
-    const std::string name = field_name(line->substr(0, colon));
-    const std::string_view value = trimmed(line->substr(colon + 1));
-    if (!fields.values.emplace(name, value).second) bad_input(path, "each field once", "'" + name + "' twice");
-    if (name == "datafile" && is_list(value)) read_list(fields, lines);
-  }
-  fields.end = lines.position();
-  if (!fields.blank_line && text.size() >= kLargestHeader) {
-    bad_input(path, "a header of at most " + std::to_string(kLargestHeader) + " bytes", "no end of it");
-  }
-  return fields;
-}
-
-std::int64_t integer_field(const NrrdFields& fields, const std::string& name, std::int64_t missing,
-                           std::string_view path) {
-  const std::string_view text = fields.get(name);
-  if (text.empty()) return missing;
-  const auto value = parse_integer(text);
-  if (!value) bad_input(path, "a whole number as '" + name + "'", quoted(text));
-  return *value;
-}
 
 SampleType sample_type_of(const NrrdFields& fields, std::string_view path) {
   struct Names {
@@ -121,153 +41,96 @@ SampleType sample_type_of(const NrrdFields& fields, std::string_view path) {
   bad_input(path, "a type of 8 to 32 bit integers, float or double", "type '" + text + "'");
 }
 
-// One word per axis where the field is there.
-std::vector<std::string_view> axis_words(const NrrdFields& fields, const std::string& name, std::size_t axes,
-                                         std::string_view path) {
-  std::vector<std::string_view> words = words_of(fields.get(name));
-  if (!words.empty() && words.size() != axes) {
-    bad_input(path, std::to_string(axes) + " values in '" + name + "'", std::to_string(words.size()));
-  }
-  return words;
-}
-
-std::vector<double> axis_numbers(const NrrdFields& fields, const std::string& name, std::size_t axes,
-                                 std::string_view path) {
-  std::vector<double> numbers;
-  for (const std::string_view word : axis_words(fields, name, axes, path)) {
-    const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers in '" + name + "'", quoted(word));
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
-// "(x,y,z)"; fewer coordinates are those of a plane or a line.
-Vector3 parse_vector(std::string_view text, std::string_view path) {
-  Vector3 vector{0, 0, 0};
-  std::size_t count = 0;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    const auto number = parse_double(trimmed(text.substr(0, comma)));
-    if (!number || count == 3) bad_input(path, "vectors of up to 3 numbers", quoted(text));
-    vector[count++] = *number;
-    if (comma == std::string_view::npos) return vector;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-// "(1,0,0) none (0,1,0)"; a vector of NaN says none, too.
-std::vector<std::optional<Vector3>> parse_vectors(std::string_view text, std::string_view path) {
-  std::vector<std::optional<Vector3>> vectors;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    if (text.starts_with("none")) {
-      vectors.emplace_back();
-      text.remove_prefix(4);
-      continue;
-    }
-    const std::size_t close = text.find(')');
-    if (text[0] != '(' || close == std::string_view::npos) {
-      bad_input(path, "vectors such as (1,0,0)", quoted(text));
-    }
-    const Vector3 vector = parse_vector(text.substr(1, close - 1), path);
-    const bool none = std::isnan(vector[0]) && std::isnan(vector[1]) && std::isnan(vector[2]);
-    vectors.push_back(none ? std::nullopt : std::optional(vector));
-    text.remove_prefix(close + 1);
-  }
-  return vectors;
-}
-
-// The words between double quotes.
-std::vector<std::string> quoted_words(std::string_view text) {
-  std::vector<std::string> words;
-  while (true) {
-    const std::size_t open = text.find('"');
-    if (open == std::string_view::npos) return words;
-    const std::size_t close = text.find('"', open + 1);
-    if (close == std::string_view::npos) return words;
-    words.emplace_back(text.substr(open + 1, close - open - 1));
-    text.remove_prefix(close + 1);
-  }
-}
-
-std::vector<NrrdAxis> parse_axes(const NrrdFields& fields, const std::string& path) {
-  constexpr std::int64_t kMostAxes = 16;
-  const std::int64_t dimension = integer_field(fields, "dimension", 0, path);
-  if (dimension < 1 || dimension > kMostAxes) {
-    bad_input(path, "a dimension of 1 to 16", std::to_string(dimension));
-  }
-  std::vector<NrrdAxis> axes(static_cast<std::size_t>(dimension));
-  const auto sizes = axis_words(fields, "sizes", axes.size(), path);
-  const auto kinds = axis_words(fields, "kinds", axes.size(), path);
-  const auto spacings = axis_numbers(fields, "spacings", axes.size(), path);
-  const auto least = axis_numbers(fields, "axismins", axes.size(), path);
-  const auto centres = axis_words(fields, fields.get("centers").empty() ? "centerings" : "centers", axes.size(), path);
-  const auto units = quoted_words(fields.get("units"));
-  const auto steps = parse_vectors(fields.get("spacedirections"), path);
-  if (sizes.empty()) bad_input(path, "the field 'sizes'", "none");
-  if (!steps.empty() && steps.size() != axes.size()) {
-    bad_input(path, std::to_string(axes.size()) + " space directions", std::to_string(steps.size()));
-  }
-  for (std::size_t n = 0; n < axes.size(); ++n) {
-    const auto size = parse_integer(sizes[n]);
-    if (!size || *size < 1) bad_input(path, "sizes of at least 1", quoted(sizes[n]));
-    axes[n].size = *size;
-    if (!kinds.empty()) axes[n].kind = lower_case(kinds[n]);
-    if (!spacings.empty()) axes[n].spacing = spacings[n];
-    if (!least.empty()) axes[n].least = least[n];
-    if (!centres.empty()) axes[n].node_centred = lower_case(centres[n]) == "node";
-    if (!steps.empty()) axes[n].step = steps[n];
-    if (units.size() == axes.size()) axes[n].unit = units[n];
-  }
-  return axes;
-}
-
 bool is_spatial(const NrrdAxis& axis, bool oriented) {
   if (oriented) return axis.step.has_value();
   return axis.kind.empty() || axis.kind == "domain" || axis.kind == "space" || axis.kind == "???" ||
          axis.kind == "none";
 }
 
-// The axes of the volume; any other may have one sample only, which then changes nothing about the layout.
-std::vector<NrrdAxis> spatial_axes(const std::vector<NrrdAxis>& axes, std::string_view path) {
+// Which axes are those of space; of more than three, those of one sample are none, and then the last one is time.
+std::vector<bool> find_spatial(std::vector<NrrdAxis>& axes, std::string_view path) {
   const bool oriented = std::any_of(axes.begin(), axes.end(), [](const NrrdAxis& axis) { return axis.step; });
-  std::vector<NrrdAxis> spatial;
-  for (std::size_t n = 0; n < axes.size(); ++n) {
-    if (is_spatial(axes[n], oriented)) {
-      spatial.push_back(axes[n]);
-    } else if (axes[n].size > 1) {
-      const std::string kind = axes[n].kind.empty() ? "" : " of kind '" + axes[n].kind + "'";
-      bad_input(path, "one scalar per sample of a 3-D volume",
-                "axis " + std::to_string(n) + kind + " with " + std::to_string(axes[n].size) + " values");
-    }
+  std::vector<bool> spatial;
+  for (const NrrdAxis& axis : axes) spatial.push_back(is_spatial(axis, oriented));
+  auto surplus = std::count(spatial.begin(), spatial.end(), true) - 3;
+  for (std::size_t n = axes.size(); n-- > 0 && surplus > 0;) {
+    if (!spatial[n] || axes[n].size > 1) continue;
+    spatial[n] = false;
+    --surplus;
   }
-  while (spatial.size() > 3) {
-    const auto single = std::find_if(spatial.rbegin(), spatial.rend(), [](const NrrdAxis& a) { return a.size == 1; });
-    if (single == spatial.rend()) bad_input(path, "3 dimensions", std::to_string(spatial.size()));
-    spatial.erase(std::next(single).base());
+  if (surplus > 1) bad_input(path, "at most 4 dimensions", std::to_string(3 + surplus));
+  if (surplus == 1) {
+    const std::size_t last =
+        axes.size() - 1 -
+        static_cast<std::size_t>(std::find(spatial.rbegin(), spatial.rend(), true) - spatial.rbegin());
+    spatial[last] = false;
+    axes[last].kind = "time";
   }
   return spatial;
 }
 
+// Parts of one sample: vectors, colours. They are no choice of volumes, unless the caller chooses.
+void refuse_parts(const NrrdAxis& axis, std::size_t n, const OpenOptions& options, std::string_view path) {
+  if (options.channel || options.slices_from == SliceAxis::kChannels || axis.size == 1) return;
+  if (axis.kind.empty() || axis.kind == "list" || axis.kind == "none" || axis.kind == "???") return;
+  bad_input(path, "one scalar per sample of a 3-D volume",
+            "axis " + std::to_string(n) + " of kind '" + axis.kind + "' with " + std::to_string(axis.size) +
+                " values (--channel chooses one)");
+}
+
+// The axes of the file from the slowest to the fastest, by the names that choose_axes knows.
+std::vector<ArrayAxis> named_axes(std::vector<NrrdAxis>& axes, const OpenOptions& options, std::string_view path) {
+  const std::vector<bool> spatial = find_spatial(axes, path);
+  constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+  std::vector<ArrayAxis> named;
+  std::size_t used = 0;
+  for (std::size_t n = 0; n < axes.size(); ++n) {
+    ArrayAxis axis{axes[n].size, {}};
+    if (spatial[n]) {
+      axis.name = kNames.at(used++);
+    } else if (axes[n].kind == "time") {
+      axis.name = "time";
+    } else if (axis.size > 1) {
+      refuse_parts(axes[n], n, options, path);
+      axis.name = "channel";
+    }
+    named.push_back(axis);
+  }
+  // A line is a plane of one row.
+  if (used == 1) named.push_back({1, "y"});
+  std::reverse(named.begin(), named.end());
+  return named;
+}
+
+// The axes of i, j and k, as far as there are any.
+std::vector<NrrdAxis> chosen_axes(const std::vector<NrrdAxis>& axes, const std::vector<ArrayAxis>& named,
+                                  const AxisChoice& choice) {
+  std::vector<NrrdAxis> chosen;
+  for (const std::size_t axis : choice.place) {
+    if (axis == kNoAxis) continue;
+    const std::size_t n = named.size() - 1 - axis;
+    chosen.push_back(n < axes.size() ? axes[n] : NrrdAxis{});
+  }
+  return chosen;
+}
+
 // Sets the space, and returns the signs that turn world coordinates of the file into it.
 Vector3 set_space(VolumeInfo& info, const NrrdFields& fields) {
-  const std::string space = lower_case(fields.get("space"));
+  constexpr std::string_view kTime = "-time";
+  std::string space = lower_case(fields.get("space"));
+  if (space.ends_with(kTime)) space.resize(space.size() - kTime.size());
   if (space.empty()) return {1, 1, 1};
-  if (space == "left-posterior-superior" || space == "lps") {
+  if (space == "left-posterior-superior" || space == "lps" || space == "lpst") {
     info.geometry.space = Space::kLps;
-  } else if (space == "right-anterior-superior" || space == "ras") {
+  } else if (space == "right-anterior-superior" || space == "ras" || space == "rast") {
     info.geometry.space = Space::kRas;
-  } else if (space == "left-anterior-superior" || space == "las") {
+  } else if (space == "left-anterior-superior" || space == "las" || space == "last") {
     info.geometry.space = Space::kLps;
     return {1, -1, 1};
   } else {
-    info.notes.push_back("the space '" + printable(space) + "' is taken as unknown");
+    info.notes.push_back("the space " + quoted(space) + " is taken as unknown");
   }
   return {1, 1, 1};
-}
-
-void set_oriented_step(Axes& out, std::size_t n, const Vector3& step, const Vector3& signs) {
-  for (std::size_t row = 0; row < 3; ++row) out.steps[n][row] = step[row] * signs[row];
 }
 
 void set_plain_step(VolumeInfo& info, Axes& out, std::size_t n, const NrrdAxis& axis) {
@@ -283,50 +146,82 @@ void set_plain_step(VolumeInfo& info, Axes& out, std::size_t n, const NrrdAxis& 
   if (!std::isnan(axis.least)) out.origin[n] = axis.least + (axis.node_centred ? 0 : 0.5 * spacing);
 }
 
-void set_unit(VolumeInfo& info, const NrrdFields& fields, const std::vector<NrrdAxis>& axes) {
-  std::vector<std::string> units = quoted_words(fields.get("spaceunits"));
-  if (units.empty()) {
-    for (const NrrdAxis& axis : axes) units.push_back(axis.unit);
+void note_other_spacing(VolumeInfo& info, std::size_t n, const NrrdAxis& axis) {
+  constexpr double kRounding = 1e-3;
+  const double taken = std::hypot((*axis.step)[0], (*axis.step)[1], (*axis.step)[2]);
+  if (std::isnan(axis.spacing) || std::abs(std::abs(axis.spacing) - taken) <= kRounding * taken) return;
+  info.notes.push_back("the spacing of axis " + std::to_string(n) + " is " + rounded_text(taken) +
+                       " by its space direction, which is taken, and " + rounded_text(axis.spacing) + " by spacings");
+}
+
+// Units of the world where axes have directions in it, else those of the axes, which are then those of the world.
+CommonUnit unit_of(const NrrdFields& fields, const std::vector<NrrdAxis>& axes) {
+  const bool oriented = axes[0].step.has_value();
+  const std::vector<std::string> world = quoted_words(fields.get("spaceunits"));
+  const bool own = std::any_of(axes.begin(), axes.end(), [](const NrrdAxis& axis) { return !axis.unit.empty(); });
+  std::array<std::optional<std::string>, 3> texts;
+  for (std::size_t n = 0; n < 3; ++n) {
+    if (!world.empty() && (oriented || !own)) {
+      if (n < world.size() && (oriented || n < axes.size())) texts[n] = world[n];
+    } else if (n < axes.size()) {
+      texts[n] = axes[n].unit;
+    }
   }
-  if (units.empty() || units[0].empty()) return;
-  const bool same = std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; });
-  const std::string_view unit = known_unit(units[0]);
-  if (same && !unit.empty()) {
-    info.geometry.unit = unit;
-  } else {
-    info.notes.push_back("the unit '" + printable(units[0]) + "' is not one known for all axes");
+  CommonUnit unit = common_unit(texts);
+  const bool same = unit.scale[1] == unit.scale[0] && unit.scale[2] == unit.scale[0];
+  // Units of axes that do not go along the world's say nothing of the world.
+  if (oriented && world.empty() && !same) unit.conflict = "units of axes, not of the space, that differ";
+  return unit;
+}
+
+void apply_unit(Axes& out, const CommonUnit& unit) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (Vector3& step : out.steps) step[row] *= unit.scale[row];
+    out.origin[row] *= unit.scale[row];
   }
 }
 
-void set_axes(VolumeInfo& info, const NrrdFields& fields, const std::vector<NrrdAxis>& axes) {
+// `axes`: those of i, j and k.
+void set_axes(OpenedVolume& volume, const NrrdFields& fields, const std::vector<NrrdAxis>& axes) {
+  VolumeInfo& info = volume.info;
   Axes out;
   const Vector3 signs = set_space(info, fields);
   for (std::size_t n = 0; n < axes.size(); ++n) {
-    if (axes[n].step) {
-      set_oriented_step(out, n, *axes[n].step, signs);
-    } else {
+    if (!axes[n].step) {
       set_plain_step(info, out, n, axes[n]);
+      continue;
     }
+    note_other_spacing(info, n, axes[n]);
+    for (std::size_t row = 0; row < 3; ++row) out.steps[n][row] = (*axes[n].step)[row] * signs[row];
   }
-  // A plane image in space lacks its third axis.
-  if (axes.size() == 2 && axes[0].step) out.steps[2] = normal_of(out.steps[0], out.steps[1]);
-  const auto origins = parse_vectors(fields.get("spaceorigin"), info.path);
+  // A plane image in space lacks its third axis, and so do slices that are kept as something else.
+  const bool plane = axes[0].step && axes[1].step && (axes.size() == 2 || !axes[2].step);
+  if (plane) out.steps[2] = normal_of(out.steps[0], out.steps[1]);
+  const auto origins = parse_nrrd_vectors(fields.get("spaceorigin"), info.path);
   if (!origins.empty() && origins[0]) {
-    for (std::size_t row = 0; row < 3; ++row) out.origin[row] = (*origins[0])[row] * signs[row];
+    for (std::size_t row = 0; row < 3; ++row) out.origin[row] = origins[0]->space[row] * signs[row];
   }
+  const CommonUnit unit = unit_of(fields, axes);
+  apply_unit(out, unit);
   set_geometry(info.geometry, out, info.path);
-  set_unit(info, fields, axes);
+  take_unit(volume, unit);
 }
 
-DataLayout layout_of(const NrrdFields& fields, std::string_view path) {
+DataLayout layout_of(const NrrdFields& fields, SampleType type, std::string_view path) {
   DataLayout layout;
+  layout.type = type;
   const std::string encoding = lower_case(fields.get("encoding"));
-  layout.compressed = encoding == "gzip" || encoding == "gz";
-  if (!layout.compressed && encoding != "raw") {
-    bad_input(path, "encoding '" + encoding + "' is not supported; raw and gzip are");
+  if (encoding == "gzip" || encoding == "gz") {
+    layout.encoding = DataLayout::Encoding::kDeflate;
+  } else if (encoding == "ascii" || encoding == "text" || encoding == "txt") {
+    layout.encoding = DataLayout::Encoding::kNumbers;
+  } else if (encoding == "hex") {
+    layout.encoding = DataLayout::Encoding::kHex;
+  } else if (encoding != "raw") {
+    bad_input(path, "encoding raw, gzip, ascii or hex", quoted(encoding));
   }
-  layout.line_skip = integer_field(fields, "lineskip", 0, path);
-  layout.byte_skip = integer_field(fields, "byteskip", 0, path);
+  layout.line_skip = nrrd_integer(fields, "lineskip", 0, path);
+  layout.byte_skip = nrrd_integer(fields, "byteskip", 0, path);
   return layout;
 }
 
@@ -362,29 +257,35 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const NrrdFields& fi
     if (!fields.blank_line) bad_input(path, "a blank line behind the header, or a data file", "neither");
     return open_samples(file, fields.end, layout, bytes);
   }
-  if (is_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
+  if (is_nrrd_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
   if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
   return open_samples(open_file(beside(path, std::string(value))), 0, layout, bytes);
 }
 
 }  // namespace
 
-OpenedVolume open_nrrd(const FilePtr& file) {
-  const NrrdFields fields = parse_fields(file->head(kLargestHeader), file->path());
+OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options) {
+  const NrrdFields fields = parse_nrrd_fields(file->head(kLargestHeader), file->path());
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "nrrd";
   info.type = sample_type_of(fields, info.path);
-  const std::vector<NrrdAxis> axes = spatial_axes(parse_axes(fields, info.path), info.path);
-  info.dims = {1, 1, 1};
-  for (std::size_t n = 0; n < axes.size(); ++n) info.dims[n] = axes[n].size;
-  const std::uint64_t bytes = checked_volume_bytes(info);
-  set_axes(info, fields, axes);
-  // Text has no byte order: what is not read is said first.
-  const DataLayout layout = layout_of(fields, info.path);
-  volume.swap_bytes = is_swapped(fields, info.type, info.path);
-  volume.samples = samples_of(file, fields, layout, bytes);
+  std::vector<NrrdAxis> axes = parse_nrrd_axes(fields, info.path);
+  const std::vector<ArrayAxis> named = named_axes(axes, options, info.path);
+  const AxisChoice choice = choose_axes(named, options, info.path);
+  info.dims = choice.dims(named);
+  info.part = choice.part;
+  info.notes = choice.notes;
+  checked_volume_bytes(info);
+  set_axes(volume, fields, chosen_axes(axes, named, choice));
+  const DataLayout layout = layout_of(fields, info.type, info.path);
+  // Text has no byte order.
+  const bool text = layout.encoding == DataLayout::Encoding::kNumbers;
+  volume.swap_bytes = !text && is_swapped(fields, info.type, info.path);
+  const std::size_t each = sample_bytes(info.type);
+  auto samples = samples_of(file, fields, layout, checked_bytes_of(named, each, info.path));
+  volume.samples = pick_volume(std::move(samples), named, choice, each, info.path);
   return volume;
 }
 

@@ -1,5 +1,6 @@
 #include "volume/ome_multiscale.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "volume/input_file.hpp"
@@ -54,35 +55,68 @@ void take_axes(Multiscale& image, std::vector<std::string>& units, const Json* a
   }
 }
 
-}  // namespace
-
-std::optional<Multiscale> multiscale_of(const Json& attributes, const std::string& path) {
+// The list of images; nothing where the attributes describe none.
+const Json* images_of(const Json& attributes, const std::string& path) {
   const Json* ome = member(attributes, "ome");
   const Json* images = member(ome != nullptr ? *ome : attributes, "multiscales");
-  if (images == nullptr) return std::nullopt;
+  if (images == nullptr) return nullptr;
   if (!images->is_array() || images->empty()) bad_input(path, "an image in 'multiscales'", "none");
-  const Json& first = (*images)[0];
-  const Json* datasets = member(first, "datasets");
+  return images;
+}
+
+Multiscale read_image(const Json& json, const std::string& path) {
+  const Json* datasets = member(json, "datasets");
   if (datasets == nullptr || !datasets->is_array() || datasets->empty()) {
     bad_input(path, "datasets in 'multiscales'", "none");
   }
   Multiscale image;
   std::vector<std::string> units;
-  take_axes(image, units, member(first, "axes"), text_member(first, "version"));
+  take_axes(image, units, member(json, "axes"), text_member(json, "version"));
   for (const Json& dataset : *datasets) {
     Multiscale::Level level;
     level.path = text_member(dataset, "path");
     if (level.path.empty()) bad_input(path, "a path for every dataset in 'multiscales'", "none");
     level.places.units = units;
     apply_all(level.places, member(dataset, "coordinateTransformations"), path);
-    apply_all(level.places, member(first, "coordinateTransformations"), path);
-    if (images->size() > 1) {
-      level.places.notes.push_back("the first of " + std::to_string(images->size()) +
-                                   " images in 'multiscales' is read");
-    }
+    apply_all(level.places, member(json, "coordinateTransformations"), path);
     image.levels.push_back(std::move(level));
   }
   return image;
+}
+
+// A path without dots and without a blank end.
+std::string plain_path(const std::string& path) {
+  std::string plain = std::filesystem::path(path).lexically_normal().generic_string();
+  while (plain.ends_with('/')) plain.pop_back();
+  return plain;
+}
+
+}  // namespace
+
+std::optional<Multiscale> multiscale_of(const Json& attributes, const std::string& path) {
+  const Json* images = images_of(attributes, path);
+  if (images == nullptr) return std::nullopt;
+  Multiscale image = read_image((*images)[0], path);
+  if (images->size() > 1) {
+    for (Multiscale::Level& level : image.levels) {
+      level.places.notes.push_back("the first of " + std::to_string(images->size()) +
+                                   " images in 'multiscales' is read");
+    }
+  }
+  return image;
+}
+
+std::optional<LevelInImage> find_level(const Json& attributes, const std::string& dataset, const std::string& path) {
+  const Json* images = images_of(attributes, path);
+  for (std::size_t n = 0; images != nullptr && n < images->size(); ++n) {
+    const Json* datasets = member((*images)[n], "datasets");
+    if (datasets == nullptr || !datasets->is_array()) continue;
+    for (std::size_t level = 0; level < datasets->size(); ++level) {
+      if (plain_path(text_member((*datasets)[level], "path")) != plain_path(dataset)) continue;
+      return LevelInImage{read_image((*images)[n], path), level};
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace isoweave

@@ -1,4 +1,6 @@
 // Tells the format of a file by its content, then by its name, and hands it to the format's reader.
+#include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -47,14 +49,14 @@ std::string header_of_image(const std::string& path) {
   return path.ends_with(kImage) ? path.substr(0, path.size() - kImage.size()) + ".hdr" : std::string();
 }
 
-OpenedVolume open_by_name(const FilePtr& file) {
+OpenedVolume open_by_name(const FilePtr& file, const OpenOptions& options) {
   const std::string& path = file->path();
   if (const std::optional<RawLayout> layout = raw_layout_from_name(path)) return open_raw(file, *layout);
   const std::string name = lower_case(path);
-  if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file);
+  if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file, options);
   const std::string header = header_of_image(path);
   if (!header.empty()) {
-    OpenedVolume volume = open_nifti(open_file(header), false);
+    OpenedVolume volume = open_nifti(open_file(header), false, options);
     volume.info.path = path;
     return volume;
   }
@@ -63,29 +65,38 @@ OpenedVolume open_by_name(const FilePtr& file) {
 
 OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   const std::string head = file->head(kHeadBytes);
-  if (head.starts_with("NRRD")) return open_nrrd(file);
-  if (is_tiff(head)) return open_tiff(file, false);
+  if (head.starts_with("NRRD")) return open_nrrd(file, options);
+  if (is_tiff(head)) return open_tiff(file, false, options);
   if (is_png(head)) return open_png(file);
   if (is_vti(head)) return open_vti(file);
   if (is_vtk_legacy(head)) return open_vtk_legacy(file);
   if (is_pvm(head)) return open_pvm(file);
-  if (is_metaimage(head)) return open_metaimage(file);
-  if (is_nifti(head)) return open_nifti(file, false);
-  if (is_nifti(inflated_head(file, head))) return open_nifti(file, true);
+  if (is_metaimage(head)) return open_metaimage(file, options);
+  if (is_nifti(head)) return open_nifti(file, false, options);
+  if (is_nifti(inflated_head(file, head))) return open_nifti(file, true, options);
   if (is_hdf5(*file)) return open_hdf5(file, options);
-  return open_by_name(file);
+  return open_by_name(file, options);
 }
 
 void refuse_series(const std::string& path, const std::string& series) {
   if (!series.empty()) bad_input(path, "the DICOM series " + quoted(series), "no DICOM");
 }
 
-// Options that choose among what other formats do not have.
+bool is_one_of(std::string_view format, std::initializer_list<std::string_view> formats) {
+  return std::find(formats.begin(), formats.end(), format) != formats.end();
+}
+
+// Options that choose among what other formats do not have. Readers that have it refuse what is not in the file.
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
-  const bool asked = !options.dataset.empty() || options.level || options.channel || options.time;
-  const bool array = info.format == "hdf5" || info.format == "zarr" || info.format == "n5";
-  if (asked && !array)
-    bad_input(info.path, "HDF5, Zarr or N5 for --dataset, --level, --channel and --time", info.format);
+  const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
+  if (!array && (!options.dataset.empty() || options.level)) {
+    bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
+  }
+  const bool axes = array || is_one_of(info.format, {"tiff", "nifti", "nrrd", "metaimage"});
+  if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {
+    bad_input(info.path, "TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and --slices-from",
+              info.format);
+  }
 }
 
 OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
@@ -96,7 +107,7 @@ OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
   const SliceFiles slices = find_slices(path);
   if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options.series);
   refuse_series(path, options.series);
-  return open_slice_series(slices);
+  return open_slice_series(slices, options);
 }
 
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
@@ -113,6 +124,9 @@ OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
   OpenedVolume volume = open_any(path, options);
   refuse_array_options(volume.info, options);
+  if (!volume.unit_conflict.empty() && !options.spacing) {
+    bad_input(volume.info.path, "units of length that can be made one, or --spacing", volume.unit_conflict);
+  }
   apply_overrides(volume.info.geometry, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }

@@ -10,9 +10,9 @@
 namespace isoweave {
 namespace {
 
-OpenedVolume open_slice(SliceKind kind, const std::string& path, bool one_of_series) {
+OpenedVolume open_slice(SliceKind kind, const std::string& path, bool one_of_series, const OpenOptions& options) {
   const FilePtr file = open_file(path);
-  return kind == SliceKind::kTiff ? open_tiff(file, one_of_series) : open_png(file);
+  return kind == SliceKind::kTiff ? open_tiff(file, one_of_series, options) : open_png(file);
 }
 
 std::string text_of(const VolumeInfo& info) {
@@ -35,16 +35,16 @@ void check_slice(const VolumeInfo& slice, const VolumeInfo& first) {
 
 }  // namespace
 
-OpenedVolume open_slice_series(const SliceFiles& slices) {
+OpenedVolume open_slice_series(const SliceFiles& slices, const OpenOptions& options) {
   const bool series = slices.files.size() > 1;
-  OpenedVolume volume = open_slice(slices.kind, slices.files.front(), series);
+  OpenedVolume volume = open_slice(slices.kind, slices.files.front(), series, options);
   VolumeInfo& info = volume.info;
   if (series) {
     check_slice(info, info);
-    for (const std::string& path : slices.files) check_slice(open_slice(slices.kind, path, series).info, info);
+    for (const std::string& path : slices.files) check_slice(open_slice(slices.kind, path, series, options).info, info);
     const auto count = static_cast<std::int64_t>(slices.files.size());
     const auto name = [slices](std::int64_t n) { return slices.files[static_cast<std::size_t>(n)]; };
-    const auto open = [slices, name](std::int64_t n) { return open_slice(slices.kind, name(n), true).samples; };
+    const auto open = [slices, name](std::int64_t n) { return open_slice(slices.kind, name(n), true, {}).samples; };
     volume.samples = std::make_unique<FileSequence>(count, info.slice_bytes(), open, name);
     info.dims[2] = count;
     checked_volume_bytes(info);

@@ -15,7 +15,8 @@ namespace isoweave {
 struct OpenedVolume {
   VolumeInfo info;
   std::unique_ptr<ByteStream> samples;
-  bool swap_bytes = false;  // the stored byte order is not the machine's
+  bool swap_bytes = false;    // the stored byte order is not the machine's
+  std::string unit_conflict;  // units of the axes that cannot be made one: without --spacing no volume
 };
 
 class StreamSource final : public SliceSource {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "volume/array_axes.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/length_units.hpp"
 #include "volume/stack_description.hpp"
 #include "volume/tiff_file.hpp"
 #include "volume/tiff_pages.hpp"
@@ -29,20 +32,29 @@ void use_resolution(StackDescription& stack, const TiffFile& tiff) {
   const std::array<float, 2> resolution{tiff.field<float>(TIFFTAG_XRESOLUTION, 0),
                                         tiff.field<float>(TIFFTAG_YRESOLUTION, 0)};
   const auto unit = tiff.field<std::uint16_t>(TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE);
-  if (stack.unit.empty() && unit == RESUNIT_INCH && resolution[0] == kPrinter) return;
-  if (stack.unit.empty() && unit == RESUNIT_INCH) stack.unit = "inch";
-  if (stack.unit.empty() && unit == RESUNIT_CENTIMETER) stack.unit = "cm";
+  // The unit belongs to the resolution, and is the inch where a file gives neither.
+  if (!(resolution[0] > 0)) return;
+  if (stack.units[0].empty() && unit == RESUNIT_INCH && resolution[0] == kPrinter) return;
+  for (std::string& own : stack.units) {
+    if (own.empty() && unit == RESUNIT_INCH) own = "inch";
+    if (own.empty() && unit == RESUNIT_CENTIMETER) own = "cm";
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (resolution[axis] > 0) stack.spacing[axis] = 1 / static_cast<double>(resolution[axis]);
   }
 }
 
-void set_axes(VolumeInfo& info, const StackDescription& stack) {
-  const LengthUnit unit = length_unit(stack.unit);
-  if (!unit.note.empty()) info.notes.push_back(unit.note);
+void set_axes(OpenedVolume& volume, const StackDescription& stack) {
+  VolumeInfo& info = volume.info;
+  std::array<std::optional<std::string>, 3> texts;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (stack.spacing[axis]) texts[axis] = stack.units[axis];
+  }
+  const CommonUnit unit = common_unit(texts);
+  take_unit(volume, unit);
   Axes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double step = stack.spacing[axis] ? *stack.spacing[axis] * unit.scale : 1;
+    const double step = stack.spacing[axis] ? *stack.spacing[axis] * unit.scale[axis] : 1;
     axes.steps[axis][axis] = step;
     axes.origin[axis] = stack.origin_samples[axis] == 0 ? 0 : -stack.origin_samples[axis] * step;
     if (!stack.spacing[axis]) {
@@ -50,7 +62,6 @@ void set_axes(VolumeInfo& info, const StackDescription& stack) {
     }
   }
   set_geometry(info.geometry, axes, info.path);
-  info.geometry.unit = unit.unit;
 }
 
 void note_peculiarities(VolumeInfo& info, const TiffFile& tiff, const TiffPages& pages) {
@@ -66,19 +77,48 @@ void note_peculiarities(VolumeInfo& info, const TiffFile& tiff, const TiffPages&
   }
 }
 
-// The pages of the first channel and frame.
-std::vector<std::uint64_t> first_of(const TiffPages& pages, const StackDescription& stack, const std::string& path) {
-  const auto found = static_cast<std::int64_t>(pages.offsets.size());
-  if (stack.images == 0) return pages.offsets;
-  if (stack.images != found) {
-    bad_input(path, std::to_string(stack.images) + " pages by its description", std::to_string(found));
+// Number of the page, or of the image in a contiguous stack, that is slice k: first + k * step.
+struct PageNumbers {
+  std::int64_t first = 0;
+  std::int64_t step = 1;
+  std::int64_t count = 1;
+
+  std::int64_t of(std::int64_t k) const { return first + k * step; }
+};
+
+// Chooses the slices among all images.
+PageNumbers choose_slices(VolumeInfo& info, const StackDescription& stack, std::int64_t images,
+                          const OpenOptions& options) {
+  std::vector<ArrayAxis> axes = stack.axes;
+  if (axes.empty()) axes = {{images, "z"}};
+  axes.push_back({info.dims[1], "y"});
+  axes.push_back({info.dims[0], "x"});
+  const AxisChoice choice = choose_axes(axes, options, info.path);
+  info.notes.insert(info.notes.end(), choice.notes.begin(), choice.notes.end());
+  info.part = choice.part;
+  PageNumbers numbers;
+  std::int64_t step = 1;
+  for (std::size_t n = axes.size() - 2; n-- > 0; step *= axes[n].size) {
+    numbers.first += choice.at[n] * step;
+    if (n != choice.axis[2]) continue;
+    numbers.step = step;
+    numbers.count = axes[n].size;
   }
-  if (stack.slices == 0) return pages.offsets;
+  return numbers;
+}
+
+std::vector<std::uint64_t> pages_of(const TiffPages& pages, const PageNumbers& numbers) {
   std::vector<std::uint64_t> slices;
-  for (std::int64_t n = 0; n < stack.slices; ++n) {
-    slices.push_back(pages.offsets[static_cast<std::size_t>(n * stack.step)]);
+  for (std::int64_t k = 0; k < numbers.count; ++k) {
+    slices.push_back(pages.offsets[static_cast<std::size_t>(numbers.of(k))]);
   }
   return slices;
+}
+
+void check_images(const StackDescription& stack, std::int64_t found, const std::string& path) {
+  if (stack.images != 0 && stack.images != found) {
+    bad_input(path, std::to_string(stack.images) + " pages by its description", std::to_string(found));
+  }
 }
 
 // ImageJ writes stacks beyond 4 GB as one directory, with the samples of all images behind one another.
@@ -87,22 +127,21 @@ bool is_contiguous(const TiffFile& tiff, const TiffPages& pages, const StackDesc
          tiff.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_NONE;
 }
 
-std::unique_ptr<ByteStream> contiguous_samples(const TiffFile& tiff, const VolumeInfo& info,
-                                               const StackDescription& stack) {
+std::unique_ptr<ByteStream> contiguous_samples(const TiffFile& tiff, const VolumeInfo& info, std::int64_t images,
+                                               const PageNumbers& numbers) {
   const FilePtr& file = tiff.file();
   const std::uint64_t begin = TIFFGetStrileOffset(tiff.handle(), 0);
   const std::uint64_t slice = info.slice_bytes();
   std::uint64_t bytes = 0;
-  const bool overflow = __builtin_mul_overflow(slice, static_cast<std::uint64_t>(stack.images), &bytes);
+  const bool overflow = __builtin_mul_overflow(slice, static_cast<std::uint64_t>(images), &bytes);
   if (overflow || bytes > file->size() - std::min(begin, file->size())) {
     bad_input(file->path(),
-              std::to_string(stack.images) + " images of " + std::to_string(slice) + " bytes from byte " +
+              std::to_string(images) + " images of " + std::to_string(slice) + " bytes from byte " +
                   std::to_string(begin) + " on",
               "a file of " + std::to_string(file->size()));
   }
-  const std::uint64_t step = slice * static_cast<std::uint64_t>(stack.step);
-  const auto open = [=](std::int64_t n) {
-    const std::uint64_t first = begin + static_cast<std::uint64_t>(n) * step;
+  const auto open = [=](std::int64_t k) {
+    const std::uint64_t first = begin + static_cast<std::uint64_t>(numbers.of(k)) * slice;
     return std::make_unique<FileStream>(file, first, first + slice);
   };
   return std::make_unique<FileSequence>(info.dims[2], slice, open, [file](std::int64_t) { return file->path(); });
@@ -111,16 +150,19 @@ std::unique_ptr<ByteStream> contiguous_samples(const TiffFile& tiff, const Volum
 // Every file of an OME series describes the whole of it.
 void describe_one_slice(StackDescription& stack, const std::string& path) {
   if (stack.writer != StackDescription::Writer::kOme) return;
-  if (stack.images != stack.slices) {
+  const auto slices =
+      std::find_if(stack.axes.begin(), stack.axes.end(), [](const ArrayAxis& a) { return a.name == "z"; });
+  if (stack.images != slices->size) {
     bad_input(path, "one channel and one frame in a series of files",
-              std::to_string(stack.images) + " planes of " + std::to_string(stack.slices) + " slices");
+              std::to_string(stack.images) + " planes of " + std::to_string(slices->size) + " slices");
   }
   stack.images = 0;
+  stack.axes.clear();
 }
 
 }  // namespace
 
-OpenedVolume open_tiff(const FilePtr& file, bool one_of_series) {
+OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOptions& options) {
   auto tiff = std::make_unique<TiffFile>(file);
   StackDescription stack = parse_stack_description(description_of(*tiff), file->path());
   if (one_of_series) describe_one_slice(stack, file->path());
@@ -135,21 +177,22 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series) {
   info.type = pages.kind.type;
   info.dims = {pages.kind.width, pages.kind.height, 1};
   note_peculiarities(info, *tiff, pages);
-  info.notes.insert(info.notes.end(), stack.notes.begin(), stack.notes.end());
-  set_axes(info, stack);
+  const bool contiguous = is_contiguous(*tiff, pages, stack);
+  const auto found = static_cast<std::int64_t>(pages.offsets.size());
+  if (!contiguous) check_images(stack, found, info.path);
+  const std::int64_t images = contiguous ? stack.images : found;
+  const PageNumbers numbers = choose_slices(info, stack, images, options);
+  info.dims[2] = numbers.count;
+  checked_volume_bytes(info);
+  set_axes(volume, stack);
   info.slope = stack.slope;
   info.intercept = stack.intercept;
-  if (is_contiguous(*tiff, pages, stack)) {
-    info.dims[2] = stack.slices > 0 ? stack.slices : stack.images;
-    checked_volume_bytes(info);
+  if (contiguous) {
     volume.swap_bytes = (TIFFIsBigEndian(tiff->handle()) != 0) != (std::endian::native == std::endian::big);
-    volume.samples = contiguous_samples(*tiff, info, stack);
+    volume.samples = contiguous_samples(*tiff, info, images, numbers);
     return volume;
   }
-  std::vector<std::uint64_t> slices = first_of(pages, stack, info.path);
-  info.dims[2] = static_cast<std::int64_t>(slices.size());
-  checked_volume_bytes(info);
-  volume.samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, std::move(slices));
+  volume.samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
   return volume;
 }
 

@@ -1,4 +1,4 @@
-// The ways in which VTK files keep arrays: numbers as text, base64, and blocks that are compressed one by one.
+// The ways in which VTK files keep arrays beside numbers as text: base64, and blocks that are compressed one by one.
 #pragma once
 
 #include <array>
@@ -9,46 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "isoweave/volume.hpp"
 #include "volume/byte_stream.hpp"
+#include "volume/text_streams.hpp"
 
 namespace isoweave {
-
-// Characters of a stream one at a time, up to a '<' or the end.
-class TextStream {
- public:
-  explicit TextStream(std::unique_ptr<ByteStream> input) : input_(std::move(input)) {}
-
-  // The next character; 0 behind the last.
-  char next();
-
- private:
-  std::unique_ptr<ByteStream> input_;
-  std::array<std::byte, 64 * 1024> buffer_;
-  std::size_t used_ = 0;
-  std::size_t filled_ = 0;
-  bool ended_ = false;
-};
-
-// Numbers between blanks as `count` samples in the machine's byte order; what follows them is not read.
-class NumberStream final : public ByteStream {
- public:
-  NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path);
-
-  std::size_t read(std::span<std::byte> out) override;
-
- private:
-  bool next_sample();
-  std::string next_word();
-
-  TextStream text_;
-  SampleType type_;
-  std::uint64_t left_;  // samples
-  std::string path_;
-  std::array<std::byte, 8> sample_{};
-  std::size_t used_ = 0;  // bytes of the sample
-  std::size_t size_ = 0;
-};
 
 // Base64 in several pieces, each of which may end in padding, with blanks anywhere between groups.
 class Base64Stream final : public ByteStream {

@@ -120,26 +120,67 @@ FoundArray level_of_image(const ZarrNode& node, const Multiscale& image, const O
   return found;
 }
 
+// What is said of all levels holds for one that says nothing of its own.
+void take_group_attributes(ZarrNode& level, const ZarrNode& group) {
+  if (!group.attributes.is_object() || !level.attributes.is_object()) return;
+  for (const auto& [key, value] : group.attributes.items()) {
+    if (member(level.attributes, key) == nullptr) level.attributes[key] = value;
+  }
+}
+
 FoundArray level_of_n5(const ZarrNode& node, const OpenOptions& options) {
   std::size_t levels = 1;
   while (open_node(node.folder + "/s" + std::to_string(levels))) ++levels;
   check_level(options.level, levels, node.header);
   const std::int64_t number = options.level.value_or(0);
   FoundArray found{node_at(node.folder, "s" + std::to_string(number), node.header), {}, {}, {}, {}};
-  // What is said of all levels holds for one that says nothing of its own.
-  if (node.attributes.is_object() && found.node.attributes.is_object()) {
-    for (const auto& [key, value] : node.attributes.items()) {
-      if (member(found.node.attributes, key) == nullptr) found.node.attributes[key] = value;
-    }
-  }
+  take_group_attributes(found.node, node);
   note_levels(found, levels, number);
   return found;
+}
+
+bool is_n5_level(const std::string& name) {
+  return name.size() > 1 && name[0] == 's' && name.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+// What the group says of an array at `name` in it; nothing where it says nothing.
+std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& array, const std::string& name) {
+  FoundArray found{array, {}, {}, {}, {}};
+  std::string level = name;
+  if (const std::optional<LevelInImage> in_image = find_level(group.attributes, name, group.header)) {
+    found.places = in_image->image.levels[in_image->level].places;
+    if (!in_image->image.axis_names.is_null()) found.axis_names = in_image->image.axis_names;
+    level = std::to_string(in_image->level);
+  } else if (group.format == ZarrNode::Format::kN5 && is_n5_level(name)) {
+    take_group_attributes(found.node, group);
+  } else {
+    return std::nullopt;
+  }
+  found.notes.push_back("the array is level " + isoweave::quoted(level) + " of the image in a folder above it, which " +
+                        "says where its samples lie");
+  return found;
+}
+
+// An array that was opened by its own folder, as the level of an image that it may be.
+FoundArray alone_or_level(const ZarrNode& array) {
+  constexpr int kMostAbove = 16;
+  fs::path folder = fs::absolute(array.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  std::string name;
+  for (int above = 0; above < kMostAbove && folder.has_relative_path(); ++above) {
+    name = folder.filename().string() + (name.empty() ? "" : "/" + name);
+    folder = folder.parent_path();
+    const std::optional<ZarrNode> group = open_node(folder.string());
+    if (!group || group->is_array) break;
+    if (std::optional<FoundArray> found = described_by(*group, array, name)) return std::move(*found);
+  }
+  return {array, {}, {}, {}, {}};
 }
 
 FoundArray find_array(const ZarrNode& node, const OpenOptions& options) {
   if (node.is_array) {
     if (options.level) bad_input(node.header, "several levels for --level", "an array alone");
-    return {node, {}, {}, {}, {}};
+    return alone_or_level(node);
   }
   if (const std::optional<Multiscale> image = multiscale_of(node.attributes, node.header)) {
     return level_of_image(node, *image, options);
@@ -223,7 +264,7 @@ OpenedVolume open_zarr(const std::string& path, const OpenOptions& options) {
   OpenedVolume volume = open_chunks(array, choice);
   VolumeInfo& info = volume.info;
   info.path = path;
-  place_axes(info, choice, places);
+  place_axes(volume, choice, places);
   info.notes.insert(info.notes.end(), found.notes.begin(), found.notes.end());
   for (const std::string& chosen :
        {found.part, options.dataset.empty() ? options.dataset : "dataset " + options.dataset}) {

@@ -131,9 +131,16 @@ TEST(CliBadInput, NothingThereAndNoFile) {
   expect_failure(folder, mesh("box.nrrd", {"--series", "1.2"}), 3, "expected the DICOM series '1.2', found no DICOM");
   expect_failure(folder, mesh(kSmall, {"--series", "1.2"}), 2, "--series does not go with a generated volume");
   for (const std::string option : {"--dataset", "--level", "--channel", "--time"}) {
-    expect_failure(folder, mesh("box.nrrd", {option, "1"}), 3, "expected HDF5, Zarr or N5 for --dataset, --level");
+    const bool of_arrays = option == "--dataset" || option == "--level";
+    expect_failure(
+        folder, mesh("box.nrrd", {option, "1"}), 3,
+        of_arrays ? "expected HDF5, Zarr or N5 for --dataset and --level" : "expected an axis for " + option);
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, option + " does not go with a generated volume");
   }
+  files::write_bytes(folder / "box.bin", std::string(8, 'x'));
+  expect_failure(folder, mesh("box.bin", {"--raw", "2x2x2:uint8", "--time", "0"}), 3,
+                 "N5 for --channel, --time and --slices-from, found raw");
+  expect_failure(folder, mesh("box.nrrd", {"--slices-from", "z"}), 2, "--slices-from: expected one of channel, time");
   expect_failure(folder, mesh("box.nrrd", {"--level", "-1"}), 2, "--level: expected a whole number from 0 on");
   expect_failure(folder, {"info", "nothing.nrrd"}, 3, "nothing.nrrd");
   expect_failure(folder, {"check", "nothing.ply"}, 3, "nothing.ply");

@@ -52,6 +52,15 @@ void put_nrrd(Seeds& seeds) {
             "NRRD0004\ntype: float\ndimension: 4\nsizes: 1 2 2 2\nendian: big\nencoding: raw\nspace dimension: 3\n"
             "space directions: none (1,0,0) (0,1,0) (0,0,1)\n\n" +
                 std::string(32, '\x3f'));
+  seeds.put("nrrd",
+            "NRRD0005\ntype: short\ndimension: 5\nsizes: 2 3 1 5 1\nkinds: list domain domain domain time\n"
+            "endian: little\nencoding: raw\nspacings: nan 1 2 3 nan\nunits: \"\" \"nm\" \"um\" \"nm\" \"s\"\n\n" +
+                kWords);
+  seeds.put("nrrd",
+            "NRRD0005\ntype: short\ndimension: 4\nsizes: 3 1 5 2\nspace: left-posterior-superior-time\n"
+            "space directions: (1,0,0,0) (0,2,0,0) (0,0,3,0) (0,0,0,1)\nspace origin: (1,2,3,0)\nencoding: text\n\n"
+            "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30\n");
+  seeds.put("nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: hex\n\n00 7fFF\n12345678 9a");
 }
 
 void put_metaimage(Seeds& seeds) {
@@ -70,6 +79,10 @@ void put_metaimage(Seeds& seeds) {
   seeds.put("metaimage", head + "CompressedData = True\nElementDataFile = a1.raw\n" + kNext + zlibbed(kWords));
   seeds.put("metaimage", head + "ElementDataFile = LIST\na1.raw\na2.raw\n" + kHalves);
   seeds.put("metaimage", head + "ElementDataFile = a%d.raw 1 2 1\n" + kHalves);
+  seeds.put("metaimage",
+            "NDims = 4\nDimSize = 3 1 1 5\nElementNumberOfChannels = 2\nElementType = MET_SHORT\n"
+            "DistanceUnits = cm\nElementSpacing = 1 2 3 4\nElementSize = 1 2 4 4\nElementDataFile = LOCAL\n" +
+                kWords);
 }
 
 void put_nifti(Seeds& seeds) {
@@ -85,6 +98,9 @@ void put_nifti(Seeds& seeds) {
       const std::string file = nifti_header(fields) + stored(ramp<std::int16_t>(3 * 2 * 5), big);
       seeds.put("nifti", file);
       seeds.put("nifti", gzipped(file));
+      fields.dim = {5, 3, 1, 1, 5, 2, 1, 1};
+      seeds.put("nifti", nifti_header(fields) + kWords);
+      fields.dim = {3, 3, 2, 5, 1, 1, 1, 1};
       fields.pair = true;
       seeds.put("nifti_pair", nifti_header(fields) + kNext + kWords);
     }
@@ -173,6 +189,8 @@ void put_tiff(Seeds& seeds) {
   add(described, two, "w");
   HandMade contiguous;
   contiguous.description = "ImageJ=1.53\nimages=2\nslices=2\n";
+  seeds.put("tiff", hand_made(contiguous, two));
+  contiguous.description = "ImageJ=1.53\nimages=2\nframes=2\nslices=1\nunit=nm\nzunit=pixel\nspacing=2\n";
   seeds.put("tiff", hand_made(contiguous, two));
   const std::string one = get(write_stack(folder / "a", {}, two.substr(0, 40)));
   seeds.put("tiff_series", one + kNext + one + kNext + one);

@@ -1,5 +1,5 @@
 // Opens the input as a volume, looks at its header, and reads all of it twice: slice by slice, and the last slice
-// alone.
+// alone, and in the same way a second channel and time.
 #include "isoweave/volume.hpp"
 
 #include <cmath>
@@ -48,11 +48,27 @@ void read_volume(const std::string& path) {
   open_volume(path)->read(slices - 1, 1, last);
 }
 
+// The second channel and the second time, where there are such axes.
+void read_further(const std::string& path) {
+  for (const bool channel : {true, false}) {
+    OpenOptions options;
+    (channel ? options.channel : options.time) = 1;
+    options.slices_from = channel ? SliceAxis::kTimes : SliceAxis::kSlices;
+    const auto volume = open_volume(path, options);
+    expect_sane(volume->info());
+    const std::int64_t slices = volume->info().dims[2];
+    if (volume->info().slice_bytes() > kReadableFromChunks) return;
+    std::vector<std::byte> last(volume->info().slice_bytes());
+    volume->read(slices - 1, 1, last);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static fuzz::InputFiles files(fuzz::kInputNames);
   files.put({data, size});
   fuzz::expect_bad_input_at_worst(read_volume, files.path());
+  fuzz::expect_bad_input_at_worst(read_further, files.path());
   return 0;
 }

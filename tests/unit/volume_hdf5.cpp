@@ -1,96 +1,10 @@
 // HDF5: files written through the library itself.
-#include <hdf5.h>
-
+#include "hdf5_helpers.hpp"
 #include "volume/hdf5_library.hpp"
 #include "volume/lzf.hpp"
-#include "volume_helpers.hpp"
 
 namespace isoweave::testing {
 namespace {
-
-using Shape = std::vector<hsize_t>;
-
-// The library under test and its tests are one process: the one that was loaded is the one that is linked.
-class Writer {
- public:
-  explicit Writer(std::string path, hsize_t user_block = 0) : path_(std::move(path)) {
-    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-    H5Pset_userblock(creation, user_block);
-    file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
-    H5Pclose(creation);
-  }
-  ~Writer() { H5Fclose(file_); }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  hid_t file() const { return file_; }
-
-  // A dataset of 1, 2, 3, ... `set_up` changes its creation properties.
-  template <class Sample>
-  void put(
-      const std::string& name, const Shape& shape, hid_t type, hid_t native,
-      const std::function<void(hid_t)>& set_up = [](hid_t) {}) {
-    std::size_t count = 1;
-    for (const hsize_t size : shape) count *= size;
-    std::vector<Sample> samples(count);
-    for (std::size_t n = 0; n < count; ++n) samples[n] = static_cast<Sample>(n + 1);
-    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(links, 1);
-    set_up(creation);
-    const hid_t dataset = H5Dcreate2(file_, name.c_str(), type, space, links, creation, H5P_DEFAULT);
-    H5Dwrite(dataset, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, samples.data());
-    H5Dclose(dataset);
-    H5Pclose(links);
-    H5Pclose(creation);
-    H5Sclose(space);
-  }
-
-  void put_int16(
-      const std::string& name, const Shape& shape, const std::function<void(hid_t)>& set_up = [](hid_t) {}) {
-    put<std::int16_t>(name, shape, H5T_STD_I16LE, H5T_NATIVE_INT16, set_up);
-  }
-
-  void put_numbers(const std::string& object, const std::string& name, const std::vector<double>& values) {
-    const hsize_t count = values.size();
-    const hid_t space = H5Screate_simple(1, &count, nullptr);
-    const hid_t attribute = H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT,
-                                              H5P_DEFAULT, H5P_DEFAULT);
-    H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data());
-    H5Aclose(attribute);
-    H5Sclose(space);
-  }
-
-  void put_text(const std::string& object, const std::string& name, const std::string& text, bool fixed) {
-    const hid_t space = H5Screate(H5S_SCALAR), type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, fixed ? text.size() : H5T_VARIABLE);
-    const hid_t attribute =
-        H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const char* const value = text.c_str();
-    H5Awrite(attribute, type, fixed ? static_cast<const void*>(value) : static_cast<const void*>(&value));
-    H5Aclose(attribute);
-    H5Tclose(type);
-    H5Sclose(space);
-  }
-
- private:
-  std::string path_;
-  hid_t file_ = -1;
-};
-
-std::function<void(hid_t)> chunks(
-    const Shape& shape, const std::function<void(hid_t)>& filters = [](hid_t) {}) {
-  return [shape, filters](hid_t creation) {
-    H5Pset_chunk(creation, static_cast<int>(shape.size()), shape.data());
-    filters(creation);
-  };
-}
-
-std::vector<std::int16_t> counting(std::size_t count) {
-  std::vector<std::int16_t> samples(count);
-  for (std::size_t n = 0; n < count; ++n) samples[n] = static_cast<std::int16_t>(n + 1);
-  return samples;
-}
 
 TEST(Hdf5, LayoutsAndFilters) {
   const TempFolder folder;
@@ -157,6 +71,21 @@ TEST(Hdf5, TypesAndByteOrders) {
   EXPECT_TRUE(contains(refusal(path, options), "expected a dataset '/nothing'"));
   options.dataset = "/";
   EXPECT_TRUE(contains(refusal(path, options), "expected a dataset '/', found a group"));
+}
+
+TEST(Hdf5, TheOnlyDatasetOfATypeThatIsNotReadIsNamed) {
+  const TempFolder folder;
+  Writer(folder / "a.h5").put<std::int64_t>("/v", {2, 2, 2}, H5T_STD_I64LE, H5T_NATIVE_INT64);
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "in '/v', found int64"));
+  {
+    const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
+    H5Tset_fields(half, 15, 10, 5, 0, 10);
+    H5Tset_size(half, 2);
+    H5Tset_ebias(half, 15);
+    Writer(folder / "b.h5").put<float>("/v", {2, 2, 2}, half, H5T_NATIVE_FLOAT);
+    H5Tclose(half);
+  }
+  EXPECT_TRUE(contains(refusal(folder / "b.h5"), "in '/v', found float16"));
 }
 
 TEST(Hdf5, TheMagicMayLieBehindABlockOfTheUser) {

@@ -150,8 +150,51 @@ TEST(MetaImage, AcceptsFurtherAxesOfOneSampleOnly) {
   const VolumeInfo info = info_of(folder, four + "DimSize = 3 2 5 1\n");
   EXPECT_EQ(info.dims, (std::array<std::int64_t, 3>{3, 2, 5}));
   EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{2, 3, 4}));
-  EXPECT_TRUE(contains(refusal_of(folder, four + "DimSize = 3 2 1 5\n"), "axis 3 with 5 samples"));
+  EXPECT_TRUE(contains(refusal_of(folder, "NDims = 5\nElementSpacing = 2 3 4 1 1\nDimSize = 3 2 1 1 5\n"),
+                       "axis 4 with 5 samples"));
   EXPECT_EQ(info_of(folder, "NDims = 2\nDimSize = 6 5\nElementSpacing = 1 2\n").dims[2], 1);
+}
+
+TEST(MetaImage, ChoosesATimeAndAChannel) {
+  const TempFolder folder;
+  const std::string lines = "NDims = 4\nDimSize = 3 2 1 2\nElementSpacing = 2 3 4 1\nElementNumberOfChannels = 2\n";
+  const auto samples = ramp<std::int16_t>(24);
+  const std::string path = folder.put("a.mha", header(lines) + stored(samples));
+  OpenOptions options;
+  for (std::size_t choice = 0; choice < 4; ++choice) {
+    options.channel = static_cast<std::int64_t>(choice % 2);
+    options.time = static_cast<std::int64_t>(choice / 2);
+    const auto read = read_file<std::int16_t>(path, options);
+    for (std::size_t n = 0; n < 6; ++n) EXPECT_EQ(read.at(n), samples[choice % 2 + 2 * n + 12 * (choice / 2)]);
+  }
+  options.time = 2;
+  EXPECT_TRUE(contains(refusal(path, options), "expected --time below 2, found 2"));
+  const VolumeInfo first = info_of(folder, "NDims = 4\nDimSize = 3 2 1 5\nElementSpacing = 2 3 4 1\n");
+  EXPECT_TRUE(contains(first.notes.at(0), "the first of 5 along time is read"));
+}
+
+TEST(MetaImage, ContradictionsAreTold) {
+  const TempFolder folder;
+  EXPECT_TRUE(info_of(folder, "ElementSize = 2 3 4\nElementSpacing = 2 3 4\n").notes.empty());
+  EXPECT_EQ(info_of(folder, "ElementSize = 2 3 9\nElementSpacing = 2 3 4\n").notes.at(0),
+            "the spacing of axis 2 is 4 by ElementSpacing, which is taken, and 9 by ElementSize");
+  const std::string packed = zlibbed(stored(kSamples));
+  const auto notes = [&](std::size_t said) {
+    const std::string lines = "CompressedData = True\nCompressedDataSize = " + std::to_string(said) + "\n";
+    const auto source = open_volume(folder.put("a.mha", header(lines) + packed));
+    EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples);
+    return source->info().notes;
+  };
+  EXPECT_TRUE(notes(packed.size()).empty());
+  EXPECT_TRUE(contains(notes(7).at(0), "CompressedDataSize is 7, and the file has " + std::to_string(packed.size())));
+}
+
+TEST(MetaImage, TakesOtherUnits) {
+  const TempFolder folder;
+  const Geometry geometry = info_of(folder, "Offset = 1 2 3\nElementSpacing = 2 3 4\nDistanceUnits = cm\n").geometry;
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{20, 30, 40}));
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
+  EXPECT_EQ(geometry.unit, "mm");
 }
 
 TEST(MetaImage, RefusesHeadersThatLie) {

@@ -81,10 +81,19 @@ TEST(N5, LevelsAndTheirPlaces) {
   EXPECT_EQ(half.geometry.spacing, (std::array<double, 3>{8, 8, 40}));
   EXPECT_EQ(half.geometry.origin, (std::array<double, 3>{2, 2, 0}));
   EXPECT_EQ(half.part, "level 1");
+  const VolumeInfo alone = open_volume(folder / "a/raw/s1")->info();
+  EXPECT_EQ(alone.geometry.spacing, half.geometry.spacing);
+  EXPECT_EQ(alone.geometry.origin, half.geometry.origin);
+  EXPECT_EQ(alone.geometry.unit, "nm");
+  EXPECT_TRUE(contains(alone.notes.back(), "level 's1' of the image in a folder above it"));
   put_n5(folder / "b", "raw", {{"resolution", {1, 2, 3}}, {"units", {"um", "um", "um"}}, {"offset", {10, 20, 30}}});
   const Geometry geometry = open_volume(folder / "b")->info().geometry;
   EXPECT_EQ(geometry.spacing, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
+  put_n5(folder / "c", "raw", {{"resolution", {1, 2, 3}}, {"units", {"nm", "nm", "um"}}, {"offset", {10, 20, 30}}});
+  const Geometry mixed = open_volume(folder / "c")->info().geometry;
+  EXPECT_EQ(mixed.spacing, (std::array<double, 3>{1, 2, 3000}));
+  EXPECT_EQ(mixed.origin, (std::array<double, 3>{10, 20, 30000}));
 }
 
 }  // namespace

@@ -150,8 +150,79 @@ TEST(Nifti, ReadsTheFirstOfSeveralVolumesAndNotesIt) {
   NiftiFields fields;
   fields.dim = {4, 3, 2, 5, 12, 1, 1, 1};
   const auto source = open_volume(folder.put("a.nii", nifti_file(fields) + std::string(11 * 60, 'x')));
-  EXPECT_EQ(source->info().notes.at(0), "4-D: the first of 12 volumes is read");
+  EXPECT_EQ(source->info().notes.at(0), "the first of 12 along time is read; --time chooses");
   EXPECT_EQ(samples_of<std::int16_t>(*source), kSamples);
+}
+
+TEST(Nifti, ChoosesATimeAndAChannel) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.dim = {6, 3, 2, 5, 2, 3, 2, 1};
+  const auto samples = ramp<std::int16_t>(30 * 12);
+  const std::string content = nifti_header(fields) + stored(samples);
+  for (const std::string& path : {folder.put("a.nii", content), folder.put("a.nii.gz", gzipped(content))}) {
+    for (std::int64_t volume = 0; volume < 12; ++volume) {
+      OpenOptions options;
+      options.time = volume % 2;
+      options.channel = volume / 2;
+      const auto read = read_file<std::int16_t>(path, options);
+      const auto first = samples.begin() + 30 * volume;
+      EXPECT_EQ(read, std::vector<std::int16_t>(first, first + 30)) << volume;
+    }
+    OpenOptions options;
+    options.channel = 6;
+    EXPECT_TRUE(contains(refusal(path, options), "expected --channel below 6, found 6"));
+  }
+  // The volumes that are there can be read; that others are not is told.
+  const std::string cut = folder.put("b.nii", content.substr(0, content.size() - 60));
+  EXPECT_TRUE(contains(open_volume(cut)->info().notes.back(), "the file ends before the last of the volumes"));
+  OpenOptions last;
+  last.time = 1;
+  last.channel = 5;
+  EXPECT_TRUE(contains(refusal(cut, last), "bytes by its header"));
+}
+
+TEST(Nifti, SlicesThatWereWrittenAsTimes) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.dim = {5, 3, 2, 1, 5, 2, 1, 1};
+  OpenOptions options;
+  options.slices_from = SliceAxis::kTimes;
+  options.channel = 1;
+  const auto samples = ramp<std::int16_t>(60);
+  const auto source = open_volume(folder.put("a.nii", nifti_header(fields) + stored(samples)), options);
+  EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{3, 2, 5}));
+  EXPECT_EQ(source->info().geometry.spacing[2], 2);
+  EXPECT_EQ(samples_of<std::int16_t>(*source), std::vector<std::int16_t>(samples.begin() + 30, samples.end()));
+  options.slices_from = SliceAxis::kChannels;
+  options.channel.reset();
+  options.time = 4;
+  const auto channels = read_file<std::int16_t>(folder / "a.nii", options);
+  EXPECT_EQ(channels.at(0), samples.at(24));
+  EXPECT_EQ(channels.at(6), samples.at(54));
+}
+
+TEST(Nifti, FormsThatDifferAreTold) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.sform = 2;
+  fields.qform = 1;
+  fields.rows = {0.5, 0, 0, 10, 0, 0.75, 0, 20, 0, 0, 2, 30};
+  fields.quaternion = {0, 0, 0, 10, 20, 30};
+  EXPECT_TRUE(info_of(folder, fields).notes.empty());
+  fields.quaternion[3] = 10.004;  // rounding
+  EXPECT_TRUE(info_of(folder, fields).notes.empty());
+  fields.quaternion[3] = 13;
+  fields.quaternion[4] = 24;
+  const VolumeInfo info = info_of(folder, fields);
+  EXPECT_EQ(info.geometry.origin[0], 10);
+  EXPECT_EQ(info.notes.at(0),
+            "sform and qform differ: the sform (code 2) is taken, the qform (code 1) puts corners up to 5 away");
+  fields.qform = 0;
+  EXPECT_TRUE(info_of(folder, fields).notes.empty());
+  fields.rows[10] = 3;
+  EXPECT_EQ(info_of(folder, fields).notes.at(0),
+            "the spacing of axis 2 is 3 by the sform, which is taken, and 2 by pixdim");
 }
 
 TEST(Nifti, ReadsPlaneImages) {
@@ -206,6 +277,8 @@ TEST(Nifti, RefusesHeadersThatLie) {
   fields.dim = {4, 3, 2, 5, std::int64_t{1} << 62, 1, 1, 1};
   fields.dim[5] = 16;
   fields.dim[0] = 5;
+  refused(fields, "2^63");
+  fields.dim = {7, 3, 2, 5, 1, std::int64_t{1} << 32, std::int64_t{1} << 32, 1};
   refused(fields, "2^63 volumes");
   for (const std::int64_t side : {0, -1, -32768}) {
     fields = {};

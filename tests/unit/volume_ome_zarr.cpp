@@ -100,6 +100,33 @@ TEST(OmeZarr, VersionFiveIsInZarr3) {
   expect_places(open_volume(folder / "a")->info().geometry, {1, 2, 3}, {0, 0, 0});
 }
 
+TEST(OmeZarr, ALevelThatIsOpenedByItselfLiesWhereItsImageSays) {
+  const TempFolder folder;
+  ArrayJson axes = kAxes;
+  axes[0]["unit"] = "millimeter";
+  const ArrayJson levels = {level("deep/s0", list({scale({0.002, 0.5, 0.5})})),
+                            level("./deep/s1/", list({scale({0.004, 1, 1}), shift({0.001, 0.25, 0.5})}))};
+  put_group(folder / "a", image(axes, levels));
+  put_group(folder / "a/deep", ArrayJson::object());
+  put_array(folder / "a/deep/s0", {2, 2, 2});
+  put_array(folder / "a/deep/s1", {2, 2, 2});
+  put_array(folder / "a/deep/other", {2, 2, 2});
+  OpenOptions options;
+  options.level = 1;
+  const Geometry half = open_volume(folder / "a", options)->info().geometry;
+  for (const std::string path : {"a/deep/s1", "a/deep/s1/", "a/deep/./s1", "a/../a/deep/s1"}) {
+    const VolumeInfo info = open_volume(folder / path)->info();
+    expect_places(info.geometry, {1, 1, 4}, {0.5, 0.25, 1});
+    EXPECT_EQ(info.geometry.spacing, half.spacing) << path;
+    EXPECT_EQ(info.geometry.unit, half.unit);
+    EXPECT_TRUE(contains(info.notes.back(), "level '1' of the image in a folder above it")) << path;
+  }
+  options = {};
+  options.dataset = "deep/s0";
+  expect_places(open_volume(folder / "a", options)->info().geometry, {0.5, 0.5, 2}, {0, 0, 0});
+  EXPECT_TRUE(contains(open_volume(folder / "a/deep/other")->info().notes.at(0), "axis 0 is not given"));
+}
+
 TEST(OmeZarr, WrongDescriptionsAreRefused) {
   const TempFolder folder;
   put_array(folder / "a/0", {2, 2, 2});

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <map>
+#include <tuple>
 #include <type_traits>
 
 #include "tiff_helpers.hpp"
@@ -129,7 +132,7 @@ TEST(Tiff, ReadsTheFirstChannelAndFrameOfHyperstacks) {
   const std::string text = "ImageJ=1.53q\nimages=6\nchannels=2\nslices=3\nhyperstack=true\n";
   const auto source = open_volume(write_stack(folder / "a.tif", described(text), stored(kSamples)));
   EXPECT_EQ(source->info().dims[2], 3);
-  EXPECT_EQ(source->info().notes.at(0), "the first of 2 channels is read");
+  EXPECT_EQ(source->info().notes.at(0), "the first of 2 along channel is read; --channel chooses");
   std::vector<std::uint16_t> expected;
   for (const std::size_t page : {0U, 2U, 4U}) {
     expected.insert(expected.end(), kSamples.begin() + static_cast<std::ptrdiff_t>(20 * page),
@@ -138,7 +141,7 @@ TEST(Tiff, ReadsTheFirstChannelAndFrameOfHyperstacks) {
   EXPECT_EQ(samples_of<std::uint16_t>(*source), expected);
   const auto frames = open_volume(
       write_stack(folder / "a.tif", described("ImageJ=1.53q\nimages=6\nframes=2\nslices=3\n"), stored(kSamples)));
-  EXPECT_EQ(frames->info().notes.at(0), "the first of 2 frames is read");
+  EXPECT_EQ(frames->info().notes.at(0), "the first of 2 along time is read; --time chooses");
   EXPECT_EQ(samples_of<std::uint16_t>(*frames), std::vector<std::uint16_t>(kSamples.begin(), kSamples.begin() + 60));
   EXPECT_TRUE(contains(refusal_of(folder, described("ImageJ=1\nimages=6\nchannels=4\nslices=3\n"), stored(kSamples)),
                        "expected 12 images"));
@@ -163,13 +166,127 @@ TEST(Tiff, ReadsTheFirstChannelOfOmeStacks) {
   const auto other = open_volume(write_stack(folder / "a.tif", described(ome("XYZCT", nm)), stored(kSamples)));
   EXPECT_EQ(other->info().geometry.unit, "nm");
   EXPECT_EQ(samples_of<std::uint16_t>(*other)[20], kSamples[20]);
-  EXPECT_TRUE(
-      contains(refusal_of(folder, described(ome("XYZCT", "PhysicalSizeZUnit=\"nm\" ")), stored(kSamples)), "one unit"));
   const std::string lines = "PhysicalSizeXUnit=\"n\nm\" PhysicalSizeYUnit=\"n\nm\" PhysicalSizeZUnit=\"n\nm\" ";
   const auto odd = open_volume(write_stack(folder / "a.tif", described(ome("XYZCT", lines)), stored(kSamples)));
-  EXPECT_EQ(odd->info().notes.at(1), "the unit 'n?m' is none of m, mm, um, nm and is left out");
+  EXPECT_EQ(odd->info().notes.at(1), "the unit 'n?m' is no length that is known and is left out");
   EXPECT_TRUE(contains(refusal_of(folder, described(ome("ZYX")), stored(kSamples)), "DimensionOrder"));
   EXPECT_TRUE(contains(refusal_of(folder, described("<OME></OME>"), stored(kSamples)), "expected Pixels"));
+}
+
+TEST(Tiff, AxesInOtherUnitsAreGivenInThatOfX) {
+  const TempFolder folder;
+  const std::string units = "PhysicalSizeXUnit=\"nm\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZUnit=\"\xc2\xb5m\" ";
+  const VolumeInfo info = info_of(folder, described(ome("XYZCT", units)));
+  EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.5, 0.5, 2000}));
+  EXPECT_EQ(info.geometry.unit, "nm");
+  EXPECT_TRUE(contains(info.notes.back(), "axis 2 is in"));
+  // The micrometre is OME's unit where none is given.
+  EXPECT_EQ(info_of(folder, described(ome("XYZCT", "PhysicalSizeZUnit=\"mm\" "))).geometry.spacing[2], 2000);
+  TiffPage page = described("ImageJ=1.53q\nimages=6\nunit=nm\nzunit=\\u00B5m\nspacing=0.05\nzorigin=2\n");
+  page.resolution = 0.04F;
+  const VolumeInfo imagej = info_of(folder, page);
+  EXPECT_EQ(imagej.geometry.spacing[2], 50);
+  EXPECT_EQ(imagej.geometry.origin[2], -100);
+  EXPECT_EQ(imagej.geometry.unit, "nm");
+  page.description = "ImageJ=1.53q\nimages=6\nunit=mm\nyunit=cm\nspacing=3\n";
+  page.resolution = 4;
+  EXPECT_EQ(info_of(folder, page).geometry.spacing, (std::array<double, 3>{0.25, 2.5, 3}));
+}
+
+TEST(Tiff, UnitsThatCannotBeMadeOneNeedASpacing) {
+  const TempFolder folder;
+  TiffPage page = described("ImageJ=1.53q\nimages=6\nunit=um\nzunit=pixel\nspacing=2\n");
+  page.resolution = 4;
+  EXPECT_TRUE(contains(refusal_of(folder, page, stored(kSamples)),
+                       "expected units of length that can be made one, or --spacing, found 'um', 'um', 'pixel'"));
+  OpenOptions options;
+  options.spacing = {0.25, 0.25, 3};
+  const VolumeInfo info = open_volume(folder / "a.tif", options)->info();
+  EXPECT_EQ(info.geometry.spacing, *options.spacing);
+  EXPECT_EQ(info.geometry.unit, "um");
+}
+
+// Page c + 2 * (z + 3 * t) and so on, in every order: its first sample tells which page was read.
+TEST(Tiff, AChannelAndATimeAreChosenInEveryOrder) {
+  const TempFolder folder;
+  const auto samples = ramp<std::uint16_t>(5 * 4 * 12);
+  const std::map<char, std::size_t> sizes{{'Z', 3}, {'C', 2}, {'T', 2}};
+  std::string order = "CTZ";
+  do {
+    const std::string text =
+        "<OME><Pixels DimensionOrder=\"XY" + order + "\" SizeC=\"2\" SizeT=\"2\" SizeZ=\"3\" Type=\"uint16\"/></OME>";
+    write_stack(folder / "a.tif", described(text), stored(samples));
+    for (std::int64_t channel = 0; channel < 2; ++channel) {
+      for (std::int64_t time = 0; time < 2; ++time) {
+        OpenOptions options;
+        options.channel = channel;
+        options.time = time;
+        const auto source = open_volume(folder / "a.tif", options);
+        EXPECT_EQ(source->info().part, order.find('C') < order.find('T')
+                                           ? "time " + std::to_string(time) + ", channel " + std::to_string(channel)
+                                           : "channel " + std::to_string(channel) + ", time " + std::to_string(time));
+        const auto read = samples_of<std::uint16_t>(*source);
+        for (std::size_t z = 0; z < 3; ++z) {
+          const std::map<char, std::size_t> at{
+              {'Z', z}, {'C', static_cast<std::size_t>(channel)}, {'T', static_cast<std::size_t>(time)}};
+          std::size_t page = 0, step = 1;
+          for (const char axis : order) {
+            page += at.at(axis) * step;
+            step *= sizes.at(axis);
+          }
+          EXPECT_EQ(read.at(20 * z), samples.at(20 * page)) << order << channel << time << z;
+        }
+      }
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(Tiff, AChoiceOutsideTheStackIsRefused) {
+  const TempFolder folder;
+  const std::string text = "ImageJ=1.53q\nimages=6\nchannels=2\nslices=3\n";
+  const std::string path = write_stack(folder / "a.tif", described(text), stored(kSamples));
+  OpenOptions options;
+  options.channel = 1;
+  EXPECT_EQ(samples_of<std::uint16_t>(*open_volume(path, options))[20], kSamples[60]);
+  options.channel = 2;
+  EXPECT_TRUE(contains(refusal(path, options), "expected --channel below 2, found 2"));
+  options = {};
+  options.time = 0;
+  EXPECT_EQ(samples_of<std::uint16_t>(*open_volume(path, options))[20], kSamples[40]);
+  EXPECT_TRUE(contains(refusal(write_stack(folder / "b.tif", {}, stored(kSamples)), options),
+                       "expected an axis for --time, found axes of 6 ('z') x 4 ('y') x 5 ('x')"));
+  HandMade page;
+  page.big = false;
+  page.description = "ImageJ=1.53q\nimages=6\nchannels=3\nslices=2\n";
+  options = {};
+  options.channel = 2;
+  const auto contiguous = open_volume(folder.put("c.tif", hand_made(page, stored(kSamples))), options);
+  EXPECT_EQ(samples_of<std::uint16_t>(*contiguous)[20], kSamples[100]);
+}
+
+TEST(Tiff, SlicesThatWereWrittenAsChannelsOrFrames) {
+  const TempFolder folder;
+  for (const auto& [key, word, from] :
+       {std::tuple{"channels", "channel", SliceAxis::kChannels}, std::tuple{"frames", "time", SliceAxis::kTimes}}) {
+    const std::string text = "ImageJ=1.53q\nimages=6\n" + std::string(key) + "=6\nspacing=2\n";
+    const std::string path = write_stack(folder / "a.tif", described(text), stored(kSamples));
+    const auto flat = open_volume(path);
+    EXPECT_EQ(flat->info().dims[2], 1);
+    EXPECT_EQ(flat->info().notes.at(0), "the first of 6 along " + std::string(word) + " is read; --" + word +
+                                            " chooses, --slices-from " + word + " takes them for slices");
+    OpenOptions options;
+    options.slices_from = from;
+    const auto deep = open_volume(path, options);
+    EXPECT_EQ(samples_of<std::uint16_t>(*deep), kSamples);
+    EXPECT_EQ(deep->info().geometry.spacing[2], 2);
+  }
+  OpenOptions options;
+  options.slices_from = SliceAxis::kChannels;
+  const std::string both = "ImageJ=1.53q\nimages=6\nchannels=2\nslices=3\n";
+  EXPECT_TRUE(contains(refusal(write_stack(folder / "a.tif", described(both), stored(kSamples)), options),
+                       "expected one slice for --slices-from channel, found 3"));
+  EXPECT_TRUE(contains(refusal(write_stack(folder / "a.tif", {}, stored(kSamples)), options),
+                       "expected an axis for --slices-from channel"));
 }
 
 TEST(Tiff, ReadsContiguousImageJStacks) {

@@ -1,0 +1,142 @@
+// MINC 2: one image, its dimensions with starts, steps and directions, and the range of values that samples stand for.
+#include <algorithm>
+#include <limits>
+
+#include "volume/hdf5_place.hpp"
+#include "volume/header_text.hpp"
+#include "volume/printable.hpp"
+#include "volume/samples.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr const char* kImage = "/minc-2.0/image/0/image";
+constexpr const char* kRange = "/minc-2.0/image/0/image-";
+constexpr const char* kDimensions = "/minc-2.0/dimensions/";
+
+struct SpatialName {
+  const char* minc;
+  const char* ours;
+};
+constexpr std::array<SpatialName, 3> kSpatial{{{"xspace", "x"}, {"yspace", "y"}, {"zspace", "z"}}};
+
+std::string our_name(std::string_view name) {
+  for (const SpatialName& entry : kSpatial) {
+    if (name == entry.minc) return entry.ours;
+  }
+  return name == "vector_dimension" ? "channel" : std::string(name);
+}
+
+std::vector<std::string> names_of(std::string_view order) {
+  std::vector<std::string> names;
+  while (!order.empty()) {
+    const std::size_t comma = std::min(order.find(','), order.size());
+    names.push_back(our_name(trimmed(order.substr(0, comma))));
+    order.remove_prefix(std::min(comma + 1, order.size()));
+  }
+  return names;
+}
+
+double number_or(const ArrayAttributes& attributes, const std::string& name, double otherwise) {
+  const auto numbers = attributes.numbers(name);
+  return numbers && numbers->size() == 1 ? numbers->front() : otherwise;
+}
+
+// position = sum over the axes of (start + index * step) * direction.
+void take_dimension(Hdf5Place& place, const Hdf5File& file, std::size_t axis) {
+  const std::string name = std::string(kDimensions) + kSpatial[axis].minc;
+  const Hdf5Handle dimension = open_object(file, name);
+  if (!dimension) bad_input(file.path, "a dimension " + isoweave::quoted(name), "none");
+  const ArrayAttributes attributes = hdf5_attributes(file.session, dimension.id());
+  if (text_in(attributes, "spacing").starts_with("irregular")) {
+    bad_input(file.path, "samples at one distance along " + isoweave::quoted(name), "an irregular spacing");
+  }
+  if (!attributes.numbers("step")) {
+    place.notes.push_back("the spacing of axis " + std::to_string(axis) + " is not given and taken as 1");
+  }
+  Vector3 direction{0, 0, 0};
+  direction[axis] = 1;
+  const auto cosines = attributes.numbers("direction_cosines");
+  if (cosines && cosines->size() == 3) std::copy(cosines->begin(), cosines->end(), direction.begin());
+  const double step = number_or(attributes, "step", 1), start = number_or(attributes, "start", 0);
+  for (std::size_t row = 0; row < 3; ++row) {
+    place.axes.steps[axis][row] = direction[row] * step;
+    place.axes.origin[row] += direction[row] * start;
+  }
+  place.units[axis] = text_in(attributes, "units");
+}
+
+// Directions may lie across the axes of the world, which then have no units of their own.
+void check_units(const Hdf5Place& place, const std::string& path) {
+  std::string known;
+  for (const std::string& unit : place.units) {
+    if (known.empty()) known = unit;
+    if (unit == known || unit.empty()) continue;
+    bad_input(path, "one unit for all dimensions", isoweave::quoted(known) + " and " + isoweave::quoted(unit));
+  }
+}
+
+// The least and the largest stored sample that stand for a value.
+std::pair<double, double> valid_range(const ArrayAttributes& image, SampleType type) {
+  const auto range = image.numbers("valid_range");
+  if (range && range->size() == 2 && (*range)[0] != (*range)[1]) {
+    return {std::min((*range)[0], (*range)[1]), std::max((*range)[0], (*range)[1])};
+  }
+  return visit_sample_type(type, []<class Sample>() {
+    return std::pair(static_cast<double>(std::numeric_limits<Sample>::lowest()),
+                     static_cast<double>(std::numeric_limits<Sample>::max()));
+  });
+}
+
+// One value of image-min or image-max; those of slices must be the same on all.
+std::optional<double> value_in(const Hdf5File& file, const std::string& name) {
+  const auto values = numbers_in(file, kRange + name);
+  if (!values || values->empty()) return std::nullopt;
+  for (const double value : *values) {
+    if (value == values->front()) continue;
+    bad_input(file.path, "one scaling for all slices",
+              "image-" + name + " from " + rounded_text(values->front()) + " to " + rounded_text(value) +
+                  " (mincconvert or mincreshape -normalize makes it one)");
+  }
+  return values->front();
+}
+
+void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes& image, SampleType type) {
+  if (type == SampleType::kFloat32 || type == SampleType::kFloat64) return;
+  const auto least = value_in(file, "min"), most = value_in(file, "max");
+  if (!least || !most || *least == *most) {
+    place.notes.emplace_back("image-min and image-max give no range of values, and samples are read as stored");
+    return;
+  }
+  const auto [low, high] = valid_range(image, type);
+  place.slope = (*most - *least) / (high - low);
+  place.intercept = *least - low * place.slope;
+}
+
+}  // namespace
+
+std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& named) {
+  if (!named.empty() && named != kImage) return std::nullopt;
+  const Hdf5Handle image = open_object(file, kImage);
+  if (!image) return std::nullopt;
+  Hdf5Place place;
+  place.format = "MINC";
+  place.dataset = kImage;
+  place.space = Space::kRas;
+  const Hdf5Dataset dataset = describe_dataset(file.session, image.id(), kImage);
+  const ArrayAttributes attributes = hdf5_attributes(file.session, image.id());
+  place.axis_names = names_of(text_in(attributes, "dimorder"));
+  if (place.axis_names.size() != dataset.shape.size()) {
+    bad_input(file.path, std::to_string(dataset.shape.size()) + " names of axes in dimorder",
+              isoweave::quoted(text_in(attributes, "dimorder")));
+  }
+  for (std::size_t axis = 0; axis < kSpatial.size(); ++axis) {
+    const auto& names = place.axis_names;
+    if (std::find(names.begin(), names.end(), kSpatial[axis].ours) != names.end()) take_dimension(place, file, axis);
+  }
+  check_units(place, file.path);
+  if (dataset.type) take_scaling(place, file, attributes, *dataset.type);
+  return place;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,39 @@
+// Units of length as headers spell them, and axes whose units differ made one.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volume/stream_source.hpp"
+
+namespace isoweave {
+
+// A unit that Geometry knows, and how many of it the header's unit is: a centimetre is 10 mm.
+struct LengthUnit {
+  double scale = 1;
+  std::string_view name;
+};
+
+// Any spelling of a unit of length: capitals, blanks around it, singular or plural, the micro sign in any of its forms.
+// Nothing for pixels and whatever else is no length.
+std::optional<LengthUnit> find_length_unit(std::string_view text);
+
+// What the numbers of three axes are multiplied by, so that all are in `unit`.
+struct CommonUnit {
+  std::string unit;  // one that Geometry knows; empty where no axis has a known one
+  std::array<double, 3> scale{1, 1, 1};
+  std::vector<std::string> notes;
+  std::string conflict;  // the units found, where they cannot be made one
+};
+
+// The unit of the first axis that has a known one. An axis of nothing plays no part; one whose unit is empty counts as
+// in the unit of the others, with a note.
+CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts);
+
+// Takes unit and notes over. A conflict becomes what open_volume refuses unless the caller gives the spacing.
+void take_unit(OpenedVolume& volume, const CommonUnit& unit);
+
+}  // namespace isoweave

@@ -1,0 +1,69 @@
+// Samples that are kept as text: numbers between blanks, or two hexadecimal digits for each byte.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "isoweave/volume.hpp"
+#include "volume/byte_stream.hpp"
+
+namespace isoweave {
+
+bool is_blank(char c);
+
+// Characters of a stream one at a time, up to a '<' or the end.
+class TextStream {
+ public:
+  explicit TextStream(std::unique_ptr<ByteStream> input) : input_(std::move(input)) {}
+
+  // The next character; 0 behind the last.
+  char next();
+
+ private:
+  std::unique_ptr<ByteStream> input_;
+  std::array<std::byte, 64 * 1024> buffer_;
+  std::size_t used_ = 0;
+  std::size_t filled_ = 0;
+  bool ended_ = false;
+};
+
+// Numbers between blanks as `count` samples in the machine's byte order; what follows them is not read.
+class NumberStream final : public ByteStream {
+ public:
+  NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path);
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  bool next_sample();
+  std::string next_word();
+
+  TextStream text_;
+  SampleType type_;
+  std::uint64_t left_;  // samples
+  std::string path_;
+  std::array<std::byte, 8> sample_{};
+  std::size_t used_ = 0;  // bytes of the sample
+  std::size_t size_ = 0;
+};
+
+// Bytes in hexadecimal digits, two for each, with blanks anywhere.
+class HexStream final : public ByteStream {
+ public:
+  HexStream(std::unique_ptr<ByteStream> text, std::string path) : text_(std::move(text)), path_(std::move(path)) {}
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  int next_digit();
+
+  TextStream text_;
+  std::string path_;
+};
+
+}  // namespace isoweave
