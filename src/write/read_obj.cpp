@@ -5,6 +5,7 @@
 
 #include "write/mesh_leftovers.hpp"
 #include "write/mesh_words.hpp"
+#include "write/polygons.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -72,6 +73,7 @@ class ObjReader {
       input_.fail("expected OBJ statements such as 'v' and 'f', found '" + unknown_.substr(0, 40) + "'");
     }
     check_indices();
+    polygons_.finish();
     keep_normals();
     leftovers_.note(mesh_);
     return std::move(mesh_);
@@ -141,6 +143,7 @@ class ObjReader {
     for (std::string_view word = words_.next_on_line(); !word.empty(); word = words_.next_on_line()) {
       fan.add(read_corner(word));
     }
+    polygons_.end(fan.corners());
     if (fan.corners() < 3) leftovers_.left_out(1, kFewCorners);
   }
 
@@ -199,6 +202,7 @@ class ObjReader {
   MeshWords words_;
   std::string unknown_;  // the first statement that is not one of OBJ
   TriangleMesh mesh_;
+  Polygons polygons_{mesh_};
   MeshLeftovers leftovers_;
   std::vector<Point> normals_;
   bool normals_follow_vertices_ = true;

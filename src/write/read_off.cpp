@@ -2,6 +2,7 @@
 // and texture coordinates are not. Nor is the colour behind the corners of a face.
 #include "write/mesh_leftovers.hpp"
 #include "write/mesh_words.hpp"
+#include "write/polygons.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -55,6 +56,7 @@ class OffReader {
       words_.fail("expected the end of the file after " + std::to_string(faces_) + " faces, found more");
     }
     check_mesh_numbers(input_, mesh_);
+    polygons_.finish();
     leftovers_.note(mesh_);
     return std::move(mesh_);
   }
@@ -122,6 +124,7 @@ class OffReader {
       if (!index) words_.fail("expected the number of a vertex", word);
       fan.add(*index);
     }
+    polygons_.end(corners);
     if (corners < 3) leftovers_.left_out(1, kFewCorners);
     if (!words_.next_on_line().empty()) leftovers_.not_kept("colours of faces");
     words_.skip_line();
@@ -133,6 +136,7 @@ class OffReader {
   bool has_normals_ = false;
   bool says_more_ = false;  // the keyword says what follows the coordinates
   TriangleMesh mesh_;
+  Polygons polygons_{mesh_};
   MeshLeftovers leftovers_;
 };
 

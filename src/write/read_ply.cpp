@@ -6,6 +6,7 @@
 #include "write/mesh_leftovers.hpp"
 #include "write/mesh_words.hpp"
 #include "write/ply_header.hpp"
+#include "write/polygons.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -69,6 +70,7 @@ class PlyReader {
       }
     }
     check_end();
+    polygons_.finish();
     note_leftovers();
     return std::move(mesh_);
   }
@@ -257,6 +259,7 @@ class PlyReader {
     const std::uint64_t length = next_list_length(property);
     PolygonFan fan(mesh_.triangles);
     for (std::uint64_t i = 0; i < length; ++i) fan.add(checked_corner(next(property.type), "face ", face));
+    polygons_.end(length);
     if (length < 3) leftovers_.left_out(1, kFewCorners);
   }
 
@@ -335,6 +338,7 @@ class PlyReader {
   MeshInput& input_;
   PlyHeader header_;
   TriangleMesh mesh_;
+  Polygons polygons_{mesh_};
   MeshLeftovers leftovers_;
 };
 

@@ -289,6 +289,9 @@ void put_meshes(Seeds& seeds) {
   seeds.put("obj",
             "\xEF\xBB\xBF# c\\\nV 0 0 0 1 # w\r\nv 1 0 0 .5 .5 .5\rv 0 1 \\ \n 1e-400\nfo 1 \\\n2 3\nl 1 2\np 1\n"
             "cstype bezier\ndeg 1\nsurf 0 1 0 1 1 2\nparm u 0 1\nend\nf 1 2\nplugin 3\nf\n");
+  seeds.put(
+      "obj",
+      "f 1 2 3 4\nv 0 0 0\nv 2 1 0\nv 4 0 0\nv 2 4 0\nv 1 1 0\nf 1 2 3 4\nf 1 2 3 4 5\nf 5 1 3 2 4\nf 1 3 2 4 1 5\n");
   seeds.put("off", "STCNOFF4 2\n0 0 0 0 0 1\n1 0 0 1 1 1 1\n0 1\n0 7\n0 0 1\n3 0 1 2 7\n4 0 1\n3 2 7\n");
   seeds.put("off", "# c\nnoff # d\n3 2 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n2 0 1\n");
   seeds.put("off", "3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2 0.5 0.5 1\r");

@@ -49,6 +49,7 @@ std::vector<Sample> samples() {
        "END FACET\nEND SOLID\n"},
       {"c.off", "STCNOFF4 2\n0 0 0 0 0 1\n1 0 0 1 1 1 1\n0 1\n0 7\n0 0 1\n3 0 1 2 7\n4 0 1\n3 2 7\n"},
       {"c.obj", "# c\\\nV 0 0 0 # c\nv 1 0 0 1 1 1\nv 0 \\\n1 0\nl 1 2\np 1\nf 1 2\nsurf 0 1 0 1 1\nfo 1 2 3\n"},
+      {"d.obj", "v 0 0 0\nv 2 1 0\nv 4 0 0\nv 2 4 0\nv 1 1 0\nf 1 2 3 4\nf 1 2 3 4 5\nf 5 1 3 2 4\n"},
       {"b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -1 -2 -3\n"}};
   all.insert(all.end(), others.begin(), others.end());
   return all;
