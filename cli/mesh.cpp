@@ -97,6 +97,9 @@ void check_labels(const MeshArguments& arguments, const RunControl& control) {
   if (arguments.labels.empty()) return;
   parse_labels(arguments.labels);
   if (control.device == Device::kCuda) wrong_value("--labels", "a run on processors", "--device cuda");
+  if (arguments.input.even_spacing == "resample") {
+    wrong_value("--even-spacing", "mean or refuse with --labels, as nothing lies between two labels", "resample");
+  }
 }
 
 // One mesh for each label.
@@ -319,6 +322,9 @@ void run_mesh(MeshArguments arguments) {
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
+    // What lies between two labels is none of them.
+    const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
+    if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
     return MeshJob(arguments, nullptr).run();
   }
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);

@@ -63,6 +63,7 @@ std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
   input.path = arguments.color_by;
   input.roi = arguments.input.roi;
   input.step = arguments.input.step;
+  input.even_spacing = arguments.input.even_spacing;
   return open_input(input);
 }
 

@@ -149,7 +149,11 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
-  verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID");
+  verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
+  verb.add_option(
+      "--even-spacing", input.even_spacing,
+      "DICOM slices at uneven distances: resample (read slices at an even one, interpolated), mean (as they "
+      "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
                   "Which array of an HDF5 file or of a Zarr or N5 folder, by its path in it");
   verb.add_option("--level", input.level,
@@ -172,7 +176,9 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
                                       {"--level", &input.level},
                                       {"--channel", &input.channel},
                                       {"--time", &input.time},
-                                      {"--slices-from", &input.slices_from}}) {
+                                      {"--slices-from", &input.slices_from},
+
+                                      {"--even-spacing", &input.even_spacing}}) {
     if (!value->empty()) throw std::invalid_argument(fmt::format("{} does not go with a generated volume", option));
   }
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
@@ -196,6 +202,13 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
 
 namespace {
 
+UnevenSlices parse_uneven(std::string_view text) {
+  if (text.empty()) return OpenOptions{}.uneven_slices;
+  return parse_choice<UnevenSlices>(
+      "--even-spacing", text,
+      {{"resample", UnevenSlices::kResample}, {"mean", UnevenSlices::kMean}, {"refuse", UnevenSlices::kRefuse}});
+}
+
 std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   if (const std::optional<GenerateOptions> generated = generated_input(input)) return generate_volume(*generated);
   OpenOptions options;
@@ -211,6 +224,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
     options.slices_from = parse_choice<SliceAxis>("--slices-from", input.slices_from,
                                                   {{"channel", SliceAxis::kChannels}, {"time", SliceAxis::kTimes}});
   }
+  options.uneven_slices = parse_uneven(input.even_spacing);
   return open_volume(input.path, options);
 }
 

@@ -53,6 +53,7 @@ Quality parse_quality(std::string_view text);
 struct InputOptions {
   std::string path;
   std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
+  std::string even_spacing;  // empty: resample, but refuse where labels are read
 };
 
 void add_input_options(CLI::App& verb, InputOptions& input);

@@ -9,6 +9,12 @@
 
 namespace isoweave {
 
+bool has_long_length(std::string_view vr) {
+  static constexpr std::array<std::string_view, 13> kLong{"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                          "SV", "UC", "UN", "UR", "UT", "UV"};
+  return std::find(kLong.begin(), kLong.end(), vr) != kLong.end();
+}
+
 DicomElement DicomElementWalk::next() {
   while (!ends_.empty() && ends_.back() != kOpen && position_ >= ends_.back()) ends_.pop_back();
   DicomElement element = header();
@@ -44,9 +50,9 @@ std::uint32_t DicomElementWalk::number(std::uint64_t at, std::size_t bytes) cons
   return value;
 }
 
-std::string DicomElementWalk::text(const DicomElement& element) const {
-  constexpr std::uint32_t kLongest = 4096;
-  std::string result(std::min(element.length, kLongest), '\0');
+std::string DicomElementWalk::text(const DicomElement& element, std::size_t longest) const {
+  const std::uint64_t left = file_.size() - std::min(element.value, file_.size());
+  std::string result(std::min({std::size_t{element.length}, longest, static_cast<std::size_t>(left)}), '\0');
   result.resize(file_.read_at(element.value, std::as_writable_bytes(std::span(result))));
   return std::string(trimmed(std::string_view(result).substr(0, result.find('\0'))));
 }
@@ -81,15 +87,13 @@ DicomElement DicomElementWalk::header() const {
     element.length = number(position_ + 4, 4);
     return element;
   }
-  static constexpr std::array<std::string_view, 13> kLong{"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
-                                                          "SV", "UC", "UN", "UR", "UT", "UV"};
   element.vr.resize(2);
   file_.read_at(position_ + 4, std::as_writable_bytes(std::span(element.vr)));
-  if (std::find(kLong.begin(), kLong.end(), element.vr) == kLong.end()) {
-    element.length = number(position_ + 6, 2);
-  } else {
+  if (has_long_length(element.vr)) {
     element.length = number(position_ + 8, 4);
     element.value = position_ + 12;
+  } else {
+    element.length = number(position_ + 6, 2);
   }
   return element;
 }

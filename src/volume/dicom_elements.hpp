@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct DicomElement {
   std::uint32_t length = 0;
   std::uint64_t value = 0;  // where its value begins
 };
+
+// Whether the length of a value of this VR has four bytes; else it has two.
+bool has_long_length(std::string_view vr);
 
 using DicomRange = std::pair<std::uint64_t, std::uint64_t>;  // first byte, number of bytes
 
@@ -54,8 +58,8 @@ class DicomElementWalk {
 
   std::uint32_t number(std::uint64_t at, std::size_t bytes) const;
 
-  // The first bytes of a value, without the blank or zero that makes its length even.
-  std::string text(const DicomElement& element) const;
+  // The first bytes of a value, at most `longest`, without the blank or zero that makes its length even.
+  std::string text(const DicomElement& element, std::size_t longest = 4096) const;
 
   // The items behind the start of packed samples.
   DicomFragments fragments();

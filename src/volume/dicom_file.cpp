@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "volume/dicom_bare.hpp"
 #include "volume/dicom_frames.hpp"
 #include "volume/dicom_packed.hpp"
 #include "volume/formats.hpp"
@@ -25,6 +26,10 @@ constexpr std::string_view kRunLength = "1.2.840.10008.1.2.5";
 constexpr std::string_view kJpegFamily = "1.2.840.10008.1.2.4.";
 constexpr std::string_view kJpegLs = "1.2.840.10008.1.2.4.8";
 constexpr std::string_view kJpeg2000 = "1.2.840.10008.1.2.4.9";
+
+bool is_plain(std::string_view syntax) {
+  return syntax == kImplicit || syntax == kExplicit || syntax == kDeflated || syntax == kBigEndian;
+}
 
 void take_number(DicomSlice& slice, const DicomElementWalk& walk, const DicomElement& element) {
   if (element.length < 2) return;
@@ -61,7 +66,9 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
     std::uint32_t tag;
     std::string DicomSlice::*field;
   };
-  static constexpr std::array<Known, 12> kKnown{{{0x00020010, &DicomSlice::syntax},
+  static constexpr std::array<Known, 14> kKnown{{{0x00020002, &DicomSlice::media},
+                                                 {0x00020010, &DicomSlice::syntax},
+                                                 {0x00080008, &DicomSlice::image_type},
                                                  {0x0008103e, &DicomSlice::description},
                                                  {0x00180050, &DicomSlice::thickness},
                                                  {0x00180088, &DicomSlice::slice_spacing},
@@ -81,16 +88,29 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
 void take(DicomSlice& slice, const DicomElementWalk& walk, const DicomElement& element) {
   constexpr std::uint32_t kModalityTable = 0x00283000;
   slice.has_table = slice.has_table || element.tag == kModalityTable;
+  constexpr std::uint32_t kDoseScaling = 0x3004000e;
   take_number(slice, walk, element);
   take_text(slice, walk, element);
+  // A dose has no Rescale Slope.
+  if (element.tag == kDoseScaling && slice.slope.empty()) slice.slope = walk.text(element);
 }
 
-// The group before the data set, which says how that is written.
-void read_meta_group(DicomSlice& slice, DicomElementWalk& walk) {
+// The first bytes from `begin` on.
+std::string bytes_as_text(DicomBytes& file, std::uint64_t begin) {
+  std::string text(kDicomHeadBytes, '\0');
+  text.resize(file.read_at(begin, std::as_writable_bytes(std::span(text))));
+  return text;
+}
+
+// The group before the data set, which says how that is written. Where it does not, or is not there, the data set says
+// it itself.
+void read_meta_group(DicomSlice& slice, DicomBytes& file) {
+  DicomElementWalk walk(file, has_dicom_magic(bytes_as_text(file, 0)) ? kDicomMagicEnd : 0);
   while (!walk.at_end() && walk.next_group() == 2) take(slice, walk, walk.next());
-  const std::string& syntax = slice.syntax;
-  const bool known = syntax == kImplicit || syntax == kExplicit || syntax == kBigEndian || syntax == kDeflated ||
-                     syntax == kRunLength || syntax.starts_with(kJpegFamily);
+  slice.data_set = walk.position();
+  std::string& syntax = slice.syntax;
+  if (syntax.empty()) syntax = told_syntax(bytes_as_text(file, slice.data_set));
+  const bool known = is_plain(syntax) || syntax == kRunLength || syntax.starts_with(kJpegFamily);
   if (!known) {
     bad_input(slice.path, "a transfer syntax of plain, deflated, JPEG, JPEG-LS, JPEG 2000 or RLE samples",
               quoted(syntax));
@@ -107,6 +127,9 @@ void read_data_set(DicomSlice& slice, DicomFrames& frames, DicomElementWalk& wal
     DicomFragments fragments;
     if (packed) fragments = walk.fragments();
     if (own && element.tag == DicomElement::kPixelData) {
+      if (packed && is_plain(slice.syntax)) {
+        bad_input(slice.path, "plain samples, as the transfer syntax says or none says otherwise", "packed ones");
+      }
       frames.set_samples(packed, std::move(fragments), {element.value, element.length});
       return;
     }
@@ -177,6 +200,26 @@ DicomBytesPtr bytes_of(const std::string& path, std::string_view syntax, std::ui
   return syntax == kDeflated ? inflated_bytes(open_file(path), begin) : plain_bytes(open_file(path));
 }
 
+std::vector<std::byte> samples_as_stored(const DicomSlice& slice, std::size_t bytes) {
+  const DicomBytesPtr file = slice.bytes ? slice.bytes : bytes_of(slice.file, slice.syntax, slice.data_set);
+  return slice.packed ? unpacked_samples(slice, *file, bytes) : plain_samples(slice, *file, bytes);
+}
+
+// Whether bits above `high` are neither all 0 nor, in signed samples, all as the sign is.
+template <class Sample>
+bool has_bits_above(std::span<const std::byte> samples, int high) {
+  for (std::size_t at = 0; at < samples.size(); at += sizeof(Sample)) {
+    Sample sample;
+    std::memcpy(&sample, samples.data() + at, sizeof(Sample));
+    // Shifts of signed samples repeat their sign.
+    const auto above = static_cast<Sample>(sample >> (high + 1));
+    const auto from_sign = static_cast<Sample>(sample >> high);
+    const bool is_sign = std::is_signed_v<Sample> && from_sign == static_cast<Sample>(-1);
+    if (above != 0 && !is_sign) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::uint64_t DicomSlice::pixel_bytes() const {
@@ -189,9 +232,7 @@ std::vector<DicomSlice> read_dicom_header(const std::string& path) {
   const DicomBytesPtr head = plain_bytes(open_file(path));
   DicomSlice slice;
   slice.file = slice.path = path;
-  DicomElementWalk meta(*head, kDicomHeadBytes);
-  read_meta_group(slice, meta);
-  slice.data_set = meta.position();
+  read_meta_group(slice, *head);
   const DicomBytesPtr bytes = slice.syntax == kDeflated ? bytes_of(path, slice.syntax, slice.data_set) : head;
   DicomElementWalk walk(*bytes, slice.data_set);
   walk.set_form(slice.syntax != kImplicit, slice.syntax == kBigEndian);
@@ -206,10 +247,25 @@ std::vector<DicomSlice> read_dicom_header(const std::string& path) {
   return slices;
 }
 
+bool is_dicomdir(const std::string& path) {
+  constexpr std::string_view kDirectory = "1.2.840.10008.1.3.10";
+  DicomSlice slice;
+  slice.file = slice.path = path;
+  read_meta_group(slice, *plain_bytes(open_file(path)));
+  return slice.media == kDirectory;
+}
+
+bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes) {
+  if (slice.high + 1 >= slice.bits) return false;
+  const std::vector<std::byte> samples = samples_as_stored(slice, bytes);
+  return visit_sample_type(type, [&]<class Sample>() {
+    if constexpr (std::is_integral_v<Sample>) return has_bits_above<Sample>(samples, slice.high);
+    return false;
+  });
+}
+
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes) {
-  const DicomBytesPtr file = slice.bytes ? slice.bytes : bytes_of(slice.file, slice.syntax, slice.data_set);
-  std::vector<std::byte> samples =
-      slice.packed ? unpacked_samples(slice, *file, bytes) : plain_samples(slice, *file, bytes);
+  std::vector<std::byte> samples = samples_as_stored(slice, bytes);
   clean(samples, slice, type);
   return samples;
 }

@@ -19,8 +19,10 @@ struct DicomSlice {
   std::string file;
   std::string path;    // of the file, for messages; with the number of the frame where there are several
   std::string syntax;  // Transfer Syntax UID
+  std::string media;   // SOP class of the file, by its first group
   std::string series;  // Series Instance UID; programs that hide patients may drop it
   std::string description;
+  std::string image_type;  // words between backslashes
   std::int64_t columns = 0;
   std::int64_t rows = 0;
   int bits = 0;    // allocated
@@ -31,6 +33,7 @@ struct DicomSlice {
   bool has_table = false;  // from samples to values
   std::string photometric;
   std::string frames;
+  double offset = 0;     // from the position along the normal of the slice, in mm
   std::string position;  // the texts of the header, numbers between backslashes
   std::string orientation;
   std::string pixel_spacing;  // between rows, then between columns
@@ -38,6 +41,9 @@ struct DicomSlice {
   std::string thickness;
   std::string slope;
   std::string intercept;
+
+  bool has_unit = true;   // whether the pixel spacing is in mm; else it is not said
+  std::string placed_by;  // where a frame's place is not its own: what it is taken from, for a note
 
   // Where the samples lie: one range of the file, or, where they are packed, one for each fragment. A file that is
   // deflated counts as inflated.
@@ -50,8 +56,15 @@ struct DicomSlice {
 };
 
 // The slices of a file, in the order of its frames; none for a DICOM file that holds no image. Throws BadInput when the
-// file is damaged, of a transfer syntax that is not read, or holds frames without saying where each of them lies.
+// file is damaged, of a transfer syntax that is not read, or holds frames that are no slices.
 std::vector<DicomSlice> read_dicom_header(const std::string& path);
+
+// Whether a DICOM file is the index of an export (DICOMDIR), which names other files and holds no image.
+bool is_dicomdir(const std::string& path);
+
+// Whether samples have bits above those that the header says are stored, and not just as many signs. They are cleared
+// by decode_dicom.
+bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes);
 
 // The samples, in the machine's byte order. Throws BadInput unless they are `bytes` of `type`.
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes);

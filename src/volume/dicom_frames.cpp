@@ -23,6 +23,7 @@ void DicomFrames::take(const DicomElementWalk& walk, const DicomElement& element
   constexpr std::uint32_t kFrameGroups = 0x52009230;
   // A group's sequence, its item, the macro's sequence, its item.
   constexpr std::size_t kDepth = 4;
+  stack_.take(walk, element);
   if (walk.depth() == 0) {
     group_ = element.tag == kSharedGroups ? Group::kShared : element.tag == kFrameGroups ? Group::kFrame : Group::kNone;
     enhanced_ = enhanced_ || group_ != Group::kNone;
@@ -41,7 +42,8 @@ void DicomFrames::take_place(const DicomElementWalk& walk, const DicomElement& e
     std::uint32_t tag;
     std::string Place::*field;
   };
-  static constexpr std::array<Known, 7> kKnown{{{0x00180050, &Place::thickness},
+  static constexpr std::array<Known, 8> kKnown{{{0x00089007, &Place::image_type},
+                                                {0x00180050, &Place::thickness},
                                                 {0x00180088, &Place::slice_spacing},
                                                 {0x00200032, &Place::position},
                                                 {0x00200037, &Place::orientation},
@@ -65,9 +67,8 @@ void DicomFrames::set_samples(bool packed, DicomFragments fragments, DicomRange 
 std::size_t DicomFrames::count_of(const DicomSlice& common) const {
   const auto said = common.frames.empty() ? 1 : parse_integer(common.frames).value_or(0);
   if (said < 1) bad_input(common.path, "a number of frames", quoted(common.frames));
-  if (!enhanced_ && said != 1) {
-    bad_input(common.path, "one frame, or groups that say where each lies (enhanced images)",
-              std::to_string(said) + " frames without");
+  if (static_cast<std::uint64_t>(said) > kMostFrames) {
+    bad_input(common.path, "no more than " + std::to_string(kMostFrames) + " frames", std::to_string(said));
   }
   if (enhanced_ && frames_.size() != static_cast<std::uint64_t>(said)) {
     bad_input(common.path, "groups for each of " + std::to_string(said) + " frames", std::to_string(frames_.size()));
@@ -78,7 +79,6 @@ std::size_t DicomFrames::count_of(const DicomSlice& common) const {
 DicomSlice DicomFrames::slice(const DicomSlice& common, std::size_t frame) const {
   DicomSlice slice = common;
   if (!enhanced_) return slice;
-  slice.path += frames_.size() > 1 ? " (frame " + std::to_string(frame + 1) + ")" : "";
   for (const Place* const place : {&shared_, &frames_[frame]}) {
     override_with(slice.position, place->position);
     override_with(slice.orientation, place->orientation);
@@ -87,6 +87,7 @@ DicomSlice DicomFrames::slice(const DicomSlice& common, std::size_t frame) const
     override_with(slice.thickness, place->thickness);
     override_with(slice.slope, place->slope);
     override_with(slice.intercept, place->intercept);
+    override_with(slice.image_type, place->image_type);
   }
   return slice;
 }
@@ -98,9 +99,11 @@ std::vector<DicomSlice> DicomFrames::slices(const DicomSlice& common) const {
   std::vector<DicomSlice> slices;
   for (std::size_t frame = 0; frame < count; ++frame) {
     slices.push_back(slice(common, frame));
+    if (count > 1) slices.back().path += " (frame " + std::to_string(frame + 1) + ")";
     slices.back().packed = packed_;
     slices.back().pixels = std::move(samples[frame]);
   }
+  if (!enhanced_ && count > 1) stack_.place(slices);
   return slices;
 }
 

@@ -1,10 +1,12 @@
-// The frames of a DICOM file: where each lies in space by the functional groups of enhanced images, and in the file.
+// The frames of a DICOM file: where each lies in space, by the functional groups of enhanced images or as one of a
+// stack, and in the file.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "volume/dicom_file.hpp"
+#include "volume/dicom_stack.hpp"
 
 namespace isoweave {
 
@@ -19,13 +21,13 @@ class DicomFrames {
   void set_samples(bool packed, DicomFragments fragments, DicomRange plain);
 
   // One slice for each frame, with what `common` says of all of them. Throws BadInput when there are no samples, when
-  // groups or fragments do not go together with the number of frames, and for frames without groups.
+  // groups or fragments do not go together with the number of frames, and for frames that are no slices.
   std::vector<DicomSlice> slices(const DicomSlice& common) const;
 
  private:
   // What the groups say; empty where they do not.
   struct Place {
-    std::string position, orientation, pixel_spacing, slice_spacing, thickness, slope, intercept;
+    std::string position, orientation, pixel_spacing, slice_spacing, thickness, slope, intercept, image_type;
   };
   enum class Group { kNone, kShared, kFrame };
 
@@ -37,6 +39,7 @@ class DicomFrames {
   std::uint32_t table_entry(std::size_t n) const;
 
   DicomBytes& file_;
+  DicomStack stack_;
   Group group_ = Group::kNone;  // that the last element lies in
   bool enhanced_ = false;
   Place shared_;

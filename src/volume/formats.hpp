@@ -46,9 +46,12 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
 bool is_png(std::string_view head);
 OpenedVolume open_png(const FilePtr& file);
 
+// Whether a file is DICOM, by its magic or, where it has none, by its first elements.
 bool is_dicom(std::string_view head);
-// Bytes of a file that is_dicom needs.
-inline constexpr std::size_t kDicomHeadBytes = 132;
+bool has_dicom_magic(std::string_view head);
+// Bytes of a file that is_dicom needs, and where the magic ends.
+inline constexpr std::size_t kDicomHeadBytes = 1024;
+inline constexpr std::size_t kDicomMagicEnd = 132;
 
 // Its magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
 bool is_hdf5(const InputFile& file);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "volume/dicom_bare.hpp"
 #include "volume/formats.hpp"
 
 namespace isoweave {
@@ -18,10 +19,12 @@ bool is_tiff(std::string_view head) {
 
 bool is_png(std::string_view head) { return head.starts_with("\x89PNG\r\n\x1a\n"); }
 
+bool is_dicom(std::string_view head) { return has_dicom_magic(head) || is_bare_dicom(head); }
+
 // Behind a preamble of 128 bytes of anything.
-bool is_dicom(std::string_view head) {
-  constexpr std::size_t kPreamble = 128;
-  return head.size() >= kDicomHeadBytes && head.substr(kPreamble, 4) == "DICM";
+bool has_dicom_magic(std::string_view head) {
+  constexpr std::string_view kMagic = "DICM";
+  return head.size() >= kDicomMagicEnd && head.substr(kDicomMagicEnd - kMagic.size(), kMagic.size()) == kMagic;
 }
 
 bool is_hdf5(const InputFile& file) {

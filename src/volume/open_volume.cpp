@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "volume/dicom_file.hpp"
 #include "volume/dicom_series.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
@@ -38,7 +39,7 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".png")) return "the magic of PNG";
   if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
   if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
-  if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes";
+  if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes, or the elements of a DICOM data set";
   if (name.ends_with(".h5") || name.ends_with(".hdf5")) return "the magic of HDF5";
   return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, HDF5, or raw with a layout";
 }
@@ -105,16 +106,21 @@ OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
     return open_zarr(path, options);
   }
   const SliceFiles slices = find_slices(path);
-  if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options.series);
+  if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options);
   refuse_series(path, options.series);
   return open_slice_series(slices, options);
+}
+
+OpenedVolume open_dicom(const std::string& path, const OpenOptions& options) {
+  if (!is_dicomdir(path)) return open_dicom_file(path, options);
+  return open_dicom_series(slices_of_export(path), options);
 }
 
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
   if (options.raw) return open_raw(open_file(path), *options.raw);
   if (is_folder(path) || is_pattern(path)) return open_folder(path, options);
   const FilePtr file = open_file(path);
-  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom_file(path, options.series);
+  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom(path, options);
   refuse_series(path, options.series);
   return open_by_content(file, options);
 }

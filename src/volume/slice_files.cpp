@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -43,9 +44,11 @@ SliceKind kind_of_name(const std::string& path) {
   return SliceKind::kOther;
 }
 
-// What a file holds; an empty file is a slice that was lost only if its name is that of a slice.
-SliceKind kind_of(const std::string& path) {
+// What a file holds; an empty file is a slice that was lost only if its name is that of a slice. Where only DICOM is
+// looked for, pictures are other files.
+SliceKind kind_of(const std::string& path, bool only_dicom) {
   const SliceKind named = kind_of_name(path);
+  if (only_dicom && (named == SliceKind::kTiff || named == SliceKind::kPng)) return SliceKind::kOther;
   std::error_code error;
   if (named == SliceKind::kOther && fs::file_size(path, error) == 0) return SliceKind::kOther;
   const std::string head = open_file(path)->head(kDicomHeadBytes);
@@ -53,6 +56,7 @@ SliceKind kind_of(const std::string& path) {
   if (is_tiff(head)) found = SliceKind::kTiff;
   if (is_png(head)) found = SliceKind::kPng;
   if (is_dicom(head)) found = SliceKind::kDicom;
+  if (only_dicom && found != SliceKind::kDicom) found = SliceKind::kOther;
   if (named != SliceKind::kOther && named != found) {
     bad_input(path, "content of " + std::string(name_of(named)), "other content");
   }
@@ -76,6 +80,62 @@ std::string left_out(const std::vector<std::string>& others) {
   }
   if (others.size() > kNamed) names += ", ...";
   return std::to_string(others.size()) + " files of the folder are no slices and are left out: " + names;
+}
+
+// The index of an export, which a folder of DICOM files is known by.
+bool is_dicomdir_name(const std::string& path) { return lower_case(fs::path(path).filename().string()) == "dicomdir"; }
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+struct Entries {
+  std::vector<std::string> files, folders;
+};
+
+// What a folder holds but for hidden files and folders. Links count as what they lead to.
+Entries entries_of(const std::string& folder) {
+  Entries entries;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    if (entry->path().filename().string().starts_with('.')) continue;
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored)) entries.files.push_back(entry->path().string());
+    if (entry->is_directory(ignored)) entries.folders.push_back(entry->path().string());
+  }
+  if (error) bad_input(folder, "cannot be listed: " + error.message());
+  std::sort(entries.files.begin(), entries.files.end(), natural_less);
+  std::sort(entries.folders.begin(), entries.folders.end(), natural_less);
+  return entries;
+}
+
+// The files of all folders below one, each folder once, whatever links lead to it.
+std::vector<std::string> files_below(const std::string& top) {
+  constexpr std::size_t kDeepest = 16;
+  constexpr std::size_t kMostFiles = 1 << 17;
+  std::vector<std::string> files;
+  std::error_code unknown;
+  std::set<fs::path> seen{fs::canonical(top, unknown)};
+  std::vector<std::string> level = entries_of(top).folders;
+  for (std::size_t depth = 1; !level.empty(); ++depth) {
+    if (depth > kDeepest)
+      bad_input(top, "folders no deeper than " + std::to_string(kDeepest), isoweave::quoted(level[0]));
+    std::vector<std::string> next;
+    for (const std::string& folder : level) {
+      std::error_code error;
+      if (!seen.insert(fs::canonical(folder, error)).second || error) continue;
+      const Entries entries = entries_of(folder);
+      files.insert(files.end(), entries.files.begin(), entries.files.end());
+      next.insert(next.end(), entries.folders.begin(), entries.folders.end());
+      if (files.size() + next.size() > kMostFiles) {
+        bad_input(top, "no more than " + std::to_string(kMostFiles) + " files in folders below", "more");
+      }
+    }
+    level = std::move(next);
+  }
+  return files;
 }
 
 // A folder that is not there holds no match; one that may not be listed might.
@@ -112,19 +172,7 @@ bool is_pattern(const std::string& path) {
   return path.find_first_of("*?[") != std::string::npos && !fs::exists(path, error);
 }
 
-std::vector<std::string> files_of_folder(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    const bool hidden = entry->path().filename().string().starts_with('.');
-    std::error_code ignored;
-    if (!hidden && entry->is_regular_file(ignored)) files.push_back(entry->path().string());
-  }
-  if (error) bad_input(folder, "cannot be listed: " + error.message());
-  std::sort(files.begin(), files.end(), natural_less);
-  return files;
-}
+std::vector<std::string> files_of_folder(const std::string& folder) { return entries_of(folder).files; }
 
 std::vector<std::string> files_of_pattern(const std::string& pattern) {
   glob_t found{};
@@ -138,30 +186,53 @@ std::vector<std::string> files_of_pattern(const std::string& pattern) {
   return files;
 }
 
+namespace {
+
+SliceFiles slices_of_pattern(const std::string& pattern) {
+  SliceFiles slices;
+  slices.path = pattern;
+  for (const std::string& file : files_of_pattern(pattern)) {
+    const SliceKind kind = kind_of(file, false);
+    if (kind == SliceKind::kOther) bad_input(file, "a slice in TIFF, PNG or DICOM", "other content");
+    take_slice(slices, file, kind);
+  }
+  return slices;
+}
+
+void take_slices(SliceFiles& slices, std::vector<std::string>& others, const std::vector<std::string>& files,
+                 bool only_dicom) {
+  for (const std::string& file : files) {
+    const SliceKind kind = kind_of(file, only_dicom);
+    kind == SliceKind::kOther ? others.push_back(file) : take_slice(slices, file, kind);
+  }
+}
+
+}  // namespace
+
 SliceFiles find_slices(const std::string& path) {
-  const bool folder = !is_pattern(path);
+  if (is_pattern(path)) return slices_of_pattern(path);
   SliceFiles slices;
   slices.path = path;
   std::vector<std::string> others;
-  for (const std::string& file : folder ? files_of_folder(path) : files_of_pattern(path)) {
-    const SliceKind kind = kind_of(file);
-    if (kind != SliceKind::kOther) {
-      take_slice(slices, file, kind);
-    } else if (folder) {
-      others.push_back(file);
-    } else {
-      bad_input(file, "a slice in TIFF, PNG or DICOM", "other content");
-    }
-  }
+  const std::vector<std::string> files = files_of_folder(path);
+  const bool is_export = std::any_of(files.begin(), files.end(), is_dicomdir_name);
+  take_slices(slices, others, files, is_export);
+  const bool is_dicom = slices.files.empty() || slices.kind == SliceKind::kDicom;
+  if (is_dicom) take_slices(slices, others, files_below(path), true);
   if (slices.files.empty()) bad_input(path, "slices in TIFF, PNG or DICOM", "a directory without any");
   if (!others.empty()) slices.notes.push_back(left_out(others));
   return slices;
 }
 
+SliceFiles slices_of_export(const std::string& dicomdir) {
+  SliceFiles slices = find_slices(folder_of(dicomdir));
+  slices.path = dicomdir;
+  return slices;
+}
+
 std::vector<std::string> dicom_files_beside(const std::string& path) {
-  const fs::path folder = fs::path(path).parent_path();
   std::vector<std::string> files;
-  for (const std::string& name : files_of_folder(folder.empty() ? "." : folder.string())) {
+  for (const std::string& name : files_of_folder(folder_of(path))) {
     std::error_code error;
     const bool empty = fs::file_size(name, error) == 0;
     if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);

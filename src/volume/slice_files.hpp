@@ -31,10 +31,14 @@ struct SliceFiles {
   std::vector<std::string> notes;  // says which files of the folder are none of the slices
 };
 
-// The slices of a folder or pattern: files of one kind. In a folder other files are left out and noted; those that a
-// pattern names must all be slices. Throws BadInput when there is none, when there are two kinds, or when the content
-// of a file is not what its name says.
+// The slices of a folder or pattern: files of one kind. A folder of DICOM, or without slices of its own, stands for the
+// DICOM files of all folders below it as well. Other files of a folder are left out and noted, pictures among them
+// where a DICOMDIR says that the folder is an export of DICOM; those that a pattern names must all be slices. Throws
+// BadInput when there is none, when there are two kinds, or when the content of a file is not what its name says.
 SliceFiles find_slices(const std::string& path);
+
+// The slices of the folder that a DICOMDIR lies in, and of those below.
+SliceFiles slices_of_export(const std::string& dicomdir);
 
 // The DICOM files in the folder of a file, itself among them.
 std::vector<std::string> dicom_files_beside(const std::string& path);

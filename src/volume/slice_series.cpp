@@ -2,10 +2,12 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "volume/formats.hpp"
 #include "volume/header_text.hpp"
 #include "volume/printable.hpp"
+#include "volume/slice_numbers.hpp"
 
 namespace isoweave {
 namespace {
@@ -51,6 +53,8 @@ OpenedVolume open_slice_series(const SliceFiles& slices, const OpenOptions& opti
   }
   info.path = slices.path;
   info.notes.insert(info.notes.begin(), slices.notes.begin(), slices.notes.end());
+  const std::vector<std::string> numbers = notes_on_numbers(slices.files);
+  info.notes.insert(info.notes.end(), numbers.begin(), numbers.end());
   return volume;
 }
 

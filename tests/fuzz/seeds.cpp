@@ -11,6 +11,7 @@
 #include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
+#include "volume/formats.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
 #include "dicom_helpers.hpp"
@@ -212,6 +213,33 @@ void put_png(Seeds& seeds) {
 #endif
 
 #ifdef ISOWEAVE_HAS_GDCM
+// Without magic, without groups, at uneven distances, with another scaling on each slice, and in folders of folders.
+void put_dicom_as_found(Seeds& seeds) {
+  using namespace dicom_files;
+  DicomFields fields;
+  const std::string plain = dicom(fields, slice(0));
+  seeds.put("dicom", plain.substr(kDicomMagicEnd));
+  seeds.put("dicom", plain.substr(plain.find(element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"))));
+  fields.frames = "2";
+  const std::string two = slice(0) + slice(1);
+  for (const std::string& more :
+       {element(0x18, 0x88, "DS", "1.5"), element(0x3004, 0xc, "DS", "30\\33") + element(0x3004, 0xe, "DS", "0.1"),
+        element(0x28, 9, "AT", stored<std::uint16_t>({0x54, 0x80})) +
+            element(0x54, 0x80, "US", stored<std::uint16_t>({2, 1}))}) {
+    fields.more = more;
+    seeds.put("dicom", dicom(fields, two));
+  }
+  fields = {};
+  std::string series;
+  for (const double z : {1.0, 2.0, 4.0}) {
+    fields.position = at(z);
+    fields.slope = std::to_string(z);
+    series += (series.empty() ? "" : kNext) + dicom(fields, slice(0));
+  }
+  seeds.put("dicom_series", series);
+  seeds.put("dicom_export", plain + kNext + series);
+}
+
 void put_dicom(Seeds& seeds) {
   using namespace dicom_files;
   const TempFolder folder;
@@ -230,6 +258,7 @@ void put_dicom(Seeds& seeds) {
   const std::string frames = enhanced({frame_at(1), frame_at(2)}, slice(0) + slice(1));
   seeds.put("dicom", frames);
   seeds.put("dicom", deflated_file(frames));
+  put_dicom_as_found(seeds);
   seeds.put("dicom", deflated_file(plain));
   const std::string lengths = run_lengths(slice(0));
   const std::string table = item(bytes_of(0U) + bytes_of(static_cast<std::uint32_t>(lengths.size() + 8)));

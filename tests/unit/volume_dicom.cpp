@@ -56,7 +56,7 @@ TEST(Dicom, ListsSeveralSeriesAndReadsTheChosenOne) {
   other.description = "scout";
   folder.put("other", dicom(other, slice(3)));
   const std::string message = refusal(folder / "");
-  EXPECT_TRUE(contains(message, "found 2 series: 1.2.3 ('thin', 5 slices); 1.2.4 ('scout', 1 slices)")) << message;
+  EXPECT_TRUE(contains(message, "found 2 series: 1.2.3 ('thin', 5 slices); 1.2.4 ('scout', 1 slice)")) << message;
   OpenOptions options;
   options.series = "1.2.3";
   EXPECT_EQ(read_file<std::uint16_t>(folder / "", options), kSamples);
@@ -85,23 +85,6 @@ TEST(Dicom, TakesObliqueAndShearedAxes) {
   EXPECT_EQ(geometry.spacing, (std::array<double, 3>{0.25, 0.5, 2}));
   const std::array<double, 9> expected{0, 0.6, -1, 1, 0, 0, 0, -0.8, 0};
   for (std::size_t n = 0; n < 9; ++n) EXPECT_NEAR(geometry.direction[n], expected[n], 1e-12) << n;
-}
-
-TEST(Dicom, NotesMissingAndUnevenSlices) {
-  const TempFolder folder;
-  put_series(folder);
-  std::filesystem::remove(folder / "s7");
-  const VolumeInfo missing = open_volume(folder / "")->info();
-  EXPECT_TRUE(contains(missing.notes.at(0), "1 slices seem to be missing: 5 mm between '")) << missing.notes.at(0);
-  EXPECT_TRUE(contains(missing.notes.at(1), "from 2.5 to 5 mm; the mean is used"));
-  EXPECT_NEAR(missing.geometry.spacing[2], 10.0 / 3, 1e-12);
-  DicomFields fields;
-  fields.position = at(35.5);
-  folder.put("s7", dicom(fields, slice(2)));
-  EXPECT_TRUE(contains(open_volume(folder / "")->info().notes.at(0), "unevenly spaced, from 2 to 3 mm"));
-  fields.position = "10\\21\\35";
-  folder.put("s7", dicom(fields, slice(2)));
-  EXPECT_TRUE(contains(open_volume(folder / "")->info().notes.at(0), "up to 1 mm beside it"));
 }
 
 TEST(Dicom, RefusesSlicesInOnePlace) {
@@ -241,20 +224,13 @@ TEST(Dicom, RefusesSlicesThatDiffer) {
     return refusal(folder / "");
   };
   DicomFields fields;
-  fields.slope = "2";
+  fields.is_signed = 1;
   const std::string message = with(fields);
-  EXPECT_TRUE(contains(message, "s7: expected 7 x 5 uint16 MONOCHROME2 scaled by 1 and 0 as in '")) << message;
-  EXPECT_TRUE(contains(message, "found 7 x 5 uint16 MONOCHROME2 scaled by 2 and 0")) << message;
+  EXPECT_TRUE(contains(message, "s7: expected 7 x 5 uint16 MONOCHROME2 as in '")) << message;
+  EXPECT_TRUE(contains(message, "found 7 x 5 int16 MONOCHROME2")) << message;
   fields = {};
-  fields.columns = 5;
-  fields.rows = 7;
-  EXPECT_TRUE(contains(with(fields), "found 5 x 7"));
-  fields = {};
-  fields.orientation = "0\\1\\0\\1\\0\\0";
-  EXPECT_TRUE(contains(with(fields), "expected the orientation and pixel spacing"));
-  fields = {};
-  fields.pixel_spacing = "0.5\\0.5";
-  EXPECT_TRUE(contains(with(fields), "expected the orientation and pixel spacing"));
+  fields.photometric = "MONOCHROME1";
+  EXPECT_TRUE(contains(with(fields), "found 7 x 5 uint16 MONOCHROME1"));
 }
 
 TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
@@ -262,7 +238,9 @@ TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
   const auto with = [&](const DicomFields& fields) { return refusal(folder.put("a", dicom(fields, slice(0)))); };
   DicomFields fields;
   fields.frames = "5";
-  EXPECT_TRUE(contains(with(fields), "groups that say where each lies (enhanced images), found 5 frames without"));
+  EXPECT_TRUE(contains(with(fields), "expected 350 bytes of samples, found 70"));
+  fields.frames = "99999999";
+  EXPECT_TRUE(contains(with(fields), "expected no more than 131072 frames, found 99999999"));
   fields.frames = "many";
   EXPECT_TRUE(contains(with(fields), "expected a number of frames, found 'many'"));
   fields = {};
@@ -292,7 +270,7 @@ TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
   fields = {};
   fields.rows = 0;
   EXPECT_TRUE(contains(with(fields), "a DICOM file without one"));
-  EXPECT_TRUE(contains(refusal(folder / ""), "expected DICOM images, found 1 files without one"));
+  EXPECT_TRUE(contains(refusal(folder / ""), "expected DICOM images, found 1 file without one"));
   std::string deflated = dicom({}, slice(0));
   deflated.replace(deflated.find("1.2.840.10008.1.2.1") + 16, 3, "9.9");
   EXPECT_TRUE(contains(refusal(folder.put("a", deflated)), "expected a transfer syntax of plain, deflated, JPEG"));
@@ -375,8 +353,6 @@ TEST(Dicom, RefusesFramesThatAreNotOneVolume) {
   DicomFields fields;
   fields.frames = "3";
   EXPECT_TRUE(contains(refused({frame_at(1), frame_at(2)}, two, fields), "groups for each of 3 frames, found 2"));
-  const std::string own = group(0x28, 0x9145, element(0x28, 0x1053, "DS", "5"));
-  EXPECT_TRUE(contains(refused({frame_at(1), frame_at(2) + own}, two), "scaled by 5 and -7"));
 }
 
 TEST(Dicom, ReadsPackedFramesByTheirNumberOrTheirOffsets) {
@@ -433,7 +409,7 @@ TEST(Dicom, LeavesFilesWithoutImagesOut) {
   fields.rows = 0;
   folder.put("report", dicom(fields, ""));
   const auto source = open_volume(folder / "");
-  EXPECT_EQ(source->info().notes.at(0), "1 DICOM files hold no image and are left out");
+  EXPECT_EQ(source->info().notes.at(0), "1 DICOM file holds no image and is left out");
   EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
 }
 

@@ -1,6 +1,7 @@
 // Series of one file per slice: how files are found and ordered, and what a series must have in common.
 #include "tiff_helpers.hpp"
 #include "volume/slice_files.hpp"
+#include "volume/slice_numbers.hpp"
 
 namespace isoweave::testing {
 namespace {
@@ -29,6 +30,65 @@ TEST(SliceFiles, OrdersRunsOfDigitsAsNumbers) {
     EXPECT_FALSE(natural_less(after, before)) << before << " " << after;
   }
   EXPECT_FALSE(natural_less("z1", "z1"));
+}
+
+std::string notes_on(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& note : notes_on_numbers(names)) text += note + "\n";
+  return text;
+}
+
+TEST(SliceNumbers, ThatAreLeftOutAreNoted) {
+  EXPECT_EQ(notes_on({"d/z06.tif", "d/z07.tif", "d/z10.tif", "d/z11.tif"}),
+            "2 slices seem to be missing by the numbers of the files: between 'z07.tif' and 'z10.tif'\n");
+  EXPECT_EQ(notes_on({"1.png", "2.png", "4.png", "5.png", "6.png", "8.png", "9.png"}),
+            "2 slices seem to be missing by the numbers of the files: between '2.png' and '4.png', between '6.png' and "
+            "'8.png'\n");
+  EXPECT_EQ(notes_on({"s.001", "s.002", "s.003", "s.005"}),
+            "1 slice seems to be missing by the numbers of the files: between 's.003' and 's.005'\n");
+  EXPECT_EQ(notes_on({"z00.tif", "z02.tif", "z04.tif", "z08.tif"}),
+            "1 slice seems to be missing by the numbers of the files: between 'z04.tif' and 'z08.tif'; the numbers are "
+            "usually 2 apart\n");
+  EXPECT_TRUE(contains(notes_on({"1", "2", "4", "5", "6", "8", "9", "10", "12", "13", "14", "15", "17", "18", "19"}),
+                       "4 slices seem to be missing by the numbers of the files: between '2' and '4', between '6' and "
+                       "'8', between '10' and '12', and 1 more gaps"));
+}
+
+TEST(SliceNumbers, ThatFollowOneAnotherAreNot) {
+  for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{
+           {"z1.tif", "z2.tif", "z3.tif"},
+           {"z0.tif", "z2.tif", "z4.tif", "z6.tif"},
+           {"z5.tif", "z9.tif"},
+           {"z7.tif"},
+           {"a.tif", "b.tif", "d.tif", "e.tif"},
+           {"mask.tif", "z1.tif", "z2.tif", "z3.tif"},
+           // Taken at uneven times, and counted.
+           {"20240102_1201_001.tif", "20240102_1203_002.tif", "20240102_1204_003.tif", "20240102_1205_004.tif"},
+           {"s1_20240102_1201.tif", "s2_20240102_1203.tif", "s3_20240102_1204.tif", "s4_20240102_1205.tif"},
+           {"z1_ch1.tif", "z1_ch2.tif", "z2_ch1.tif", "z2_ch2.tif", "z3_ch1.tif", "z3_ch2.tif"},
+           {"z0.50.tif", "z1.00.tif", "z1.50.tif", "z2.00.tif", "z2.50.tif", "z3.00.tif"},
+           {"17.tif", "94.tif", "180.tif", "2222.tif"},
+           {"99999999999999999999.tif", "199999999999999999999.tif", "999999999999999999999999.tif"}}) {
+    EXPECT_EQ(notes_on(names), "") << names.front();
+  }
+}
+
+TEST(SliceNumbers, ThatOccurTwiceAreNoted) {
+  EXPECT_EQ(notes_on({"z1.tif", "z01.tif", "z2.tif", "z3.tif"}),
+            "'z1.tif' and 'z01.tif' have the same number, and both are taken as slices\n");
+  EXPECT_EQ(notes_on({"z1.tif", "z1.tiff", "z2.tif", "z2.tiff", "z3.tif", "z3.tiff"}),
+            "3 files have the number of another, as 'z1.tif' and 'z1.tiff' have, and all are taken as slices\n");
+}
+
+TEST(SliceSeries, NotesAGapInItsNumbers) {
+  const TempFolder folder;
+  put_series(folder);
+  EXPECT_FALSE(contains(open_volume(folder / "")->info().notes.back(), "missing"));
+  for (const char* name : {"z8.tif", "z9.tif"}) std::filesystem::remove(folder / name);
+  for (const std::string path : {"", "z*.tif"}) {
+    EXPECT_EQ(open_volume(folder / path)->info().notes.back(),
+              "2 slices seem to be missing by the numbers of the files: between 'z7.tif' and 'z10.tif'");
+  }
 }
 
 TEST(SliceSeries, IsReadFromAFolderOrAPattern) {
