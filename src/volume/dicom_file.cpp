@@ -18,6 +18,7 @@
 namespace isoweave {
 namespace {
 
+constexpr std::string_view kDirectory = "1.2.840.10008.1.3.10";
 constexpr std::string_view kImplicit = "1.2.840.10008.1.2";
 constexpr std::string_view kExplicit = "1.2.840.10008.1.2.1";
 constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
@@ -228,11 +229,19 @@ std::uint64_t DicomSlice::pixel_bytes() const {
   return sum;
 }
 
+std::string DicomSlice::name() const {
+  const std::size_t last = path.rfind('/');
+  if (last == std::string::npos || last == 0) return path;
+  const std::size_t folder = path.rfind('/', last - 1);
+  return folder == std::string::npos ? path : path.substr(folder + 1);
+}
+
 std::vector<DicomSlice> read_dicom_header(const std::string& path) {
   const DicomBytesPtr head = plain_bytes(open_file(path));
   DicomSlice slice;
   slice.file = slice.path = path;
   read_meta_group(slice, *head);
+  if (slice.media == kDirectory) return {};
   const DicomBytesPtr bytes = slice.syntax == kDeflated ? bytes_of(path, slice.syntax, slice.data_set) : head;
   DicomElementWalk walk(*bytes, slice.data_set);
   walk.set_form(slice.syntax != kImplicit, slice.syntax == kBigEndian);
@@ -248,7 +257,6 @@ std::vector<DicomSlice> read_dicom_header(const std::string& path) {
 }
 
 bool is_dicomdir(const std::string& path) {
-  constexpr std::string_view kDirectory = "1.2.840.10008.1.3.10";
   DicomSlice slice;
   slice.file = slice.path = path;
   read_meta_group(slice, *plain_bytes(open_file(path)));

@@ -53,6 +53,9 @@ struct DicomSlice {
   std::shared_ptr<DicomBytes> bytes;  // the open file, where it holds several frames
 
   std::uint64_t pixel_bytes() const;
+
+  // The path but for the folders above that of the file, for messages that name two of them.
+  std::string name() const;
 };
 
 // The slices of a file, in the order of its frames; none for a DICOM file that holds no image. Throws BadInput when the

@@ -84,10 +84,10 @@ PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   for (const DicomSlice& slice : slices) {
     const SliceKindFacts found = facts_of(slice);
     if (found != result.facts) {
-      bad_input(slice.path, text_of(result.facts) + " as in " + quoted(first.path), text_of(found));
+      bad_input(slice.path, text_of(result.facts) + " as in " + quoted(first.name()), text_of(found));
     }
     if (!is_close(result.plane, plane_of(slice))) {
-      bad_input(slice.path, "the orientation and pixel spacing of " + quoted(first.path),
+      bad_input(slice.path, "the orientation and pixel spacing of " + quoted(first.name()),
                 quoted(slice.orientation + " " + slice.pixel_spacing));
     }
     result.slices.push_back(placed(slice, result.plane.normal()));

@@ -155,7 +155,10 @@ std::unique_ptr<ByteStream> samples_of(const VolumeInfo& info, const PlacedSerie
 }
 
 EvenGrid grid_of(VolumeInfo& info, const Slices& slices, const OpenOptions& options) {
-  SlicePlaces places{info.path, {}, [&](std::size_t n) { return slices[n].slice.path; }};
+  SlicePlaces places{info.path,
+                     {},
+                     [&](std::size_t n) { return slices[n].slice.name(); },
+                     [&](std::size_t n) { return slices[n].slice.path; }};
   for (const PlacedSlice& slice : slices) places.depths.push_back(slice.depth);
   // Distances that are given instead of the file's are those of the slices that there are.
   EvenGrid grid = even_grid(places, options.spacing ? UnevenSlices::kMean : options.uneven_slices, info.notes);
@@ -181,7 +184,7 @@ void note_bits(VolumeInfo& info, const PlacedSeries& series) {
   const std::size_t bytes = static_cast<std::size_t>(info.slice_samples()) * sample_bytes(series.facts.type);
   if (!has_bits_above(slice, series.facts.type, bytes)) return;
   info.notes.push_back("samples have bits above the " + std::to_string(slice.stored) +
-                       " that are said to be stored (Bits Stored), as in " + quoted(slice.path) +
+                       " that are said to be stored (Bits Stored), as in " + quoted(slice.name()) +
                        ": they are cleared, and values are wrong if they belong to them");
 }
 

@@ -16,7 +16,8 @@ namespace isoweave {
 struct SlicePlaces {
   std::string path;  // of all of them, for messages
   std::vector<double> depths;
-  std::function<std::string(std::size_t)> name;
+  std::function<std::string(std::size_t)> name;  // of a slice, for messages about several
+  std::function<std::string(std::size_t)> file;  // its whole path
 };
 
 // Slices at an even distance, the first and the last of them in the places of the first and the last that there are.

@@ -54,7 +54,7 @@ void refuse_coinciding(const SlicePlaces& places, const Gaps& gaps) {
   constexpr double kSamePlace = 1e-2;
   for (std::size_t n = 0; n < gaps.lengths.size(); ++n) {
     if (gaps.lengths[n] > kSamePlace * gaps.usual && gaps.lengths[n] > 0) continue;
-    bad_input(places.name(n + 1), "a position of its own for every slice", "that of " + quoted(places.name(n)));
+    bad_input(places.file(n + 1), "a position of its own for every slice", "that of " + quoted(places.name(n)));
   }
 }
 
@@ -147,8 +147,9 @@ std::string resampled_text(const EvenGrid& grid) {
     last = n;
   }
   std::string text = "they are read as " + std::to_string(grid.count) + " slices " + length_text(grid.distance()) +
-                     " mm apart, " + std::to_string(made) + " of which are interpolated";
-  if (made > 0) text += " (numbers " + std::to_string(first) + " to " + std::to_string(last) + ", from 0)";
+                     " mm apart, " + std::to_string(made) + " of which " + (made == 1 ? "is" : "are") + " interpolated";
+  if (made == 1) text += " (number " + std::to_string(first) + ", from 0)";
+  if (made > 1) text += " (numbers " + std::to_string(first) + " to " + std::to_string(last) + ", from 0)";
   return text;
 }
 

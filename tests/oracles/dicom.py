@@ -71,6 +71,7 @@ def save(data, **options):
 
 
 def put_frames(path, places):
+    os.makedirs(os.path.dirname(path))
     data = new_file(path, np.array([slice_of_ball(z) for z in places]))
     data.NumberOfFrames = len(places)
     data.ImagePositionPatient = [0, 0, float(places[0])]
@@ -101,7 +102,7 @@ def check_uneven(oracle, folder, mesh):
     oracle.expect_equal((info["dims"][2], info["spacing"][2]), (66, 2.5), "two distances: slices and their distance")
     info = oracle.info(os.path.join(folder, "two"), "--even-spacing", "mean")
     oracle.expect_equal(info["dims"][2], 44, "two distances: slices as they are")
-    path = os.path.join(folder, "enhanced.dcm")
+    path = os.path.join(folder, "enhanced", "a.dcm")
     places = series["lost"][0]
     data = put_frames(path, places)
     del data.ImagePositionPatient
@@ -130,18 +131,18 @@ def check_scaling(oracle, folder, mesh):
 
 def check_stacks(oracle, folder, mesh):
     places = np.arange(55) * 2.5
-    path = os.path.join(folder, "cbct.dcm")
+    path = os.path.join(folder, "cbct", "a.dcm")
     data = put_frames(path, places)
     data.SpacingBetweenSlices = 2.5
     save(data)
     check_ball(oracle, path, mesh, 0.2)
-    path = os.path.join(folder, "down.dcm")
+    path = os.path.join(folder, "down", "a.dcm")
     data = put_frames(path, places[::-1])
     data.SpacingBetweenSlices = -2.5
     save(data)
     check_ball(oracle, path, mesh, 0.2)
     for name, offsets in (("relative", places - places[0]), ("absolute", places + 5)):
-        path = os.path.join(folder, f"dose_{name}.dcm")
+        path = os.path.join(folder, f"dose_{name}", "a.dcm")
         data = put_frames(path, places)
         data.FrameIncrementPointer = 0x3004000C
         data.GridFrameOffsetVector = [float(offset) for offset in offsets]

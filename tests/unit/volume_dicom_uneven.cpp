@@ -34,7 +34,7 @@ struct Grid {
 
   explicit Grid(const std::vector<double>& depths, UnevenSlices uneven = UnevenSlices::kResample) {
     const auto name = [](std::size_t n) { return "s" + std::to_string(n); };
-    grid = even_grid({"all", depths, name}, uneven, notes);
+    grid = even_grid({"all", depths, name, name}, uneven, notes);
   }
 
   double depth(std::int64_t slice) const {
@@ -58,8 +58,8 @@ TEST(DicomUneven, MakesTheSliceThatIsMissing) {
   EXPECT_TRUE(contains(notes, "1 slice seems to be missing: 5 mm between '")) << notes;
   EXPECT_TRUE(contains(notes, "slices are usually 2.5 mm apart")) << notes;
   EXPECT_TRUE(contains(notes,
-                       "the slices are 2.5 to 5 mm apart: they are read as 5 slices 2.5 mm apart, 1 of which "
-                       "are interpolated (numbers 2 to 2, from 0)"))
+                       "the slices are 2.5 to 5 mm apart: they are read as 5 slices 2.5 mm apart, 1 of which is "
+                       "interpolated (number 2, from 0)"))
       << notes;
   // The samples rise evenly, so what lies between is what was lost.
   EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
