@@ -42,6 +42,7 @@ isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome
                 $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
 isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
 isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
+isoweave_reader(LZMA vtk_lzma.cpp LibLZMA::LibLZMA LibLZMA)
 isoweave_reader(LZ4 "codec_lz4.cpp;vtk_lz4.cpp" IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
 # Packed meshes, which are written only.
 isoweave_reader(MESHOPTIMIZER glb_packed.cpp meshoptimizer::meshoptimizer meshoptimizer)

@@ -33,10 +33,11 @@ bool is_pvm(std::string_view head);
 OpenedVolume open_pvm(const FilePtr& file);
 
 bool is_vti(std::string_view head);
-OpenedVolume open_vti(const FilePtr& file);
+// The dataset of the options is the name of an array.
+OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options);
 
 bool is_vtk_legacy(std::string_view head);
-OpenedVolume open_vtk_legacy(const FilePtr& file);
+OpenedVolume open_vtk_legacy(const FilePtr& file, const OpenOptions& options);
 
 // The readers below stand on libraries that a build may lack; what tells their files does not.
 bool is_tiff(std::string_view head);

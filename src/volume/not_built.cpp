@@ -62,10 +62,17 @@ std::vector<std::byte> decode_blosc(std::span<const std::byte>, std::size_t, con
 }
 #endif
 
+#ifndef ISOWEAVE_HAS_LZMA
+std::unique_ptr<ByteStream> open_lzma_block(std::unique_ptr<ByteStream>, std::uint64_t, std::uint64_t,
+                                            const std::string& path) {
+  not_built(path, "VTK XML with LZMA blocks", "liblzma", "ISOWEAVE_LZMA");
+}
+#endif
+
 #ifndef ISOWEAVE_HAS_LZ4
 std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream>, std::uint64_t, std::uint64_t,
                                            const std::string& path) {
-  not_built(path, "VTI with LZ4 blocks", "liblz4", "ISOWEAVE_LZ4");
+  not_built(path, "VTK XML with LZ4 blocks", "liblz4", "ISOWEAVE_LZ4");
 }
 
 std::vector<std::byte> decode_lz4(std::span<const std::byte>, std::size_t, const std::string& path) {

@@ -69,8 +69,8 @@ OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   if (head.starts_with("NRRD")) return open_nrrd(file, options);
   if (is_tiff(head)) return open_tiff(file, false, options);
   if (is_png(head)) return open_png(file);
-  if (is_vti(head)) return open_vti(file);
-  if (is_vtk_legacy(head)) return open_vtk_legacy(file);
+  if (is_vti(head)) return open_vti(file, options);
+  if (is_vtk_legacy(head)) return open_vtk_legacy(file, options);
   if (is_pvm(head)) return open_pvm(file);
   if (is_metaimage(head)) return open_metaimage(file, options);
   if (is_nifti(head)) return open_nifti(file, false, options);
@@ -90,7 +90,9 @@ bool is_one_of(std::string_view format, std::initializer_list<std::string_view> 
 // Options that choose among what other formats do not have. Readers that have it refuse what is not in the file.
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
-  if (!array && (!options.dataset.empty() || options.level)) {
+  // VTK's files have arrays with names, and no levels.
+  const bool named = array || is_one_of(info.format, {"vti", "vtk"});
+  if ((!named && !options.dataset.empty()) || (!array && options.level)) {
     bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
   }
   const bool axes = array || is_one_of(info.format, {"tiff", "nifti", "nrrd", "metaimage"});

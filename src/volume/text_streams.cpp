@@ -1,13 +1,35 @@
 #include "volume/text_streams.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <string_view>
 #include <system_error>
+#include <type_traits>
 
 #include "volume/printable.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
+namespace {
+
+// The whole word as a number; for a float, numbers too small for it are the nearest that it has.
+template <class Number>
+bool parse(std::string_view word, Number& value) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (stop != word.data() + word.size()) return false;
+  if constexpr (std::is_same_v<Number, float>) {
+    double wide = 0;
+    if (error == std::errc::result_out_of_range && parse(word, wide) && std::abs(wide) < 1) {
+      value = static_cast<float>(wide);
+      return true;
+    }
+  }
+  return error == std::errc{};
+}
+
+}  // namespace
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -19,31 +41,30 @@ char TextStream::next() {
   if (ended_ || used_ == filled_) return '\0';
   const char c = std::to_integer<char>(buffer_[used_++]);
   ended_ = c == '<';
+  if (!ended_) ++position_;
   return ended_ ? '\0' : c;
+}
+
+std::string TextStream::next_word() {
+  constexpr std::size_t kLongest = 64;
+  char c = next();
+  while (is_blank(c)) c = next();
+  std::string word;
+  for (; c != '\0' && !is_blank(c) && word.size() < kLongest; c = next()) word += c;
+  return word;
 }
 
 NumberStream::NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path)
     : text_(std::move(text)), type_(type), left_(count), path_(std::move(path)) {}
 
-std::string NumberStream::next_word() {
-  constexpr std::size_t kLongest = 64;
-  char c = text_.next();
-  while (is_blank(c)) c = text_.next();
-  std::string word;
-  for (; c != '\0' && !is_blank(c) && word.size() < kLongest; c = text_.next()) word += c;
-  return word;
-}
-
 bool NumberStream::next_sample() {
   if (left_ == 0) return false;
-  const std::string word = next_word();
+  const std::string word = text_.next_word();
   if (word.empty()) return false;
   --left_;
   visit_sample_type(type_, [&]<class Sample>() {
     Sample value{};
-    const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, value);
-    if (error != std::errc{} || stop != end) {
+    if (!parse(word, value)) {
       bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)), quoted(word));
     }
     std::memcpy(sample_.data(), &value, sizeof(Sample));

@@ -24,8 +24,15 @@ class TextStream {
   // The next character; 0 behind the last.
   char next();
 
+  // The next run of characters that are not blanks, at most 64 of them; empty behind the last.
+  std::string next_word();
+
+  // Characters that were handed out.
+  std::uint64_t position() const { return position_; }
+
  private:
   std::unique_ptr<ByteStream> input_;
+  std::uint64_t position_ = 0;
   std::array<std::byte, 64 * 1024> buffer_;
   std::size_t used_ = 0;
   std::size_t filled_ = 0;
@@ -41,7 +48,6 @@ class NumberStream final : public ByteStream {
 
  private:
   bool next_sample();
-  std::string next_word();
 
   TextStream text_;
   SampleType type_;

@@ -1,197 +1,138 @@
-// VTI: VTK's XML image data. Tags are read one after another up to the array that is wanted; its samples follow the
-// tag, or lie in the appended section behind the last one.
+// VTI, VTK's XML image data, and PVTI, which names files for its pieces. Tags are read up to the array that is wanted,
+// where it has all samples; else all of them.
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "volume/data_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/piece_stream.hpp"
 #include "volume/printable.hpp"
-#include "volume/vtk_streams.hpp"
+#include "volume/vtk_arrays.hpp"
+#include "volume/vtk_xml.hpp"
 #include "volume/xml_tag.hpp"
 
 namespace isoweave {
 namespace {
 
-// Tags of a file in their order; text between them is passed over.
-class TagReader {
- public:
-  explicit TagReader(const FilePtr& file) : file_(file) {}
+constexpr std::size_t kMostPieces = 4096;
+constexpr std::uint64_t kLargestRatio = 8 * kLzmaRatio;  // of samples to bytes: packed bits
 
-  // The next tag without its brackets; empty at the end of the file.
-  std::string next() {
-    for (char c = take(); c != '\0' || position_ < file_->size(); c = take()) {
-      if (c != '<') continue;
-      std::string tag = inside();
-      if (!tag.starts_with('?') && !tag.starts_with('!')) return tag;
-    }
-    return {};
+// Arrays at points or in cells.
+struct ArrayList {
+  std::string active;
+  std::vector<VtkArray> all;
+
+  VtkArrayNames names() const {
+    VtkArrayNames names{active, {}};
+    for (const VtkArray& array : all) names.all.push_back({array.name, array.components});
+    return names;
+  }
+};
+
+struct ImagePiece {
+  std::string extent;
+  std::string source;  // PVTI: the file that holds it
+  ArrayList points, cells;
+};
+
+struct ImageHeader {
+  std::string path;
+  FilePtr file;  // none: to be opened again
+  VtkXmlForm form;
+  VtkAppended appended;
+  std::string whole_extent, origin, spacing, direction;
+  std::size_t times = 1;
+  std::vector<ImagePiece> pieces;
+};
+
+class HeaderReader {
+ public:
+  HeaderReader(const FilePtr& file, const std::string& wanted) : tags_(file), wanted_(wanted) {
+    header_.path = file->path();
+    header_.file = file;
   }
 
-  // The byte behind the last tag.
-  std::uint64_t position() const { return position_; }
+  ImageHeader read() {
+    for (std::string tag = tags_.next(); !tag.empty() && take(tag); tag = tags_.next()) {
+    }
+    if (header_.pieces.empty()) bad_input(header_.path, "a piece of image data", "none");
+    return std::move(header_);
+  }
 
  private:
-  char take() {
-    if (position_ < begin_ || position_ >= begin_ + filled_) {
-      begin_ = position_;
-      filled_ = file_->read_at(begin_, buffer_);
-      if (filled_ == 0) return '\0';
+  // False when the tags behind this one do not matter.
+  bool take(std::string_view tag) {
+    const std::string_view name = vtk_tag_name(tag);
+    if (name == "VTKFile") take_form(tag);
+    if (name == "ImageData" || name == "PImageData") take_image(tag);
+    if (name == "Piece") add_piece(tag);
+    if (name == "PointData" || name == "CellData") begin_arrays(tag, name == "CellData");
+    if (name == "/PointData" || name == "/CellData" || name == "/Piece") arrays_ = nullptr;
+    if (name == "DataArray" && arrays_ != nullptr) return add_array(tag);
+    if (name != "AppendedData") return true;
+    header_.appended = vtk_appended(tag, tags_.position(), *header_.file);
+    return false;
+  }
+
+  void take_form(std::string_view tag) {
+    header_.form = vtk_xml_form(tag, header_.path);
+    const std::string& type = header_.form.type;
+    if (type != "ImageData" && type != "PImageData") bad_input(header_.path, "VTK XML of type ImageData", quoted(type));
+  }
+
+  void take_image(std::string_view tag) {
+    header_.whole_extent = xml_attribute(tag, "WholeExtent");
+    header_.origin = xml_attribute(tag, "Origin");
+    header_.spacing = xml_attribute(tag, "Spacing");
+    header_.direction = xml_attribute(tag, "Direction");
+    const std::string times = xml_attribute(tag, "TimeValues");
+    header_.times = std::max<std::size_t>(words_of(times).size(), 1);
+  }
+
+  void add_piece(std::string_view tag) {
+    if (header_.pieces.size() == kMostPieces) {
+      bad_input(header_.path, "at most " + std::to_string(kMostPieces) + " pieces", "more");
     }
-    return std::to_integer<char>(buffer_[static_cast<std::size_t>(position_++ - begin_)]);
+    arrays_ = nullptr;
+    ImagePiece& piece = header_.pieces.emplace_back();
+    piece.extent = xml_attribute(tag, "Extent");
+    if (piece.extent.empty()) piece.extent = header_.whole_extent;
+    piece.source = xml_attribute(tag, "Source");
   }
 
-  // Up to the bracket that ends the tag; one in quotes or in a comment does not.
-  std::string inside() {
-    constexpr std::size_t kLongest = 1 << 16;
-    std::string tag;
-    char quote = '\0';
-    while (tag.size() < kLongest && position_ < file_->size()) {
-      const char c = take();
-      const bool comment = tag.starts_with("!--");
-      if (c == '>' && quote == '\0' && (!comment || tag.ends_with("--"))) return tag;
-      if (quote != '\0') {
-        if (c == quote) quote = '\0';
-      } else if (!comment && (c == '"' || c == '\'')) {
-        quote = c;
-      }
-      tag += c;
-    }
-    bad_input(file_->path(), "a complete XML tag", "one that does not end");
+  void begin_arrays(std::string_view tag, bool cells) {
+    if (header_.pieces.empty()) bad_input(header_.path, "a piece of image data before its arrays", "none");
+    arrays_ = cells ? &header_.pieces.back().cells : &header_.pieces.back().points;
+    arrays_->active = xml_attribute(tag, "Scalars");
   }
 
-  FilePtr file_;
-  std::uint64_t position_ = 0;
-  std::uint64_t begin_ = 0;
-  std::size_t filled_ = 0;
-  std::array<std::byte, 64 * 1024> buffer_;
+  // More tags would mean to read through the samples behind the one that is wanted.
+  bool add_array(std::string_view tag) {
+    const VtkArray array = vtk_array(tag, tags_.position(), header_.path);
+    // With several times an array has a tag for each; the first one counts.
+    const bool again = std::any_of(arrays_->all.begin(), arrays_->all.end(),
+                                   [&](const VtkArray& other) { return other.name == array.name; });
+    if (again) return true;
+    arrays_->all.push_back(array);
+    const ImagePiece& piece = header_.pieces.front();
+    return header_.pieces.size() > 1 || arrays_ != &piece.points ||
+           words_of(piece.extent) != words_of(header_.whole_extent) || array.format == VtkArray::Format::kAppended ||
+           !would_choose(arrays_->names(), {array.name, array.components}, wanted_);
+  }
+
+  VtkTags tags_;
+  std::string wanted_;
+  ImageHeader header_;
+  ArrayList* arrays_ = nullptr;  // those that are being read
 };
-
-std::string_view name_of(std::string_view tag) { return tag.substr(0, tag.find_first_of(" \t\r\n/", 1)); }
-
-struct VtiHeader {
-  bool big_endian = false;
-  std::size_t word = 4;             // bytes of the numbers before an array
-  std::optional<BlockForm> blocks;  // of compressed arrays
-  std::string whole_extent;
-  std::string origin;
-  std::string spacing;
-  std::string direction;
-  std::string extent;
-  std::string array;       // the tag of the array that is read
-  std::uint64_t data = 0;  // where its samples begin
-  bool base64 = false;
-  bool text = false;
-};
-
-void take_file(VtiHeader& header, std::string_view tag, const std::string& path) {
-  const std::string type = xml_attribute(tag, "type");
-  if (type != "ImageData") bad_input(path, "VTK XML of type ImageData", quoted(type));
-  header.big_endian = xml_attribute(tag, "byte_order") == "BigEndian";
-  const std::string word = xml_attribute(tag, "header_type");
-  if (!word.empty() && word != "UInt32" && word != "UInt64") {
-    bad_input(path, "header_type UInt32 or UInt64", quoted(word));
-  }
-  header.word = word == "UInt64" ? 8 : 4;
-  const std::string compressor = xml_attribute(tag, "compressor");
-  if (compressor.empty()) return;
-  if (compressor == "vtkZLibDataCompressor") {
-    header.blocks = BlockForm::kZlib;
-  } else if (compressor == "vtkLZ4DataCompressor") {
-    header.blocks = BlockForm::kLz4;
-  } else {
-    bad_input(path, "no compressor, vtkZLibDataCompressor or vtkLZ4DataCompressor", quoted(compressor));
-  }
-}
-
-void take_image(VtiHeader& header, std::string_view tag) {
-  header.whole_extent = xml_attribute(tag, "WholeExtent");
-  header.origin = xml_attribute(tag, "Origin");
-  header.spacing = xml_attribute(tag, "Spacing");
-  header.direction = xml_attribute(tag, "Direction");
-}
-
-std::int64_t components_of(std::string_view array) {
-  const std::string text = xml_attribute(array, "NumberOfComponents");
-  return text.empty() ? 1 : parse_integer(text).value_or(0);
-}
-
-// Picks the active scalars among the arrays of PointData or, where none are active, the first of one component.
-void find_array(VtiHeader& header, TagReader& tags, const std::string& active, const std::string& path) {
-  std::string names;
-  while (true) {
-    const std::string tag = tags.next();
-    if (tag.empty() || name_of(tag) == "/PointData") break;
-    if (name_of(tag) != "DataArray") continue;
-    const std::string name = xml_attribute(tag, "Name");
-    names += (names.empty() ? "" : ", ") + name;
-    if (active.empty() ? components_of(tag) != 1 : name != active) continue;
-    header.array = tag;
-    header.data = tags.position();
-    return;
-  }
-  const std::string wanted = active.empty() ? "a point array of one component" : "the point array " + quoted(active);
-  bad_input(path, wanted, names.empty() ? "none" : names);
-}
-
-void find_appended(VtiHeader& header, TagReader& tags, const FilePtr& file) {
-  const std::string& path = file->path();
-  const auto offset = parse_integer(trimmed(xml_attribute(header.array, "offset")));
-  if (!offset || *offset < 0) bad_input(path, "the offset of an appended array", "none");
-  std::string tag = tags.next();
-  while (!tag.empty() && name_of(tag) != "AppendedData") tag = tags.next();
-  if (tag.empty()) bad_input(path, "an AppendedData section", "none");
-  header.base64 = xml_attribute(tag, "encoding") != "raw";
-  // The samples begin behind the first underscore.
-  constexpr std::size_t kBlanks = 1024;
-  std::string blanks(kBlanks, '\0');
-  blanks.resize(file->read_at(tags.position(), std::as_writable_bytes(std::span(blanks))));
-  const std::size_t first = blanks.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || blanks[first] != '_') {
-    bad_input(path, "'_' before the appended data", "something else");
-  }
-  header.data = tags.position() + first + 1;
-  const std::uint64_t left = file->size() - std::min(header.data, file->size());
-  if (static_cast<std::uint64_t>(*offset) > left) {
-    bad_input(path, "an array " + std::to_string(*offset) + " bytes into the appended data",
-              std::to_string(left) + " bytes of them");
-  }
-  header.data += static_cast<std::uint64_t>(*offset);
-}
-
-void find_data(VtiHeader& header, TagReader& tags, const FilePtr& file) {
-  const std::string format = xml_attribute(header.array, "format");
-  if (format == "appended") {
-    find_appended(header, tags, file);
-  } else if (format == "binary") {
-    header.base64 = true;
-  } else if (format == "ascii") {
-    header.text = true;
-  } else {
-    bad_input(file->path(), "an array of format ascii, binary or appended", quoted(format));
-  }
-}
-
-VtiHeader read_header(const FilePtr& file) {
-  VtiHeader header;
-  TagReader tags(file);
-  for (std::string tag = tags.next(); !tag.empty(); tag = tags.next()) {
-    const std::string_view name = name_of(tag);
-    if (name == "VTKFile") take_file(header, tag, file->path());
-    if (name == "ImageData") take_image(header, tag);
-    if (name == "Piece") header.extent = xml_attribute(tag, "Extent");
-    if (name != "PointData") continue;
-    find_array(header, tags, xml_attribute(tag, "Scalars"), file->path());
-    find_data(header, tags, file);
-    return header;
-  }
-  bad_input(file->path(), "PointData in its image data", "none");
-}
 
 template <std::size_t kCount>
 std::array<double, kCount> numbers_of(const std::string& text, std::string_view what, std::string_view path) {
@@ -208,9 +149,10 @@ std::array<double, kCount> numbers_of(const std::string& text, std::string_view 
   return numbers;
 }
 
-// First and last sample of each axis.
-std::array<std::int64_t, 6> extent_of(const std::string& text, std::string_view path) {
-  std::array<std::int64_t, 6> extent{};
+using Extent = std::array<std::int64_t, 6>;  // first and last point along each axis
+
+Extent extent_of(const std::string& text, std::string_view path) {
+  Extent extent{};
   const std::vector<std::string_view> words = words_of(text);
   constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
   bool sane = words.size() == extent.size();
@@ -223,109 +165,135 @@ std::array<std::int64_t, 6> extent_of(const std::string& text, std::string_view 
   return extent;
 }
 
-void set_place(VolumeInfo& info, const VtiHeader& header) {
-  const auto whole = extent_of(header.whole_extent, info.path);
-  if (extent_of(header.extent.empty() ? header.whole_extent : header.extent, info.path) != whole) {
-    bad_input(info.path, "one piece of the whole extent " + quoted(header.whole_extent), quoted(header.extent));
+// Whether cells lie between points along the axis; where there is one point only, the cells are as flat as the image.
+bool has_cells_between(const Extent& whole, std::size_t axis) { return whole[2 * axis] != whole[2 * axis + 1]; }
+
+// The samples of an extent, counted from the first of the whole one.
+Region box_of(const Extent& extent, const Extent& whole, bool cells) {
+  Region box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.first[axis] = extent[2 * axis] - whole[2 * axis];
+    box.end[axis] = extent[2 * axis + 1] - whole[2 * axis] + (cells && has_cells_between(whole, axis) ? 0 : 1);
   }
-  const auto origin = numbers_of<3>(header.origin.empty() ? "0 0 0" : header.origin, "Origin", info.path);
+  return box;
+}
+
+void set_place(VolumeInfo& info, const ImageHeader& header, const Extent& whole, bool cells) {
   const auto spacing = numbers_of<3>(header.spacing.empty() ? "1 1 1" : header.spacing, "Spacing", info.path);
   const auto direction =
       numbers_of<9>(header.direction.empty() ? "1 0 0 0 1 0 0 0 1" : header.direction, "Direction", info.path);
   Axes axes;
-  axes.origin = origin;
+  axes.origin = numbers_of<3>(header.origin.empty() ? "0 0 0" : header.origin, "Origin", info.path);
+  info.dims = box_of(whole, whole, cells).end;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    info.dims[axis] = whole[2 * axis + 1] - whole[2 * axis] + 1;
+    const double half = cells && has_cells_between(whole, axis) ? 0.5 : 0;
     for (std::size_t row = 0; row < 3; ++row) {
       axes.steps[axis][row] = direction[3 * row + axis] * spacing[axis];
-      axes.origin[row] += axes.steps[axis][row] * static_cast<double>(whole[2 * axis]);
+      axes.origin[row] += axes.steps[axis][row] * (static_cast<double>(whole[2 * axis]) + half);
     }
   }
   set_geometry(info.geometry, axes, info.path);
 }
 
-SampleType sample_type_of(std::string_view array, std::string_view path) {
-  const std::string name = xml_attribute(array, "type");
-  const auto type = parse_sample_type(lower_case(name));
-  if (!type) bad_input(path, "an array of 8 to 32 bit integers, Float32 or Float64", quoted(name));
-  if (components_of(array) != 1) {
-    bad_input(path, "one component per sample",
-              xml_attribute(array, "NumberOfComponents") + " in " + quoted(xml_attribute(array, "Name")));
-  }
+bool is_bits(const VtkArray& array) { return array.type == "Bit"; }
+
+SampleType sample_type_of(const VtkArray& array, std::string_view path) {
+  const auto type = is_bits(array) ? SampleType::kUint8 : parse_sample_type(lower_case(array.type));
+  if (!type) bad_input(path, "an array of integers of 8 bits or more, Bit, Float32 or Float64", quoted(array.type));
   return *type;
 }
 
-// The numbers before an array.
-class WordReader {
- public:
-  WordReader(ByteStream& stream, const VtiHeader& header, std::string_view path)
-      : stream_(stream), header_(header), path_(path) {}
-
-  std::uint64_t next() {
-    std::array<std::byte, 8> raw{};
-    const std::span<std::byte> word = std::span(raw).first(header_.word);
-    if (stream_.read(word) < word.size()) bad_input(path_, "the sizes before an array", "the end of the data");
-    if (!header_.big_endian) std::reverse(word.begin(), word.end());
-    std::uint64_t value = 0;
-    for (const std::byte byte : word) value = value << 8 | std::to_integer<std::uint64_t>(byte);
-    return value;
+PieceSamples open_samples(const ImageHeader& header, const VtkArray& array, std::uint64_t samples) {
+  const FilePtr file = header.file ? header.file : open_file(header.path);
+  const SampleType type = sample_type_of(array, header.path);
+  if (array.is_text()) {
+    const std::uint64_t begin = vtk_array_begin(*file, array, header.appended);
+    // A digit and a blank for each sample.
+    check_plausible(header.path, 2 * samples, file->size() - std::min(begin, file->size()) + 1, 1);
+    auto text = std::make_unique<FileStream>(file, begin, file->size());
+    return {std::make_unique<NumberStream>(std::move(text), type, samples, header.path)};
   }
-
- private:
-  ByteStream& stream_;
-  const VtiHeader& header_;
-  std::string_view path_;
-};
-
-BlockSizes read_block_sizes(ByteStream& stream, const VtiHeader& header, const FilePtr& file, std::uint64_t bytes) {
-  WordReader words(stream, header, file->path());
-  const std::uint64_t blocks = words.next();
-  BlockSizes sizes;
-  sizes.block = words.next();
-  sizes.last = words.next();
-  const std::uint64_t left = file->size() - header.data;
-  const std::uint64_t full = blocks - (sizes.last > 0 && blocks > 0 ? 1 : 0);
-  std::uint64_t total = 0;
-  const bool wrong = blocks > left / header.word || sizes.last > bytes ||
-                     __builtin_mul_overflow(full, sizes.block, &total) || total != bytes - sizes.last ||
-                     (full > 0 && sizes.block == 0);
-  if (wrong) {
-    bad_input(
-        file->path(), "compressed blocks of " + std::to_string(bytes) + " bytes in all",
-        std::to_string(blocks) + " of " + std::to_string(sizes.block) + ", the last of " + std::to_string(sizes.last));
+  if (is_bits(array)) {
+    constexpr std::uint64_t kBits = 8;
+    auto bytes = open_vtk_array(file, header.form, array, header.appended, (samples + kBits - 1) / kBits);
+    return {std::make_unique<BitStream>(std::move(bytes), samples)};
   }
-  std::uint64_t stored = 0;
-  for (std::uint64_t n = 0; n < blocks; ++n) {
-    sizes.stored.push_back(words.next());
-    if (sizes.stored.back() > left - stored) {
-      bad_input(file->path(), "compressed blocks within " + std::to_string(left) + " bytes",
-                std::to_string(sizes.stored.back()) + " bytes in block " + std::to_string(n));
-    }
-    stored += sizes.stored.back();
-  }
-  return sizes;
+  const bool swap = header.form.big_endian != (std::endian::native == std::endian::big);
+  return {open_vtk_array(file, header.form, array, header.appended, samples * sample_bytes(type)), swap};
 }
 
-std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const VtiHeader& header, SampleType type,
-                                       std::uint64_t bytes) {
-  const std::string& path = file->path();
-  const std::uint64_t left = file->size() - std::min(header.data, file->size());
-  std::unique_ptr<ByteStream> stream = std::make_unique<FileStream>(file, header.data, file->size());
-  if (header.text) {
-    // A digit and a blank for each sample.
-    const std::uint64_t samples = bytes / sample_bytes(type);
-    check_plausible(path, 2 * samples, left + 1, 1);
-    return std::make_unique<NumberStream>(std::move(stream), type, samples, path);
+std::uint64_t samples_in(const Region& box) {
+  std::uint64_t samples = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    samples *= static_cast<std::uint64_t>(std::max<std::int64_t>(box.end[axis] - box.first[axis], 0));
   }
-  if (header.base64) stream = std::make_unique<Base64Stream>(std::move(stream), path);
-  check_plausible(path, bytes, left, header.blocks ? kDeflateRatio : 1);
-  if (header.blocks) {
-    BlockSizes sizes = read_block_sizes(*stream, header, file, bytes);
-    return std::make_unique<BlockStream>(std::move(stream), *header.blocks, std::move(sizes), path);
+  return samples;
+}
+
+// Opens the array of the piece that is like the one that was chosen.
+VolumePiece piece_of(const std::shared_ptr<const ImageHeader>& header, const ImagePiece& piece, const Region& box,
+                     bool cells, const VtkArray& like) {
+  const std::vector<VtkArray>& all = (cells ? piece.cells : piece.points).all;
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const VtkArray& array) { return array.name == like.name; });
+  if (samples_in(box) > 0 && (found == all.end() || found->type != like.type || found->components != 1)) {
+    bad_input(header->path, "the array " + quoted(like.name) + " of type " + like.type + " in each piece",
+              "a piece without");
   }
-  const std::uint64_t said = WordReader(*stream, header, path).next();
-  if (said != bytes) bad_input(path, std::to_string(bytes) + " bytes in the array", std::to_string(said));
-  return stream;
+  if (samples_in(box) == 0) return {box};
+  return {box, [header, array = *found, box] { return open_samples(*header, array, samples_in(box)); }};
+}
+
+using Headers = std::vector<std::shared_ptr<const ImageHeader>>;
+
+// The headers of the files with pieces: the file itself, or those that it names.
+Headers piece_headers(const std::shared_ptr<const ImageHeader>& header, const OpenOptions& options) {
+  if (header->form.type == "ImageData") return {header};
+  Headers headers;
+  for (const ImagePiece& piece : header->pieces) {
+    if (!options.external) bad_input(header->path, "a volume in one file", "one that names " + quoted(piece.source));
+    if (piece.source.empty()) bad_input(header->path, "a file as Source of each piece", "none");
+    const std::string path = listed_files(header->path, {piece.source}).name(0);
+    auto source = std::make_shared<ImageHeader>(HeaderReader(open_file(path), options.dataset).read());
+    if (source->form.type != "ImageData") bad_input(source->path, "VTK XML of type ImageData", source->form.type);
+    // A file for each of many pieces would be more than a process may have open.
+    source->file.reset();
+    headers.push_back(std::move(source));
+  }
+  return headers;
+}
+
+std::uint64_t stored_bytes(const Headers& headers) {
+  std::uint64_t bytes = 0;
+  for (const auto& header : headers) bytes += (header->file ? header->file : open_file(header->path))->size();
+  return bytes;
+}
+
+bool has_samples(const ImagePiece& piece, std::string_view path) {
+  const Extent extent = extent_of(piece.extent, path);
+  return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
+}
+
+const ImagePiece& first_with_samples(const Headers& headers, std::string_view path) {
+  for (const auto& header : headers) {
+    for (const ImagePiece& piece : header->pieces) {
+      if (has_samples(piece, header->path)) return piece;
+    }
+  }
+  bad_input(path, "a piece with samples", "none");
+}
+
+// Puts the samples of all pieces together; of one that has them all they are the stream itself.
+void open_pieces(OpenedVolume& volume, std::vector<VolumePiece> pieces) {
+  pieces = filling_pieces(std::move(pieces), volume.info.dims, volume.info.path);
+  if (pieces.size() == 1) {
+    PieceSamples samples = pieces.front().open();
+    volume.samples = std::move(samples.stream);
+    volume.swap_bytes = samples.swap_bytes;
+    return;
+  }
+  volume.samples = std::make_unique<PieceStream>(std::move(pieces), volume.info.dims, sample_bytes(volume.info.type),
+                                                 volume.info.path);
 }
 
 }  // namespace
@@ -336,17 +304,36 @@ bool is_vti(std::string_view head) {
   return tag != std::string_view::npos && trimmed(head).starts_with('<');
 }
 
-OpenedVolume open_vti(const FilePtr& file) {
-  const VtiHeader header = read_header(file);
+OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options) {
+  const auto header = std::make_shared<const ImageHeader>(HeaderReader(file, options.dataset).read());
+  const Headers headers = piece_headers(header, options);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "vti";
-  info.type = sample_type_of(header.array, info.path);
-  set_place(info, header);
-  const std::uint64_t bytes = checked_volume_bytes(info);
-  volume.samples = samples_of(file, header, info.type, bytes);
-  volume.swap_bytes = !header.text && header.big_endian != (std::endian::native == std::endian::big);
+  const ImagePiece& first = first_with_samples(headers, info.path);
+  const VtkArrayNames points = first.points.names();
+  const VtkArrayNames cells = first.cells.names();
+  const VtkChoice choice = choose_vtk_array(points, cells, options.dataset, info.path);
+  note_vtk_choice(info, points, cells, choice);
+  if (header->times > 1) {
+    info.notes.emplace_back("the first of " + std::to_string(header->times) + " times is read");
+  }
+  const VtkArray& like = (choice.cells ? first.cells : first.points).all[choice.array];
+  info.type = sample_type_of(like, info.path);
+  const Extent whole = extent_of(header->whole_extent, info.path);
+  ImageHeader place = *header;
+  if (place.direction.empty()) place.direction = headers.front()->direction;
+  set_place(info, place, whole, choice.cells);
+  check_plausible(info.path, checked_volume_bytes(info), stored_bytes(headers), kLargestRatio);
+  std::vector<VolumePiece> pieces;
+  for (const auto& source : headers) {
+    for (const ImagePiece& piece : source->pieces) {
+      pieces.push_back(piece_of(source, piece, box_of(extent_of(piece.extent, source->path), whole, choice.cells),
+                                choice.cells, like));
+    }
+  }
+  open_pieces(volume, std::move(pieces));
   return volume;
 }
 

@@ -1,25 +1,27 @@
-// Legacy VTK files with structured points: lines of text, then one array in text or in binary with the most significant
-// byte first.
+// Volumes in legacy VTK files: structured points, and rectilinear grids whose coordinates are evenly spaced.
 #include <bit>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
 #include "volume/printable.hpp"
+#include "volume/samples.hpp"
+#include "volume/vtk_legacy_file.hpp"
 #include "volume/vtk_streams.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr std::string_view kMagic = "# vtk DataFile Version";
-
 struct LegacyHeader {
-  bool text = false;
-  std::map<std::string, std::string, std::less<>> fields;  // by keyword in capitals: the rest of its line
-  std::uint64_t data = 0;
+  std::map<std::string, std::string, std::less<>> fields;  // by keyword: the rest of its line
+  std::array<std::optional<LegacyArray>, 3> coordinates;   // of rectilinear grids
 
   const std::string& get(std::string_view key, const std::string& path) const {
     const auto found = fields.find(key);
@@ -28,122 +30,200 @@ struct LegacyHeader {
   }
 };
 
-std::string upper_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return result;
+// "X_COORDINATES count type"
+void take_coordinates(LegacyHeader& header, LegacyFile& file, const std::vector<std::string>& words) {
+  const auto axis = static_cast<std::size_t>(legacy_key(words).front() - 'X');
+  if (words.size() != 3) bad_input(file.path(), "a count and a type behind " + quoted(words[0]), "others");
+  header.coordinates.at(axis) = file.array_here(words[0], words[2], 1, file.count_of(words, 1));
+  file.skip(*header.coordinates.at(axis));
 }
 
-std::string next_line(LineReader& lines, const std::string& path) {
-  const auto line = lines.next();
-  if (!line || !lines.ended()) bad_input(path, "a header up to SCALARS and LOOKUP_TABLE", "its end missing");
-  return std::string(trimmed(*line));
+void check_kind(const LegacyFile& file, const std::vector<std::string>& words) {
+  const std::string kind = words.size() < 2 ? "" : legacy_key({words[1]});
+  if (kind == "STRUCTURED_POINTS" || kind == "RECTILINEAR_GRID") return;
+  bad_input(file.path(), "DATASET STRUCTURED_POINTS or RECTILINEAR_GRID of a volume", quoted(kind));
 }
 
-LegacyHeader read_header(const FilePtr& file) {
-  const std::string& path = file->path();
-  const std::string head = file->head(kLargestHeader);
-  LineReader lines(head);
-  next_line(lines, path);
-  next_line(lines, path);
+// Stops at the scalars of the points, which are what is read, if nothing else is wanted.
+LegacyHeader read_header(LegacyFile& file, const std::string& wanted) {
   LegacyHeader header;
-  const std::string form = upper_case(next_line(lines, path));
-  if (form != "ASCII" && form != "BINARY") bad_input(path, "ASCII or BINARY in the third line", quoted(form));
-  header.text = form == "ASCII";
-  while (!header.fields.contains("LOOKUP_TABLE")) {
-    const std::string line = next_line(lines, path);
-    if (line.empty()) continue;
-    const std::string key = upper_case(line.substr(0, line.find(' ')));
-    if (key == "FIELD" || key == "CELL_DATA" || key == "VECTORS" || key == "COLOR_SCALARS") {
-      bad_input(path, "SCALARS as the first array of POINT_DATA", quoted(key));
+  for (auto words = file.next_words(); !words.empty(); words = file.next_words()) {
+    const std::string key = legacy_key(words);
+    if (key == "DATASET") check_kind(file, words);
+    if (key == "X_COORDINATES" || key == "Y_COORDINATES" || key == "Z_COORDINATES") {
+      take_coordinates(header, file, words);
+    } else if (!file.take_arrays(words)) {
+      std::string& rest = header.fields[key];
+      rest.clear();
+      for (std::size_t n = 1; n < words.size(); ++n) rest += (n > 1 ? " " : "") + words[n];
     }
-    header.fields[key] = std::string(trimmed(std::string_view(line).substr(std::min(key.size(), line.size()))));
+    if (wanted.empty() && !file.points.names().active.empty()) break;
   }
-  header.data = lines.position();
   return header;
 }
 
-std::vector<double> numbers_of(const std::string& text, std::string_view what, const std::string& path) {
-  std::vector<double> numbers;
-  for (const std::string_view word : words_of(text)) {
-    const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers as " + std::string(what), quoted(word));
-    numbers.push_back(*number);
+std::array<double, 3> numbers_of(const std::string& text, std::string_view what, const std::string& path) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.size() != 3) bad_input(path, "3 numbers as " + std::string(what), quoted(text));
+  std::array<double, 3> numbers{};
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const auto number = parse_double(words[n]);
+    if (!number) bad_input(path, "numbers as " + std::string(what), quoted(words[n]));
+    numbers[n] = *number;
   }
-  if (numbers.size() != 3) bad_input(path, "3 numbers as " + std::string(what), quoted(text));
   return numbers;
 }
 
-void set_place(VolumeInfo& info, const LegacyHeader& header) {
-  const std::string& set = header.get("DATASET", info.path);
-  if (upper_case(set) != "STRUCTURED_POINTS") bad_input(info.path, "DATASET STRUCTURED_POINTS", quoted(set));
-  const std::vector<std::string_view> sides = words_of(header.get("DIMENSIONS", info.path));
+SampleType sample_type_of(const LegacyArray& array, std::string_view path) {
+  const auto type = array.type == "Bit" ? SampleType::kUint8 : parse_sample_type(lower_case(array.type));
+  if (!type) bad_input(path, "numbers in the array " + quoted(array.name), quoted(array.type));
+  return *type;
+}
+
+// Colours in text as their bytes.
+class ColourStream final : public ByteStream {
+ public:
+  explicit ColourStream(std::unique_ptr<ByteStream> parts) : parts_(std::move(parts)) {}
+
+  std::size_t read(std::span<std::byte> out) override {
+    constexpr double kWhole = 255;
+    std::size_t done = 0;
+    double part = 0;
+    for (; done < out.size() && parts_->read(std::as_writable_bytes(std::span(&part, 1))) == sizeof(part); ++done) {
+      const double colour = std::round(part * kWhole);
+      out[done] = static_cast<std::byte>(colour > 0 ? std::min(colour, kWhole) : 0.0);
+    }
+    return done;
+  }
+
+ private:
+  std::unique_ptr<ByteStream> parts_;  // float64
+};
+
+// The samples as they are stored, after their number was compared with the file.
+std::unique_ptr<ByteStream> open_samples(const LegacyFile& file, const LegacyArray& array, SampleType type) {
+  const FilePtr& input = file.file();
+  const std::uint64_t samples = array.numbers();
+  const std::uint64_t left = input->size() - std::min(array.at, input->size());
+  if (file.is_text()) {
+    // A digit and a blank for each sample.
+    check_plausible(file.path(), 2 * samples, left + 1, 1);
+    auto text = std::make_unique<FileStream>(input, array.at, input->size());
+    const SampleType read = array.is_colours ? SampleType::kFloat64 : type;
+    auto numbers = std::make_unique<NumberStream>(std::move(text), read, samples, file.path());
+    if (!array.is_colours) return numbers;
+    return std::make_unique<ColourStream>(std::move(numbers));
+  }
+  constexpr std::uint64_t kBits = 8;
+  const bool bits = array.type == "Bit";
+  const std::uint64_t bytes = bits ? (samples + kBits - 1) / kBits : samples * sample_bytes(type);
+  if (left < bytes) bad_input(file.path(), std::to_string(bytes) + " bytes of samples", std::to_string(left));
+  auto stored = std::make_unique<FileStream>(input, array.at, array.at + bytes);
+  if (!bits) return stored;
+  return std::make_unique<BitStream>(std::move(stored), samples);
+}
+
+std::vector<double> coordinates_of(const LegacyFile& file, const LegacyArray& array) {
+  constexpr std::uint64_t kMost = 1 << 24;
+  const SampleType type = file.is_text() ? SampleType::kFloat64 : sample_type_of(array, file.path());
+  if (array.tuples > kMost) bad_input(file.path(), "at most 2^24 coordinates", std::to_string(array.tuples));
+  const auto stream = open_samples(file, array, type);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(array.tuples) * sample_bytes(type));
+  if (stream->read(bytes) < bytes.size()) bad_input(file.path(), "all coordinates", "the end of the file");
+  if (!file.is_text() && std::endian::native == std::endian::little) swap_sample_bytes(bytes, sample_bytes(type));
+  std::vector<double> coordinates;
+  visit_sample_type(type, [&]<class Sample>() {
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Sample)) {
+      Sample sample;
+      std::memcpy(&sample, bytes.data() + at, sizeof(Sample));
+      coordinates.push_back(static_cast<double>(sample));
+    }
+  });
+  return coordinates;
+}
+
+// First coordinate and step. Throws BadInput when one lies farther than a hundredth of a step from where even ones do.
+std::pair<double, double> even_axis(const std::vector<double>& coordinates, char axis, const std::string& path) {
+  if (coordinates.size() < 2) return {coordinates.at(0), 1};
+  const double first = coordinates.front();
+  const double step = (coordinates.back() - first) / static_cast<double>(coordinates.size() - 1);
+  for (std::size_t n = 0; n < coordinates.size(); ++n) {
+    const double even = first + step * static_cast<double>(n);
+    if (std::abs(coordinates[n] - even) <= std::abs(step) / 100) continue;
+    bad_input(path,
+              std::string("evenly spaced ") + axis + "_COORDINATES, " + number_text(even) + " at " + std::to_string(n),
+              number_text(coordinates[n]));
+  }
+  return {first, step};
+}
+
+void set_even_axes(Axes& axes, VolumeInfo& info, const LegacyHeader& header, const LegacyFile& file) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const char name = static_cast<char>('X' + axis);
+    const auto& array = header.coordinates.at(axis);
+    if (!array || array->tuples != static_cast<std::uint64_t>(info.dims[axis])) {
+      bad_input(info.path, std::to_string(info.dims[axis]) + std::string(" ") + name + "_COORDINATES",
+                array ? std::to_string(array->tuples) : "none");
+    }
+    if (info.dims[axis] == 1) info.notes.push_back(std::string("one ") + name + " coordinate: the spacing there is 1");
+    std::tie(axes.origin[axis], axes.steps[axis][axis]) = even_axis(coordinates_of(file, *array), name, info.path);
+  }
+}
+
+void set_dimensions(VolumeInfo& info, const LegacyHeader& header) {
+  const std::string& text = header.get("DIMENSIONS", info.path);
+  const std::vector<std::string_view> sides = words_of(text);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto side = sides.size() == 3 ? parse_integer(sides[axis]) : std::nullopt;
-    if (!side) bad_input(info.path, "3 whole numbers as DIMENSIONS", quoted(header.get("DIMENSIONS", info.path)));
+    if (!side || *side < 1) bad_input(info.path, "3 whole numbers as DIMENSIONS", quoted(text));
     info.dims[axis] = *side;
   }
-  // Version 1 had the name of the spacing.
-  const bool old = !header.fields.contains("SPACING") && header.fields.contains("ASPECT_RATIO");
-  const auto spacing = numbers_of(header.get(old ? "ASPECT_RATIO" : "SPACING", info.path), "SPACING", info.path);
-  const auto origin = numbers_of(header.get("ORIGIN", info.path), "ORIGIN", info.path);
+}
+
+// Samples of cells lie between the points; where there is one point only along an axis, in it.
+void set_place(VolumeInfo& info, const LegacyHeader& header, const LegacyFile& file, bool cells) {
+  set_dimensions(info, header);
   Axes axes;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    axes.steps[axis][axis] = spacing[axis];
-    axes.origin[axis] = origin[axis];
+  if (legacy_key({header.get("DATASET", info.path)}) == "STRUCTURED_POINTS") {
+    // Version 1 had the name of the spacing.
+    const bool old = !header.fields.contains("SPACING") && header.fields.contains("ASPECT_RATIO");
+    const auto spacing = numbers_of(header.get(old ? "ASPECT_RATIO" : "SPACING", info.path), "SPACING", info.path);
+    axes.origin = numbers_of(header.get("ORIGIN", info.path), "ORIGIN", info.path);
+    for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][axis] = spacing[axis];
+  } else {
+    set_even_axes(axes, info, header, file);
+  }
+  for (std::size_t axis = 0; cells && axis < 3; ++axis) {
+    if (info.dims[axis] == 1) continue;
+    --info.dims[axis];
+    axes.origin[axis] += axes.steps[axis][axis] / 2;
   }
   set_geometry(info.geometry, axes, info.path);
 }
 
-// "name type [components]"
-SampleType sample_type_of(const std::string& scalars, std::string_view path) {
-  static const std::map<std::string, SampleType, std::less<>> kTypes{{"char", SampleType::kInt8},
-                                                                     {"signed_char", SampleType::kInt8},
-                                                                     {"unsigned_char", SampleType::kUint8},
-                                                                     {"short", SampleType::kInt16},
-                                                                     {"unsigned_short", SampleType::kUint16},
-                                                                     {"int", SampleType::kInt32},
-                                                                     {"unsigned_int", SampleType::kUint32},
-                                                                     {"float", SampleType::kFloat32},
-                                                                     {"double", SampleType::kFloat64}};
-  const std::vector<std::string_view> words = words_of(scalars);
-  const auto found = words.size() < 2 ? kTypes.end() : kTypes.find(lower_case(words[1]));
-  if (found == kTypes.end()) bad_input(path, "SCALARS of char to int, float or double", quoted(scalars));
-  if (words.size() > 2 && words[2] != "1") bad_input(path, "one component per sample", quoted(words[2]));
-  return found->second;
-}
-
 }  // namespace
 
-bool is_vtk_legacy(std::string_view head) { return head.starts_with(kMagic); }
-
-OpenedVolume open_vtk_legacy(const FilePtr& file) {
-  const LegacyHeader header = read_header(file);
+OpenedVolume open_vtk_legacy(const FilePtr& input, const OpenOptions& options) {
+  LegacyFile file(input);
+  const LegacyHeader header = read_header(file, options.dataset);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
-  info.path = file->path();
+  info.path = input->path();
   info.format = "vtk";
-  set_place(info, header);
-  info.type = sample_type_of(header.get("SCALARS", info.path), info.path);
-  const std::uint64_t bytes = checked_volume_bytes(info);
-  const std::uint64_t samples = bytes / sample_bytes(info.type);
-  const auto points = parse_integer(header.get("POINT_DATA", info.path));
-  if (!points || static_cast<std::uint64_t>(*points) != samples) {
-    bad_input(info.path, "POINT_DATA " + std::to_string(samples), quoted(header.get("POINT_DATA", info.path)));
+  const VtkArrayNames points = file.points.names();
+  const VtkArrayNames cells = file.cells.names();
+  const VtkChoice choice = choose_vtk_array(points, cells, options.dataset, info.path);
+  set_place(info, header, file, choice.cells);
+  note_vtk_choice(info, points, cells, choice);
+  const LegacyArray& array = (choice.cells ? file.cells : file.points).all[choice.array];
+  info.type = sample_type_of(array, info.path);
+  const std::uint64_t samples = checked_volume_bytes(info) / sample_bytes(info.type);
+  if (array.tuples != samples) {
+    bad_input(info.path, std::to_string(samples) + " samples in the array " + quoted(array.name),
+              std::to_string(array.tuples));
   }
-  const std::uint64_t left = file->size() - header.data;
-  if (header.text) {
-    // A digit and a blank for each sample.
-    check_plausible(info.path, 2 * samples, left + 1, 1);
-    auto text = std::make_unique<FileStream>(file, header.data, file->size());
-    volume.samples = std::make_unique<NumberStream>(std::move(text), info.type, samples, info.path);
-    return volume;
-  }
-  if (left < bytes) bad_input(info.path, std::to_string(bytes) + " bytes of samples", std::to_string(left));
-  volume.samples = std::make_unique<FileStream>(file, header.data, header.data + bytes);
-  volume.swap_bytes = std::endian::native == std::endian::little;
+  volume.samples = open_samples(file, array, info.type);
+  volume.swap_bytes = !file.is_text() && std::endian::native == std::endian::little;
   return volume;
 }
 

@@ -66,6 +66,20 @@ std::size_t Base64Stream::read(std::span<std::byte> out) {
   return done;
 }
 
+std::size_t BitStream::read(std::span<std::byte> out) {
+  constexpr unsigned kBits = 8;
+  std::size_t done = 0;
+  for (; done < out.size() && left_ > 0; ++done, --left_) {
+    if (bits_ == 0) {
+      if (bytes_->read({&byte_, 1}) == 0) break;
+      bits_ = kBits;
+    }
+    --bits_;
+    out[done] = byte_ >> bits_ & std::byte{1};
+  }
+  return done;
+}
+
 void BlockStream::enter_block() {
   const bool last = next_ + 1 == sizes_.stored.size() && sizes_.last > 0;
   left_ = last ? sizes_.last : sizes_.block;
@@ -73,6 +87,8 @@ void BlockStream::enter_block() {
   auto part = std::make_unique<PartStream>(input_, stored);
   if (form_ == BlockForm::kLz4) {
     block_ = open_lz4_block(std::move(part), stored, left_, path_);
+  } else if (form_ == BlockForm::kLzma) {
+    block_ = open_lzma_block(std::move(part), stored, left_, path_);
   } else {
     block_ = std::make_unique<InflateStream>(std::move(part), path_);
   }

@@ -31,6 +31,20 @@ class Base64Stream final : public ByteStream {
   std::size_t size_ = 0;
 };
 
+// Bits, the most significant of a byte first, as `count` samples of one byte each.
+class BitStream final : public ByteStream {
+ public:
+  BitStream(std::unique_ptr<ByteStream> bytes, std::uint64_t count) : bytes_(std::move(bytes)), left_(count) {}
+
+  std::size_t read(std::span<std::byte> out) override;
+
+ private:
+  std::unique_ptr<ByteStream> bytes_;
+  std::uint64_t left_;  // samples
+  std::byte byte_{};
+  unsigned bits_ = 0;  // of the byte, not handed out yet
+};
+
 // Sizes of compressed blocks, as the header before them has them.
 struct BlockSizes {
   std::uint64_t block = 0;  // bytes of every block but the last, once inflated
@@ -38,12 +52,19 @@ struct BlockSizes {
   std::vector<std::uint64_t> stored;
 };
 
-enum class BlockForm { kZlib, kLz4 };
+enum class BlockForm { kZlib, kLz4, kLzma };
 
 // One LZ4 block of `stored` bytes that gives `bytes`, decoded whole when it is first read. Throws BadInput when a block
 // of that size cannot give so many, or does not.
 std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream> input, std::uint64_t stored, std::uint64_t bytes,
                                            const std::string& path);
+
+// The same for a block in LZMA.
+std::unique_ptr<ByteStream> open_lzma_block(std::unique_ptr<ByteStream> input, std::uint64_t stored,
+                                            std::uint64_t bytes, const std::string& path);
+
+// Of a long run of one byte LZMA keeps about a bit per 900 bytes.
+inline constexpr std::uint64_t kLzmaRatio = 8192;
 
 // Compressed blocks one after another.
 class BlockStream final : public ByteStream {

@@ -87,13 +87,13 @@ TEST(Vti, TakesActiveScalarsOrTheFirstOfOneComponent) {
   form.scalars = "a";
   EXPECT_EQ(read_file<std::int16_t>(folder.put("a.vti", whole(form))), kSamples);
   form.scalars = "v";
-  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one component per sample, found 3 in 'v'"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one component per sample in 'v', found v (3 components)"));
   form.scalars = "b";
-  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected the point array 'b', found v, a"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected the active array 'b', found v (3 components), a"));
   form.scalars.clear();
   form.attributes += " NumberOfComponents=\"2\"";
   EXPECT_TRUE(
-      contains(refusal(folder.put("a.vti", whole(form))), "expected a point array of one component, found v, a"));
+      contains(refusal(folder.put("a.vti", whole(form))), "expected an array of one component, found v (3 components), a (2 components)"));
 }
 
 TEST(Vti, TakesOriginSpacingDirectionAndExtent) {
@@ -109,7 +109,7 @@ TEST(Vti, TakesOriginSpacingDirectionAndExtent) {
   EXPECT_EQ(geometry.origin, (std::array<double, 3>{103, 204, 340}));
   EXPECT_EQ(geometry.space, Space::kUnknown);
   form.extent = "2 5 -1 1 10 12";
-  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one piece of the whole extent"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "none for 0 to 3, 0 to 2, 3 to 4"));
 }
 
 TEST(Vti, RefusesWhatItDoesNotRead) {
@@ -123,12 +123,12 @@ TEST(Vti, RefusesWhatItDoesNotRead) {
   VtiForm packed;
   packed.block = 50;
   EXPECT_TRUE(contains(with("ImageData\"", "PolyData\""), "expected VTK XML of type ImageData, found 'PolyData'"));
-  EXPECT_TRUE(contains(with("vtkZLib", "vtkLZMA", packed), "found 'vtkLZMADataCompressor'"));
+  EXPECT_TRUE(contains(with("vtkZLib", "vtkOdd", packed), "found 'vtkOddDataCompressor'"));
   EXPECT_TRUE(contains(with("type=\"Int16\"", "type=\"Int64\""), "found 'Int64'"));
   EXPECT_TRUE(contains(with("format=\"binary\"", "format=\"odd\""), "found 'odd'"));
   EXPECT_TRUE(contains(with("Extent=\"0 3", "Extent=\"0 x"), "six whole numbers as an extent"));
   EXPECT_TRUE(contains(with("Spacing=\"1 1 1\"", "Spacing=\"1 1\""), "3 numbers as Spacing"));
-  EXPECT_TRUE(contains(with("PointData ", "CellData "), "expected PointData"));
+  EXPECT_TRUE(contains(with("PointData ", "CellData "), "expected 48 bytes in the array, found 120"));
   EXPECT_TRUE(contains(refusal(folder.put("b.vti", "hello")), "<VTKFile type=\"ImageData\">"));
 }
 
@@ -199,13 +199,12 @@ TEST(VtkLegacy, RefusesWhatItDoesNotRead) {
   const TempFolder folder;
   const auto with = [&](const std::string& header) { return refusal(folder.put("a.vtk", header + stored(kSamples))); };
   EXPECT_TRUE(contains(with(legacy("OCTAL")), "ASCII or BINARY"));
-  EXPECT_TRUE(contains(with(legacy("BINARY", "long")), "found 's long 1'"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "complex")), "a type of VTK, found 'complex'"));
   EXPECT_TRUE(contains(with(legacy("BINARY", "double")), "expected 480 bytes of samples, found 120"));
   EXPECT_TRUE(contains(with(legacy("ASCII")), "expected numbers of type int16"));
   EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DATASET POLYDATA\n")), "DATASET STRUCTURED_POINTS"));
   EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3\n")), "3 whole numbers as DIMENSIONS"));
-  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3 6\n")), "expected POINT_DATA 72, found '60'"));
-  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "CELL_DATA 24\n")), "SCALARS as the first array"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3 6\n")), "expected 72 samples in the array 's', found 60"));
   EXPECT_TRUE(contains(refusal(folder.put("b.vtk", "hello")), "# vtk DataFile Version"));
 }
 
