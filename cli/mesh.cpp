@@ -1,6 +1,7 @@
 // isoweave mesh: volume in, simplified surface out.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -134,10 +135,11 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, Sli
 // One run, step by step.
 class MeshJob {
  public:
-  // resume: a saved state to go on from, or null.
-  MeshJob(const MeshArguments& arguments, const Checkpoint* resume)
+  // resume: a saved state to go on from, or null. lock: of its folder, or null.
+  MeshJob(const MeshArguments& arguments, const Checkpoint* resume, const CheckpointLock* lock)
       : arguments_(arguments),
         resume_(resume),
+        lock_(lock),
         rule_(component_rule(arguments.components)),
         outputs_(level_outputs(arguments.output, arguments.stop)),
         options_(mesh_options(arguments)),
@@ -233,8 +235,9 @@ class MeshJob {
     if (resume_ != nullptr && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
     if (arguments_.checkpoint.empty()) return;
     parse_every(arguments_.every, control_.checkpoint);
-    if (resume_ == nullptr) make_checkpoint_folder(arguments_.checkpoint);
+    if (resume_ == nullptr) lock_ = &own_lock_.emplace(make_checkpoint_folder(arguments_.checkpoint));
     control_.checkpoint.folder = arguments_.checkpoint;
+    control_.checkpoint.lock = lock_;
     control_.checkpoint.note = task_json(arguments_, options_).dump();
   }
 
@@ -304,6 +307,8 @@ class MeshJob {
 
   const MeshArguments& arguments_;
   const Checkpoint* resume_;
+  const CheckpointLock* lock_;
+  std::optional<CheckpointLock> own_lock_;  // of a run that begins
   const ComponentRule rule_;
   const std::vector<OutputOptions> outputs_;
   MeshOptions options_;
@@ -325,12 +330,15 @@ void run_mesh(MeshArguments arguments) {
     // What lies between two labels is none of them.
     const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
     if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
-    return MeshJob(arguments, nullptr).run();
+    return MeshJob(arguments, nullptr, nullptr).run();
   }
+  // What is no folder has nothing to lock, and no state.
+  std::optional<CheckpointLock> lock;
+  if (std::filesystem::is_directory(arguments.resume)) lock.emplace(arguments.resume);
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);
   arguments = resumed_arguments(arguments, checkpoint);
   if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
-  MeshJob(arguments, &checkpoint).run();
+  MeshJob(arguments, &checkpoint, &*lock).run();
 }
 
 // The task of a run that goes on is known; how it runs may be said anew.

@@ -113,15 +113,17 @@ void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
   }
 }
 
-void make_checkpoint_folder(const std::string& folder) {
+CheckpointLock make_checkpoint_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
+  CheckpointLock lock(folder);
   const std::filesystem::path path(folder);
   if (std::filesystem::exists(path / "state-0") || std::filesystem::exists(path / "state-1")) {
     throw CannotWrite(
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
+  return lock;
 }
 
 void make_part_folder(const std::string& folder) {

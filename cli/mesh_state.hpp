@@ -23,8 +23,8 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
 // "16layers", "90s", "5min" or "2h".
 void parse_every(std::string_view text, CheckpointOptions& checkpoint);
 
-// Makes the folder for the states of a new run. Another run's are never overwritten.
-void make_checkpoint_folder(const std::string& folder);
+// Makes the folder for the states of a new run, and holds it. Another run's are never overwritten.
+CheckpointLock make_checkpoint_folder(const std::string& folder);
 
 // Makes the folder of the parts of a mesh. Without a state there is nothing to go on with: what is there is of a run
 // that ended before its first one.

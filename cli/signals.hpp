@@ -1,4 +1,4 @@
-// What Ctrl-C and SIGTERM do. A second one always ends the program at once.
+// What Ctrl-C, SIGTERM and the end of the terminal (SIGHUP) do. A second one always ends the program at once.
 #pragma once
 
 #include <atomic>

@@ -57,12 +57,29 @@ struct Progress {
   std::uint64_t bytes = 0;  // held by the slab and the undecided zone
 };
 
+// Holds a folder of saved states against all other processes and runs, by the file `lock` in it. The system lets go of
+// it however the process ends. To be held from before the state is read, and before sinks are opened in the folder,
+// until the run is over. Throws CannotWrite when somebody else holds it, with the number of the process; when there is
+// no such folder; and where files cannot be locked.
+class CheckpointLock {
+ public:
+  explicit CheckpointLock(const std::string& folder);
+  ~CheckpointLock();
+  CheckpointLock(CheckpointLock&& other) noexcept;
+  CheckpointLock& operator=(CheckpointLock&&) = delete;
+
+ private:
+  std::string path_;
+  int fd_ = -1;
+};
+
 // How the state of a run is saved, to go on with after whatever ends the process.
 struct CheckpointOptions {
-  std::string folder;       // an existing one; empty: nothing is saved. Finished runs leave no state in it
-  std::int64_t layers = 0;  // save after at least so many layers; 0: by time
-  double seconds = 300;     // save after at least so long
-  std::string note;         // comes back with the state: what the caller needs to go on
+  std::string folder;                    // an existing one; empty: nothing is saved. Finished runs leave no state in it
+  const CheckpointLock* lock = nullptr;  // of that folder, held by the caller; null: held while mesh_volume runs
+  std::int64_t layers = 0;               // save after at least so many layers; 0: by time
+  double seconds = 300;                  // save after at least so long
+  std::string note;                      // comes back with the state: what the caller needs to go on
 };
 
 // A saved state.
@@ -202,7 +219,8 @@ struct MeshReport : SurfaceReport {
 // components were chosen in. Memory: slab plus undecided zone. With a checkpoint folder the state is saved before
 // Interrupted is thrown, and before BadInput from a source that fails in the middle. Resuming gives the same mesh, for
 // any threads, schedule and slab; throws BadInput when the state was saved by another version, for another volume or
-// with other options.
+// with other options. What a mesh file kept in its parts is read back when it is opened again and when it is finished:
+// the digest is that of the bytes in the file, or the run fails.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
 // The same with levels: a sink for each, in their order, and the last one for the mesh with the largest error.

@@ -1,22 +1,28 @@
 #include "pipeline/checkpoint.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 #include "isoweave/error.hpp"
 #include "volume/input_file.hpp"
+#include "write/atomic_file.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 7\n";  // the number changes with fields and rules
+constexpr std::string_view kFormat = "isoweave state 8\n";  // the number changes with fields and rules
 
 constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
 
@@ -163,6 +169,59 @@ void require_unchanged(const VolumeInfo& volume, const MeshOptions& options, con
   throw BadInput(volume.path + ": expected a file that stays as it is while it is read, found it changed");
 }
 
+namespace {
+
+constexpr int kLockAttempts = 100;
+
+// Whether the file that was locked is still the one of that name: who held it before removes it.
+bool is_still_there(int fd, const std::string& path) {
+  struct stat locked {};
+  struct stat named {};
+  return ::fstat(fd, &locked) == 0 && ::stat(path.c_str(), &named) == 0 && locked.st_dev == named.st_dev &&
+         locked.st_ino == named.st_ino;
+}
+
+[[noreturn]] void refuse_lock(const std::string& folder, int fd) {
+  std::array<char, 20> digits{};
+  const ssize_t got = ::pread(fd, digits.data(), digits.size(), 0);
+  ::close(fd);
+  const std::string process(digits.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
+  const bool known = !process.empty() && process.find_first_not_of("0123456789") == std::string::npos;
+  throw CannotWrite(folder + ": expected a folder of saved states that nobody uses, found a run that goes on in it" +
+                    (known ? ", process " + process : ""));
+}
+
+// A locked descriptor; -1 when the file has gone meanwhile.
+int open_lock(const std::string& folder, const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);  // the umask takes its share
+  if (fd < 0) {
+    throw CannotWrite(folder + ": cannot be locked against other processes: " + std::generic_category().message(errno));
+  }
+  if (!try_lock(fd, path)) refuse_lock(folder, fd);
+  if (is_still_there(fd, path)) return fd;
+  ::close(fd);
+  return -1;
+}
+
+}  // namespace
+
+CheckpointLock::CheckpointLock(const std::string& folder) : path_(folder + "/lock") {
+  for (int attempt = 0; fd_ < 0 && attempt < kLockAttempts; ++attempt) fd_ = open_lock(folder, path_);
+  if (fd_ < 0) throw CannotWrite(folder + ": cannot be locked against other processes: they take turns at it");
+  const std::string process = std::to_string(::getpid());
+  // Only who is refused reads it, for the message.
+  [[maybe_unused]] const bool told = ::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, process.data(), process.size(), 0) > 0;
+}
+
+CheckpointLock::CheckpointLock(CheckpointLock&& other) noexcept
+    : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1)) {}
+
+CheckpointLock::~CheckpointLock() {
+  if (fd_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(fd_);
+}
+
 Checkpoint read_checkpoint(const std::string& folder) {
   std::string why = folder + ": expected a folder with a saved state, found none";
   const std::optional<Header> newest = newest_state(folder, why);
@@ -178,7 +237,24 @@ StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity
   return reader;
 }
 
+namespace {
+
+// Whether a name in a folder is that of a state that a process was killed over while it renamed it.
+bool is_unfinished_state(const std::string& name) { return name.starts_with(".state-") && name.ends_with(".partial"); }
+
+void remove_unfinished_states(const std::string& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (is_unfinished_state(entry.path().filename().string())) left.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : left) std::filesystem::remove(path, ignored);
+}
+
+}  // namespace
+
 CheckpointFolder::CheckpointFolder(const std::string& folder) : folder_(folder) {
+  remove_unfinished_states(folder_);
   std::string why;
   if (const std::optional<Header> newest = newest_state(folder_, why)) number_ = newest->number;
 }

@@ -44,7 +44,7 @@ class VolumeSweep {
         sinks_(sinks.begin(), sinks.end()),
         engine_(make_engine(finder)),
         layers_(engine_->layers_left()) {
-    if (saves()) folder_.emplace(control.checkpoint.folder);
+    if (saves()) open_folder();
     if (control.resume != nullptr) load_state();
     window_.emplace(field_.source(), engine_->slices_for(1).first);
     if (options.values != nullptr) values_window_.emplace(*options.values, engine_->slices_for(1).first);
@@ -314,6 +314,12 @@ class VolumeSweep {
 
   bool saves() const { return !control_.checkpoint.folder.empty(); }
 
+  void open_folder() {
+    const CheckpointOptions& options = control_.checkpoint;
+    if (options.lock == nullptr) lock_.emplace(options.folder);
+    folder_.emplace(options.folder);
+  }
+
   void stop_if_asked() {
     if (!saves()) return check_stop(control_);
     if (control_.stop == nullptr || !control_.stop->load()) return;
@@ -413,6 +419,7 @@ class VolumeSweep {
   std::uint64_t recent_triangles_ = 0;
   std::uint64_t voxels_ = 0;
 
+  std::optional<CheckpointLock> lock_;  // where the caller holds none
   std::optional<CheckpointFolder> folder_;
   std::int64_t saved_layer_ = -1;
   std::chrono::steady_clock::time_point saved_time_ = std::chrono::steady_clock::now();

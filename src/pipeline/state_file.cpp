@@ -1,7 +1,5 @@
 #include "pipeline/state_file.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <vector>
 
@@ -13,11 +11,6 @@ namespace {
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 
 }  // namespace
-
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  if (bytes.empty()) return crc;  // zlib takes no bytes for a wish to begin
-  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
 
 void StateWriter::put(std::span<const std::byte> bytes) {
   crc_ = add_to_crc(crc_, bytes);

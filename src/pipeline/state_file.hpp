@@ -16,9 +16,6 @@
 
 namespace isoweave {
 
-// The CRC-32 of more bytes.
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes);
-
 class StateWriter {
  public:
   static constexpr bool kReads = false;

@@ -1,8 +1,10 @@
 #include "write/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -27,6 +29,23 @@ constexpr int kAttempts = 100;
 
 [[noreturn]] void cannot_write(const std::string& path, const std::string& what, int error) {
   throw CannotWrite(path + ": " + what + ": " + std::generic_category().message(error));
+}
+
+[[noreturn]] void bad_part(const std::string& path, const PartMark& mark, const std::string& found) {
+  throw BadInput(path + ": expected the " + std::to_string(mark.size) +
+                 " bytes that it had when the state was saved, found " + found);
+}
+
+// Of all that was written to it.
+std::uint32_t crc_of_file(OutputDescriptor& file) {
+  std::vector<std::byte> block(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, file.size())));
+  std::uint32_t crc = 0;
+  for (std::uint64_t done = 0; done < file.size(); done += block.size()) {
+    block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), file.size() - done)));
+    file.read_back(done, block);
+    crc = add_to_crc(crc, block);
+  }
+  return crc;
 }
 
 std::string name_of(const std::string& path) {
@@ -70,6 +89,11 @@ int open_unnamed(const std::string& folder) {
 }
 
 }  // namespace
+
+std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
+  if (bytes.empty()) return crc;  // zlib takes no bytes for a wish to begin
+  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
@@ -127,7 +151,8 @@ OutputDescriptor::OutputDescriptor(OutputDescriptor&& other) noexcept
     : fd_(std::exchange(other.fd_, -1)),
       path_(std::move(other.path_)),
       size_(other.size_),
-      buffer_(std::move(other.buffer_)) {}
+      buffer_(std::move(other.buffer_)),
+      checksum_(other.checksum_) {}
 
 OutputDescriptor::~OutputDescriptor() {
   if (fd_ >= 0) ::close(fd_);
@@ -143,6 +168,7 @@ void OutputDescriptor::write(std::span<const std::byte> bytes) {
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
   }
   size_ += bytes.size();
+  if (checksum_) checksum_ = add_to_crc(*checksum_, bytes);
 }
 
 void OutputDescriptor::flush() {
@@ -163,6 +189,7 @@ void OutputDescriptor::write_now(std::span<const std::byte> bytes) {
 
 void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (offset > size_ || bytes.size() > size_ - offset) throw std::invalid_argument("overwrite past the end of a file");
+  if (checksum_) replace_in_checksum(offset, bytes);
   flush();
   while (!bytes.empty()) {
     const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -202,7 +229,30 @@ void OutputDescriptor::append(OutputDescriptor& source) {
     write_now(std::span(block).first(count));
     done += count;
   }
+  if (checksum_) add_to_checksum(source);
   size_ += source.size_;
+}
+
+// The copy has the bytes that were written to the source, or the file is found out when it is verified.
+void OutputDescriptor::add_to_checksum(const OutputDescriptor& source) {
+  if (!source.checksum_) throw std::logic_error(path_ + ": a file with a checksum takes files with one only");
+  checksum_ =
+      static_cast<std::uint32_t>(::crc32_combine(*checksum_, *source.checksum_, static_cast<z_off_t>(source.size_)));
+}
+
+// A CRC is linear: bytes that change by a difference change it by the CRC of that difference, in front of as many zeros
+// as there are bytes behind it.
+void OutputDescriptor::replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes) {
+  std::vector<std::byte> before(bytes.size());
+  read_back(offset, before);
+  const std::uint32_t change = add_to_crc(0, before) ^ add_to_crc(0, bytes);
+  const std::uint64_t behind = size_ - offset - bytes.size();
+  *checksum_ ^= static_cast<std::uint32_t>(::crc32_combine(change, 0, static_cast<z_off_t>(behind)));
+}
+
+void OutputDescriptor::verify() {
+  if (!checksum_) return;
+  if (crc_of_file(*this) != *checksum_) throw CannotWrite(path_ + ": holds other bytes than were written to it");
 }
 
 // Copies as far as the file system can do it by itself; returns how far. Errors are left for the plain copy to meet.
@@ -234,6 +284,14 @@ void OutputDescriptor::sync() {
   if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
 }
 
+void OutputDescriptor::cut_off() {
+  flush();
+  const auto end = static_cast<off_t>(size_);
+  if (::ftruncate(fd_, end) != 0 || ::lseek(fd_, end, SEEK_SET) != end) fail("cannot be cut off", errno);
+}
+
+bool OutputDescriptor::try_lock() const { return isoweave::try_lock(fd_, path_); }
+
 bool OutputDescriptor::link_as(const std::string& name) const {
   return ::linkat(AT_FDCWD, descriptor_name(fd_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
@@ -246,6 +304,7 @@ void OutputDescriptor::close() {
     throw CannotWrite(path_ + ": wrote " + std::to_string(size_) + " bytes, the disk holds " +
                       std::to_string(status.st_size));
   }
+  verify();
   // Whatever close says, the descriptor is gone afterwards.
   if (::close(std::exchange(fd_, -1)) != 0) fail("cannot close", errno);
 }
@@ -288,35 +347,56 @@ void AtomicFile::name_file() {
 // A part file may lie on another file system than the target.
 void AtomicFile::copy_into_place() {
   AtomicFile copy(path_);
-  OutputDescriptor part = open_part({temporary_, file_.size()});
+  OutputDescriptor part = open_part({temporary_, PartMark{file_.size(), *file_.checksum()}});
+  copy.file_.keep_checksum(0);
   copy.append(part);
   copy.commit();
   ::unlink(temporary_.c_str());
 }
 
-OutputDescriptor open_part(const PartFile& part) {
-  const int flags = part.size ? O_RDWR : O_RDWR | O_CREAT | O_EXCL;
-  const int fd = ::open(part.path.c_str(), flags | O_CLOEXEC, kNewFileMode);
+bool try_lock(int fd, const std::string& path) {
+  while (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) return false;
+    if (errno != EINTR) cannot_write(path, "cannot be locked against other processes", errno);
+  }
+  return true;
+}
+
+namespace {
+
+OutputDescriptor create_part(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   if (fd < 0 && errno == EEXIST) {
-    throw CannotWrite(part.path + ": is there already: resume the unfinished run that it belongs to, or remove it");
+    throw CannotWrite(path + ": is there already: resume the unfinished run that it belongs to, or remove it");
   }
-  if (fd < 0) cannot_write(part.path, part.size ? "cannot be opened again" : "cannot be created", errno);
-  OutputDescriptor file(fd, part.path, part.size.value_or(0));
-  if (!part.size) return file;
+  if (fd < 0) cannot_write(path, "cannot be created", errno);
+  return {fd, path};
+}
+
+OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) bad_part(path, mark, std::generic_category().message(errno));
+  OutputDescriptor file(fd, path, mark.size);
   struct stat status {};
-  if (::fstat(fd, &status) != 0) cannot_write(part.path, "cannot be looked up", errno);
-  if (static_cast<std::uint64_t>(status.st_size) < *part.size) {
-    throw CannotWrite(part.path + ": expected at least " + std::to_string(*part.size) + " bytes, found " +
-                      std::to_string(status.st_size));
-  }
-  const auto size = static_cast<off_t>(*part.size);
-  if (::ftruncate(fd, size) != 0 || ::lseek(fd, size, SEEK_SET) != size) {
-    cannot_write(part.path, "cannot be cut off", errno);
-  }
+  if (::fstat(fd, &status) != 0) cannot_write(path, "cannot be looked up", errno);
+  const auto found = static_cast<std::uint64_t>(status.st_size);
+  if (found < mark.size) bad_part(path, mark, std::to_string(found) + " bytes");
   return file;
 }
 
-void remove_part(const PartFile& part) { ::unlink(part.path.c_str()); }
+}  // namespace
+
+OutputDescriptor open_part(const PartFile& part) {
+  OutputDescriptor file = part.mark ? open_part_again(part.path, *part.mark) : create_part(part.path);
+  if (!file.try_lock()) throw CannotWrite(part.path + ": another process is writing to it");
+  file.keep_checksum(part.mark ? part.mark->checksum : 0);
+  if (!part.mark) return file;
+  if (crc_of_file(file) != part.mark->checksum) bad_part(part.path, *part.mark, "others: its checksum does not fit");
+  file.cut_off();  // of what came after the state was saved
+  return file;
+}
+
+void remove_part(const std::string& path) { ::unlink(path.c_str()); }
 
 int open_scratch(const std::string& path) { return open_scratch_in(folder_of(checked_target(path)), path); }
 

@@ -12,6 +12,9 @@
 
 namespace isoweave {
 
+// The CRC-32 of more bytes.
+std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes);
+
 // An open file descriptor with a write buffer; closes it when destroyed.
 class OutputDescriptor {
  public:
@@ -38,10 +41,25 @@ class OutputDescriptor {
   // Makes what was written durable.
   void sync();
 
+  // From now on keeps a CRC-32 of the whole file, which begins as that of the bytes that stand there.
+  void keep_checksum(std::uint32_t so_far) { checksum_ = so_far; }
+  std::optional<std::uint32_t> checksum() const { return checksum_; }
+
+  // Reads the file from its beginning, where a checksum is kept. Throws CannotWrite when it holds other bytes than were
+  // written.
+  void verify();
+
+  // Removes what the file holds behind size().
+  void cut_off();
+
+  // As try_lock() below.
+  bool try_lock() const;
+
   // Gives a file without a name this one. False, with errno set, when that cannot be done.
   bool link_as(const std::string& name) const;
 
-  // Flushes, makes the data durable, compares the size on disk with what was written, and closes.
+  // Flushes, makes the data durable, compares the size on disk and the checksum, if one is kept, with what was written,
+  // and closes.
   void close();
 
   std::uint64_t size() const { return size_; }
@@ -49,18 +67,27 @@ class OutputDescriptor {
  private:
   void write_now(std::span<const std::byte> bytes);
   std::uint64_t append_in_kernel(const OutputDescriptor& source);
+  void add_to_checksum(const OutputDescriptor& source);
+  void replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes);
   [[noreturn]] void fail(const char* what, int error) const;
 
   int fd_;
   std::string path_;
   std::uint64_t size_ = 0;
   std::vector<std::byte> buffer_;
+  std::optional<std::uint32_t> checksum_;  // of all size_ bytes
+};
+
+// How far a part file had come.
+struct PartMark {
+  std::uint64_t size = 0;
+  std::uint32_t checksum = 0;  // of so many bytes
 };
 
 // An unfinished file under a name of its own, to be continued by another process.
 struct PartFile {
   std::string path;
-  std::optional<std::uint64_t> size;  // to go on from; none: there is no such file yet
+  std::optional<PartMark> mark;  // to go on from; none: there is no such file yet
 };
 
 // A file that appears under its name only on commit(). Until then it lies in the same folder without a name, and is
@@ -102,12 +129,17 @@ class AtomicFile {
   OutputDescriptor file_;
 };
 
-// Creates a part file, or opens one and cuts it off at its size. Throws CannotWrite when the first is there already or
-// the second is missing or shorter.
+// Creates a part file, or opens one and cuts it off at its mark; it keeps a checksum. Throws CannotWrite when the first
+// is there already, or another process has the second one open; BadInput when the second is missing, shorter, or holds
+// other bytes.
 OutputDescriptor open_part(const PartFile& part);
 
+// Holds an open file against all others that do so, in this process, too. The system lets go of it when the descriptor
+// is closed, however the process ends. False when somebody else holds it; CannotWrite where there are no locks.
+bool try_lock(int fd, const std::string& path);
+
 // Removes a part file that is no longer needed.
-void remove_part(const PartFile& part);
+void remove_part(const std::string& path);
 
 // Opens a scratch file beside `path`, already without a name: the system frees it however the process ends.
 int open_scratch(const std::string& path);

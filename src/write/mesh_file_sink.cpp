@@ -30,7 +30,7 @@ std::deque<std::uint64_t> parse_mark(const MeshFileOptions& options) {
   if (options.mark.empty()) return numbers;
   std::istringstream text(options.mark);
   for (std::uint64_t number = 0; text >> number;) numbers.push_back(number);
-  if (!text.eof() || numbers.size() < 3 || options.parts.empty()) {
+  if (!text.eof() || numbers.size() < 2 || options.parts.empty()) {
     throw std::invalid_argument("expected the mark of a mesh and the folder of its parts, found '" + options.mark +
                                 "' and '" + options.parts + "'");
   }
@@ -49,13 +49,12 @@ MeshFileSink::MeshFileSink(MeshTarget target, const MeshFileOptions& options)
 }
 
 void MeshFileSink::open_file() {
-  const std::uint64_t bytes = continued() ? next_saved() : 0;
   switch (target_.kind) {
     case MeshTarget::Kind::kFile:
       if (options_.parts.empty()) {
         atomic_.emplace(target_.path);
       } else {
-        atomic_.emplace(target_.path, part(kMeshPart, bytes));
+        atomic_.emplace(target_.path, part(kMeshPart));
       }
       break;
     case MeshTarget::Kind::kFolder:
@@ -83,8 +82,13 @@ std::vector<std::uint64_t> MeshFileSink::saved_state(std::size_t count) {
   return numbers;
 }
 
-PartFile MeshFileSink::part(const std::string& name, std::uint64_t size) const {
-  return {options_.parts + "/" + name, continued() ? std::optional(size) : std::nullopt};
+// Of a mesh that goes on, with the next two numbers of its mark.
+PartFile MeshFileSink::part(const std::string& name) {
+  PartFile file{part_path(name), std::nullopt};
+  if (!continued()) return file;
+  const std::uint64_t size = next_saved();
+  file.mark = PartMark{size, static_cast<std::uint32_t>(next_saved())};
+  return file;
 }
 
 int MeshFileSink::open_side_scratch() const {
@@ -103,19 +107,21 @@ int MeshFileSink::open_side_scratch() const {
 OutputDescriptor& MeshFileSink::open_side(const std::string& name) {
   side_names_.push_back(name);
   if (options_.parts.empty()) return sides_.emplace_back(open_side_scratch(), path());
-  return sides_.emplace_back(open_part(part(name, continued() ? next_saved() : 0)));
+  return sides_.emplace_back(open_part(part(name)));
 }
 
 std::string MeshFileSink::mark() {
   require_open();
   if (options_.parts.empty()) return MeshSink::mark();
   write_held_back();
-  std::vector<std::uint64_t> numbers{vertices_, triangles_, atomic_ ? file().size() : 0};
-  if (atomic_) file().sync();
-  for (OutputDescriptor& side : sides_) {
-    side.sync();
-    numbers.push_back(side.size());
-  }
+  std::vector<std::uint64_t> numbers{vertices_, triangles_};
+  const auto add = [&](OutputDescriptor& part) {
+    part.sync();
+    numbers.push_back(part.size());
+    numbers.push_back(*part.checksum());
+  };
+  if (atomic_) add(file());
+  for (OutputDescriptor& side : sides_) add(side);
   for (const std::uint64_t number : state()) numbers.push_back(number);
   std::string text;
   for (const std::uint64_t number : numbers) text += (text.empty() ? "" : " ") + std::to_string(number);
@@ -161,6 +167,7 @@ void MeshFileSink::append(const MeshPiece& piece) {
 void MeshFileSink::finish() {
   require_open();
   state_ = State::kFailed;
+  for (OutputDescriptor& side : sides_) side.verify();
   complete();
   if (atomic_) atomic_->commit();
   if (stream_) stream_->copy_to(target_.descriptor, path());
@@ -170,7 +177,7 @@ void MeshFileSink::finish() {
 
 void MeshFileSink::remove_parts() const {
   if (options_.parts.empty()) return;
-  for (const std::string& name : side_names_) remove_part(part(name, 0));
+  for (const std::string& name : side_names_) remove_part(part_path(name));
 }
 
 void MeshFileSink::check_written(std::uint64_t expected_bytes, std::span<const std::byte> header) {

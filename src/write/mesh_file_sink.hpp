@@ -77,7 +77,8 @@ class MeshFileSink : public MeshSink {
  private:
   enum class State { kOpen, kFailed, kFinished };
 
-  PartFile part(const std::string& name, std::uint64_t size) const;
+  std::string part_path(const std::string& name) const { return options_.parts + "/" + name; }
+  PartFile part(const std::string& name);
   void open_file();
   int open_side_scratch() const;
   std::uint64_t next_saved();

@@ -87,7 +87,7 @@ TEST(CliCheckpoint, KilledRunsGoOnToTheSameMesh) {
 }
 
 TEST(CliCheckpoint, InterruptedRunsSayHowToGoOn) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const files::Folder folder;
     const Result result = run(folder.path(), mesh({"--checkpoint", "run", "--slab", "2", "--threads", "1"}),
                               after(folder, signal, std::chrono::milliseconds(0)));
@@ -195,6 +195,56 @@ void expect_refused(const files::Folder& folder, const std::vector<std::string>&
   EXPECT_TRUE(program::is_one_line(result.err)) << result.err;
   EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
   EXPECT_EQ(listing(folder), before);
+}
+
+// A second process in the folder of a run that goes on, whether it would resume or begin.
+TEST(CliCheckpoint, AFolderBelongsToOneProcess) {
+  const files::Folder folder;
+  Result second, third;
+  program::Setup setup;
+  setup.signal = SIGCONT;  // changes nothing
+  setup.ready = [&](pid_t) {
+    if (!std::filesystem::exists(folder / "run/state-1")) return false;
+    second = run(folder.path(), {"mesh", "--resume", "run", "--slab", "7"});
+    third = run(folder.path(), mesh({"--checkpoint", "run"}));
+    return true;
+  };
+  const Result first =
+      run(folder.path(), mesh({"--checkpoint", "run", "--every", "1layers", "--slab", "2", "--threads", "1"}), setup);
+  ASSERT_EQ(first.code, 0) << first.err;
+  for (const Result& refused : {second, third}) {
+    EXPECT_EQ(refused.code, 4) << refused.err;
+    EXPECT_TRUE(program::is_one_line(refused.err)) << refused.err;
+    EXPECT_NE(refused.err.find("run: expected a folder of saved states that nobody uses"), std::string::npos)
+        << refused.err;
+  }
+  EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
+  EXPECT_EQ(listing(folder), (std::vector<std::string>{"out.json", "out.ply", "run"}));
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
+}
+
+TEST(CliCheckpoint, DamagedPartsAreBadInput) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(),
+                mesh({"--checkpoint", "run", "--every", "8layers", "--slab", "8", "--error", "0", "--threads", "1"}),
+                after(folder, SIGINT, std::chrono::milliseconds(20)))
+                .code,
+            130);
+  for (const char* part : {"run/mesh.part", "run/faces.part"}) {
+    const std::string bytes = files::read_bytes(folder / part);
+    ASSERT_FALSE(bytes.empty());
+    std::string damaged = bytes;
+    damaged[damaged.size() / 3] = static_cast<char>(damaged[damaged.size() / 3] ^ 4);
+    for (const std::string& wrong : {damaged, bytes.substr(0, bytes.size() / 2)}) {
+      files::write_bytes(folder / part, wrong);
+      const Result result = run(folder.path(), {"mesh", "--resume", "run", "--quiet"});
+      EXPECT_EQ(result.code, 3) << result.err;
+      EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+      EXPECT_EQ(listing(folder), std::vector<std::string>{"run"});
+    }
+    files::write_bytes(folder / part, bytes);
+  }
+  EXPECT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
 }
 
 TEST(CliCheckpoint, WrongUseIsRefused) {

@@ -1,7 +1,10 @@
 // A run that is cut off and resumed makes the mesh of a run that is not.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "files.hpp"
 #include "meshes.hpp"
@@ -394,7 +397,7 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 7\n"));
+  writer.list(std::string("isoweave state 8\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -408,7 +411,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 7\n"));
+  writer.list(std::string("isoweave state 8\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -417,9 +420,63 @@ TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
 
 TEST_F(SavedState, ShortOrMissingPartsAreRefused) {
   std::filesystem::resize_file(folder_ / "mesh.part", 10);
-  expect_refused<CannotWrite>([&] { resume(); }, "expected at least");
+  expect_refused<BadInput>([&] { resume(); }, "mesh.part: expected the");
   std::filesystem::remove(folder_ / "mesh.part");
-  expect_refused<CannotWrite>([&] { resume(); }, "cannot be opened again");
+  expect_refused<BadInput>([&] { resume(); }, "No such file");
+}
+
+// Every byte that the state counts on: a plausible mesh of wrong bytes would not be noticed.
+TEST_F(SavedState, OneWrongBitInAPartIsRefused) {
+  const std::string bytes = files::read_bytes(folder_ / "mesh.part");
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 40; ++trial) {
+    std::string damaged = bytes;
+    const std::size_t bit = random() % (8 * damaged.size());
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    files::write_bytes(folder_ / "mesh.part", damaged);
+    expect_refused<BadInput>([&] { resume(); }, "its checksum does not fit");
+    EXPECT_EQ(files::read_bytes(folder_ / "mesh.part").size(), bytes.size()) << "nothing is cut off then";
+  }
+  files::write_bytes(folder_ / "mesh.part", bytes);
+  EXPECT_EQ(resume().digest, whole_);
+}
+
+TEST_F(SavedState, StatesThatWereNotRenamedAreRemoved) {
+  files::write_bytes(folder_ / ".state-0.abcdef.partial", "x");
+  files::write_bytes(folder_ / ".state-of-mind", "x");
+  EXPECT_EQ(resume().digest, whole_);
+  EXPECT_EQ(folder_.entries(), (std::vector<std::string>{".state-of-mind", "a.obj"}));
+}
+
+TEST_F(SavedState, TwoRunsDoNotShareAFolder) {
+  {
+    const CheckpointLock other(folder_.path());
+    expect_refused<CannotWrite>([&] { resume(); }, "process " + std::to_string(::getpid()));
+  }
+  EXPECT_EQ(resume().digest, whole_);
+}
+
+// Opening a part again cuts it off: that must not happen under somebody who writes to it.
+TEST_F(SavedState, PartsThatSomebodyWritesToAreRefused) {
+  const Checkpoint checkpoint = read_checkpoint(folder_.path());
+  const MeshFileOptions options{false, {}, folder_.path(), checkpoint.marks.at(0)};
+  {
+    const auto first = open_mesh_file(folder_ / "a.obj", options);
+    expect_refused<CannotWrite>([&] { open_mesh_file(folder_ / "a.obj", options); }, "another process is writing");
+  }
+  EXPECT_EQ(resume().digest, whole_);
+}
+
+TEST(CheckpointLock, IsOfOneAtATimeAndLeavesNothing) {
+  const files::Folder folder;
+  {
+    const CheckpointLock lock(folder.path());
+    EXPECT_THROW(CheckpointLock(folder.path()), CannotWrite);
+  }
+  EXPECT_TRUE(folder.entries().empty());
+  EXPECT_THROW(CheckpointLock(folder / "missing"), CannotWrite);
+  files::write_bytes(folder / "lock", "left by a process that was killed");
+  const CheckpointLock lock(folder.path());
 }
 
 TEST_F(SavedState, PartsOfAnotherRunAreNotWrittenOver) {

@@ -6,6 +6,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <random>
 
 #include "files.hpp"
 #include "isoweave/error.hpp"
@@ -157,6 +159,33 @@ TEST(AtomicFile, OpeningFailsAtOnceWithThePathAndTheReason) {
   files::write_bytes(folder / "file", "");
   EXPECT_NE(open(folder / "file/a.txt").find("Not a directory"), std::string::npos);
   EXPECT_EQ(folder.entries().size(), 2U);
+}
+
+// The checksum of the file follows all that is done to it: appended in buffers and past them, joined, overwritten.
+TEST(OutputDescriptor, KeepsTheChecksumOfTheWholeFile) {
+  const files::Folder folder;
+  std::mt19937 random(3);
+  const auto some = [&](std::size_t size) {
+    std::string text(size, ' ');
+    for (char& c : text) c = static_cast<char>(random());
+    return text;
+  };
+  OutputDescriptor file = open_part({folder / "a", std::nullopt});
+  OutputDescriptor side = open_part({folder / "b", std::nullopt});
+  file.write(bytes_of(some(1000)));
+  file.write(bytes_of(some(3 << 20)));
+  side.write(bytes_of(some(100)));
+  side.write(bytes_of(some(2 << 20)));
+  file.append(side);
+  file.write(bytes_of(some(77)));
+  for (const std::uint64_t at : {0U, 999U, 1U << 20U}) file.overwrite(at, bytes_of(some(50)));
+  file.overwrite(file.size() - 9, bytes_of(some(9)));
+  file.flush();
+  EXPECT_EQ(file.checksum(), add_to_crc(0, bytes_of(files::read_bytes(folder / "a"))));
+  file.verify();
+  std::fstream(folder / "a", std::ios::in | std::ios::out | std::ios::binary).seekp(12345) << "disturbed";
+  EXPECT_EQ(message_of([&] { file.verify(); }), (folder / "a") + ": holds other bytes than were written to it");
+  EXPECT_EQ(message_of([&] { file.close(); }), (folder / "a") + ": holds other bytes than were written to it");
 }
 
 // A rename onto a device would replace the device: as root, /dev/null would become a mesh.
