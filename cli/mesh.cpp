@@ -1,6 +1,7 @@
 // isoweave mesh: volume in, simplified surface out.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -187,6 +188,7 @@ class MeshJob {
     values_ = open_values(arguments_);
     options_.values = values_.get();
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
+    if (std::isinf(options_.error.value)) options_.error = {most_shape_error(info_), false};
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
     options_.slab = parse_slab(arguments_.slab, info_.dims[2]);
@@ -225,7 +227,7 @@ class MeshJob {
   void tell_forecast(Evidence& evidence) const {
     const std::uint64_t bytes = output_bytes(*forecast_, arguments_, file_);
     const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    print_out(forecast_text(*forecast_, bytes, threads));
+    print_out(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_out("components that --largest or --min-component drops are counted in\n");
     evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
   }
@@ -297,10 +299,7 @@ class MeshJob {
     print_notes(sinks.last());
     print_dropped(report);
     print_levels(report, outputs_);
-    if (options_.triangles > 0) {
-      const std::string& unit = info_.geometry.unit;
-      print_note(fmt::format("error reached: {:.4g}{}{}", report.error, unit.empty() ? "" : " ", unit));
-    }
+    print_target(report, options_.triangles, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
     print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
   }

@@ -13,7 +13,8 @@ namespace isoweave::cli {
 // Of the file that is forecast. Throws CannotWrite where its format cannot hold the counts.
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file);
 
-std::string forecast_text(const Forecast& forecast, std::uint64_t bytes, int threads);
+// asked: the number of triangles to stop at, or 0.
+std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads);
 
 // What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
 Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,

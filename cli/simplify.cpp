@@ -1,4 +1,5 @@
 // isoweave simplify: the same simplifier on a mesh that exists already.
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -126,6 +127,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
+  if (std::isinf(options.error.value)) options.error = {most_shape_error(mesh), false};
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
@@ -150,7 +152,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   print_notes(sinks.last());
   print_dropped(report);
   print_levels(report, outputs);
-  if (options.triangles > 0) print_note(fmt::format("error reached: {:.4g}", report.error));
+  print_target(report, options.triangles, options.error, "");
   print_summary(report, outputs.back().name(), 0);
 }
 

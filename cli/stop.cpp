@@ -8,14 +8,17 @@
 #include <sstream>
 
 #include "options.hpp"
+#include "output.hpp"
 
 namespace isoweave::cli {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option("--error", stop.error,
                   "Simplification error: a length in vox, mm, um, nm or the input's unit; 0: none");
-  CLI::Option* const triangles =
-      verb.add_option("--triangles", stop.triangles, "Stop at this number of triangles, if the error does not before");
+  CLI::Option* const triangles = verb.add_option(
+      "--triangles", stop.triangles,
+      "Stop at this number of triangles, or at the error; without --error at a twentieth of the volume's "
+      "diagonal");
   verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
       ->excludes(triangles);
   verb.add_option("--lods", stop.lods,
@@ -61,6 +64,17 @@ std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::u
   const double ratio = parse_number("--ratio", stop.ratio);
   if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
   return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
+}
+
+void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit) {
+  if (asked == 0) return;
+  const auto text = [&](double length) { return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit); };
+  print_note("error reached: " + text(report.error));
+  if (report.triangles <= asked) return;
+  print_note(
+      fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
+                  "them, or an --error above {}",
+                  allowed.voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value)));
 }
 
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {

@@ -26,7 +26,7 @@ struct StopOptions {
 void add_stop_options(CLI::App& verb, StopOptions& stop);
 
 // `usual` is the error where nothing is given. Where only a guaranteed distance is, that is the error; where only a
-// number of triangles is, the error is infinite.
+// number of triangles is, the error is infinite, in place of which most_shape_error() is taken.
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
 
 // The meshes that are asked for, one for each level of detail, finest first: how each would be asked for alone.
@@ -39,6 +39,10 @@ Length stop_distance(const StopOptions& stop, std::string_view unit);
 
 // 0: no number is asked for. count() tells the triangles of the full surface, for a ratio.
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);
+
+// How a run to a number of triangles ended: the error that it reached and, where more are left than were asked for, the
+// ways to leave fewer. Nothing for a run to an error.
+void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit);
 
 // "error 0.2vox", "triangles 20000", or both; and "specks drop".
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles);

@@ -125,8 +125,9 @@ struct MeshOptions {
   // nothing is promised. Costs time, and memory for the extracted surface around what is undecided.
   Length max_distance{};
   // Stop at the first collapse that leaves no more triangles than this, if the error does not stop it before; 0: no
-  // such number. The error may be infinite then. Between two slabs a quarter more triangles than that and 50,000
-  // are held, or as many as it takes to be sure of the result.
+  // such number. The error may be infinite then, and shapes be lost where the number is out of reach, as each closed
+  // component keeps 4 triangles: most_shape_error() is a bound. Between two slabs a quarter more triangles than that
+  // and 50,000 are held, or as many as it takes to be sure of the result.
   std::uint64_t triangles = 0;
   Quality quality = Quality::kNormal;
   // A closed component that has shrunk to a tetrahedron goes when half its longest edge is no longer than the error.
@@ -180,7 +181,9 @@ class SweepObserver {
 
 // A surface as it was written.
 struct SurfaceReport {
-  double error = 0;  // in the volume's unit; where a number of triangles was met first, that of the last collapse
+  // In the volume's unit: as asked for; where a number of triangles was asked for, the largest of a collapse as it was
+  // made, 0 if there was none.
+  double error = 0;
   std::uint64_t triangles = 0, vertices = 0;
   // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
   // construction and is not looked at.
@@ -283,6 +286,11 @@ struct SimplifyOptions {
   // distance is bounded.
   std::uint64_t piece = 0;
 };
+
+// Beyond such an error what is left no longer has the shape of the surface: the bound for runs that are to leave a
+// number of triangles and are given no error. A twentieth of the diagonal of the volume, or of the box around the mesh.
+double most_shape_error(const VolumeInfo& volume);
+double most_shape_error(const TriangleMesh& mesh);
 
 // What a run will take, from a sample of the volume.
 struct Forecast {

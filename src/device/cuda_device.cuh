@@ -31,14 +31,25 @@ __global__ void for_each_kernel(std::int64_t count, Passes passes, Arguments... 
 }
 
 // Adds the totals of all threads, field by field: integers, so the order means nothing.
+__device__ inline void add_fields(const void* own, void* sum, std::size_t count) {
+  const auto* fields = static_cast<const std::uint64_t*>(own);
+  auto* sums = static_cast<std::uint64_t*>(sum);
+  for (std::size_t f = 0; f < count; ++f) {
+    if (fields[f] != 0) fetch_add(sums[f], fields[f]);
+  }
+}
+
 template <class Totals>
 __device__ void add_totals(const Totals& own, Totals* sum) {
   static_assert(sizeof(Totals) % sizeof(std::uint64_t) == 0);
-  const auto* fields = reinterpret_cast<const std::uint64_t*>(&own);
-  auto* sums = reinterpret_cast<std::uint64_t*>(sum);
-  for (std::size_t f = 0; f < sizeof(Totals) / sizeof(std::uint64_t); ++f) {
-    if (fields[f] != 0) fetch_add(sums[f], fields[f]);
-  }
+  add_fields(&own, sum, sizeof(Totals) / sizeof(std::uint64_t));
+}
+
+// Its last field is a maximum.
+__device__ inline void add_totals(const DecisionCounts& own, DecisionCounts* sum) {
+  static_assert(offsetof(DecisionCounts, dearest) == sizeof(DecisionCounts) - sizeof(std::uint64_t));
+  add_fields(&own, sum, offsetof(DecisionCounts, dearest) / sizeof(std::uint64_t));
+  atomicMax(reinterpret_cast<unsigned long long*>(&sum->dearest), static_cast<unsigned long long>(own.dearest));
 }
 
 template <auto Pass, class Totals, class Passes>
@@ -62,6 +73,11 @@ struct RoundTotals {
   DecisionCounts decisions;
   std::uint64_t rounds = 0;
 };
+
+__device__ inline void add_totals(const RoundTotals& own, RoundTotals* sum) {
+  add_totals(own.decisions, &sum->decisions);
+  fetch_add(sum->rounds, own.rounds);
+}
 
 // All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. The size of a list is set to
 // zero in a pass that neither reads that size nor adds to the list.

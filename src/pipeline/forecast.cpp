@@ -84,7 +84,7 @@ class Forecaster {
     control_.measure = true;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
-    // Without a limit tiles tell how long simplification takes, and the number of triangles how many are left.
+    // Tiles tell how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
     plan_blocks();
   }
@@ -205,6 +205,7 @@ class Forecaster {
     if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
     options.values = nullptr;
     options.levels.clear();
+    options.triangles = 0;
     options.components = nullptr;
     options.space = OutputSpace::kIndex;
     options.error = {error, false};
@@ -244,13 +245,20 @@ class Forecaster {
     forecast.triangles_extracted = to_count(extracted);
     const double left = std::isinf(error_) ? extracted : open * left_ + (error_ > 0 ? 0 : caps);
     forecast.triangles = to_count(left);
-    if (options_.triangles > 0) forecast.triangles = std::min(forecast.triangles, options_.triangles);
+    if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profiles, options_.slab));
     forecast.least_bytes = to_count(kCapMargin * peak(profiles, 1) / kUsedPart);
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
+  }
+
+  // A run stops at the number or at the error, whatever leaves more.
+  std::uint64_t left_of_number(const Forecast& forecast) const {
+    const std::uint64_t most =
+        std::isinf(error_) ? options_.triangles : std::max(options_.triangles, forecast.triangles);
+    return std::min(most, forecast.triangles_extracted);
   }
 
   // How many triangles lie below a height, in layers: between the middles of two blocks the facts go from those of the

@@ -79,7 +79,7 @@ void HostSlabs::finish(MeshReport& report) const {
     outputs_[level]->report(report.levels[level]);
     report_defects(simplifier_.defects(level), report.levels[level]);
   }
-  if (target_) report_target(*target_, options_.triangles, options_.voxel, report);
+  if (target_) report_target(simplifier_, options_.triangles, options_.voxel, report);
 }
 
 HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, const MeshOptions& options,

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -93,13 +95,60 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
 }
 
-void report_target(const CountTarget& target, std::uint64_t asked, double unit, MeshReport& report) {
-  const bool met = report.triangles <= asked;
-  if (!met && std::isfinite(report.error)) return;
-  report.error = unit * std::sqrt(static_cast<double>(cost_value(target.reached())));
-  if (met) return;
+namespace {
+
+constexpr std::uint64_t kLeastTriangles = 4;  // of a closed component
+constexpr double kShapePart = 0.05;           // of a diagonal
+
+std::string short_number(double number) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.begin(), digits.end(), number, std::chars_format::general, 4);
+  return {digits.begin(), end.ptr};
+}
+
+// Why more triangles are left than a run was to stop at.
+std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error) {
+  const std::uint64_t least = kLeastTriangles * report.components;
+  if (report.open_edges == 0 && least > asked) {
+    return "each of " + std::to_string(report.components) + " components keeps " + std::to_string(kLeastTriangles) +
+           " at least, " + std::to_string(least) + " in all";
+  }
+  if (std::isfinite(most_error))
+    return "fewer would take a larger error than the " + short_number(most_error) + " allowed";
+  return "no other collapse keeps the topology and the sides of faces";
+}
+
+}  // namespace
+
+void report_target(const Simplifier& simplifier, std::uint64_t asked, double unit, MeshReport& report) {
+  const double most_error = report.error;
+  const auto dearest = static_cast<CostBits>(simplifier.counts().dearest);
+  // Lower costs are all the same.
+  const bool none = dearest <= cost_bits(kCostFloor);
+  report.error = none ? 0 : unit * std::sqrt(static_cast<double>(cost_value(dearest)));
+  if (report.triangles <= asked) return;
   report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " + std::to_string(asked) +
-                            " were asked for: no other collapse keeps the topology and the sides of faces");
+                            " were asked for: " + why_more_are_left(report, asked, most_error));
+}
+
+double most_shape_error(const VolumeInfo& volume) {
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double side = volume.geometry.spacing[axis] * static_cast<double>(volume.dims[axis]);
+    squared += side * side;
+  }
+  return kShapePart * std::sqrt(squared);
+}
+
+double most_shape_error(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::ranges::minmax(mesh.vertices, {}, [&](const Point& p) { return p[axis]; });
+    const double side = double{high[axis]} - double{low[axis]};
+    squared += side * side;
+  }
+  return kShapePart * std::sqrt(squared);
 }
 
 void warn_of_space(const VolumeInfo& volume, const MeshOptions& options, MeshReport& report) {

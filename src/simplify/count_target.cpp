@@ -90,7 +90,7 @@ void CountTarget::finish() {
     simplifier_.close_gaps();
   }
   simplifier_.zone().limit = simplifier_.zone().options.retire;
-  reached_ = std::max(reached_, simplifier_.decide_in_order(target_));
+  simplifier_.decide_in_order(target_);
   simplifier_.zone().retire_all();
 }
 
@@ -123,7 +123,6 @@ CostBits CountTarget::limit_within(std::uint64_t edges) const {
 void CountTarget::raise_limit(CostBits limit) {
   simplifier_.zone().limit = limit;
   simplifier_.decide();
-  reached_ = limit;
 }
 
 }  // namespace isoweave

@@ -29,9 +29,6 @@ class CountTarget {
   // Then everything is final.
   void finish();
 
-  // The largest cost decided.
-  CostBits reached() const { return reached_; }
-
  private:
   CostBits limit_that_leaves(std::uint64_t triangles) const;
   CostBits limit_within(std::uint64_t edges) const;
@@ -41,7 +38,6 @@ class CountTarget {
   const Executor& executor_;
   std::uint64_t target_;
   std::uint64_t most_held_;
-  CostBits reached_ = kUnknownCost;
 };
 
 }  // namespace isoweave

@@ -101,6 +101,7 @@ class BasicDecider {
   ISOWEAVE_HD Quadric with_normals(const Quadric& full) const;
   ISOWEAVE_HD Reach reach(Vec3 x) const;
   ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  ISOWEAVE_HD static CostBits cost_as_made(const Quadric& full, Vec3 x, CostBits key);
   ISOWEAVE_HD void defer();
   ISOWEAVE_HD void raise_key(CostBits cost);
   ISOWEAVE_HD void collapse(Vec3 x);
@@ -173,6 +174,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
     return;
   }
   ++counts_.collapses;
+  counts_.note_cost(cost_as_made(full, x, key));
   collapsed_ = true;
   collapse(x);
   update_keys(key);
@@ -212,6 +214,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide_tetrahedron(CostBits key) {
   zone_.remove_triangle(far_face(v_, u_.vertex));
   for (const Index corner : corners) zone_.vertices[corner].half_edge = kNone;
   counts_.removed += 4;
+  counts_.note_cost(cost);
   ++counts_.specks;
   vanished_ = true;
 }
@@ -305,6 +308,14 @@ ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, C
     costs[cheapest] = kTried;
   }
   return Reach::kBeyond;
+}
+
+// The cost of the place that was taken, which may be below the key: that grows with each time that an edge goes back.
+// It never counts as more than the key, which is what is compared with the error.
+template <class Arithmetic>
+ISOWEAVE_HD CostBits BasicDecider<Arithmetic>::cost_as_made(const Quadric& full, Vec3 x, CostBits key) {
+  const CostBits cost = to_cost(evaluate(full, x));
+  return cost < key ? cost : key;
 }
 
 // Blocks the edge and all that conflict with it.

@@ -52,7 +52,6 @@ void Queue::decide_group() {
       flags_[zone_.destination(h)] = 1;
       continue;
     }
-    last_cost_ = cost;
     if (removed() >= most_removed_) return;
     for (int n = 0; n < decider_.changed_count(); ++n) {
       const Index changed = decider_.changed()[static_cast<std::size_t>(n)];

@@ -22,9 +22,6 @@ class Queue final : public Driver {
   DecisionCounts counts() const override { return decider_.counts(); }
   std::uint64_t rounds() const override { return rounds_; }
 
-  // Of the edge decided last; kUnknownCost: none was.
-  CostBits last_cost() const { return last_cost_; }
-
  private:
   void offer_live_edges();
   void decide_group();
@@ -34,7 +31,6 @@ class Queue final : public Driver {
   Zone& zone_;
   Decider decider_;
   std::uint64_t most_removed_;
-  CostBits last_cost_ = kUnknownCost;
   RadixHeap heap_;
   std::vector<RadixHeap::Entry> group_;
   std::vector<std::uint8_t> flags_;  // per vertex

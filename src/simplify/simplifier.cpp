@@ -48,13 +48,12 @@ void Simplifier::decide(std::size_t level) {
   decide();
 }
 
-CostBits Simplifier::decide_in_order(std::uint64_t triangles) {
-  if (this->triangles() <= triangles) return kUnknownCost;
+void Simplifier::decide_in_order(std::uint64_t triangles) {
+  if (this->triangles() <= triangles) return;
   Queue queue(zone_, this->triangles() - triangles);
   queue.run(stop_);
   counts_before_ += queue.counts();
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
-  return queue.last_cost();
 }
 
 std::vector<Index> Simplifier::final_triangles(std::size_t level) {

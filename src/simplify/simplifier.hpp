@@ -46,9 +46,8 @@ class Simplifier {
   void decide(std::size_t level);
 
   // For a complete surface, after decide(): decides in the order of the keys until no more than `triangles` of the
-  // surface are left, or no edge is. Returns the cost of the last edge decided, kUnknownCost if there was none. Throws
-  // Interrupted.
-  CostBits decide_in_order(std::uint64_t triangles);
+  // surface are left, or no edge is. Throws Interrupted.
+  void decide_in_order(std::uint64_t triangles);
 
   // Triangles of a level all of whose vertices are final there and that have not been named before, in memory order.
   // Marks vertices final. The caller hands those of the last level to drop() once it has no more use for them.

@@ -13,6 +13,9 @@ struct DecisionCounts {
   std::uint64_t rekeyed = 0;    // decided, and dearer than the key said
   std::uint64_t removed = 0;    // triangles
   std::uint64_t specks = 0;     // tetrahedra that have vanished
+  std::uint64_t dearest = 0;    // the largest cost of a collapse as it was made, as CostBits
+
+  ISOWEAVE_HD void note_cost(std::uint64_t cost) { dearest = cost > dearest ? cost : dearest; }
 
   ISOWEAVE_HD void operator+=(const DecisionCounts& other) {
     collapses += other.collapses;
@@ -20,6 +23,7 @@ struct DecisionCounts {
     rekeyed += other.rekeyed;
     removed += other.removed;
     specks += other.specks;
+    note_cost(other.dearest);
   }
 };
 
