@@ -98,6 +98,7 @@ struct SurfaceCase {
             drop_specks,
             max_distance * voxel(),
             {x, y, z},
+            {x, y, z},
             normals_count,
             quality};
   }

@@ -1,4 +1,6 @@
 // The same simplifier on a mesh that is there as a whole.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -21,8 +23,21 @@ double mean_face(const TriangleMesh& mesh, const Executor& executor) {
   return area > 0 ? 2 * area : 1;
 }
 
+// Lengths of a box that no triangle of the mesh exceeds.
+Vec3 largest_triangle(const TriangleMesh& mesh) {
+  std::array<double, 3> largest{};
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = [&](std::size_t corner) { return mesh.vertices[t[corner]][axis]; };
+      const auto [low, high] = std::minmax({at(0), at(1), at(2)});
+      largest[axis] = std::max(largest[axis], double{high} - double{low});
+    }
+  }
+  return {largest[0], largest[1], largest[2]};
+}
+
 SimplifierOptions simplifier_options(const SimplifyOptions& options, const RunControl& control, double error, double a0,
-                                     std::span<const double> levels) {
+                                     std::span<const double> levels, const Vec3& largest) {
   const double side = std::sqrt(a0);
   SimplifierOptions simplify;
   simplify.zone = {EdgeNumbering{},
@@ -31,6 +46,7 @@ SimplifierOptions simplifier_options(const SimplifyOptions& options, const RunCo
                    options.drop_specks,
                    most_distance(options.max_distance, side),
                    {side, side, side},
+                   largest,
                    false,
                    options.quality};
   simplify.schedule = control.schedule;
@@ -63,7 +79,9 @@ class MeshRun {
         a0_(mean_face(mesh, executor_)),
         error_(options.error.value * (options.error.voxels ? std::sqrt(a0_) : 1)),
         level_errors_(level_errors(options.levels, error_, std::sqrt(a0_), options.triangles)),
-        simplifier_(simplifier_options(options, control, error_, a0_, level_errors_), executor_, control.stop),
+        simplifier_(simplifier_options(options, control, error_, a0_, level_errors_,
+                                       options.max_distance.value > 0 ? largest_triangle(mesh) : Vec3{}),
+                    executor_, control.stop),
         surface_(mesh, executor_, pieces_of(mesh, options)) {
     if (options.triangles > 0) target_.emplace(simplifier_, executor_, options.triangles);
     for (std::size_t level = 0; level < sinks.size(); ++level) {

@@ -67,12 +67,15 @@ ZoneOptions zone_options(const VolumeInfo& volume, const MeshOptions& options) {
   const Lattice lattice{volume.dims};
   const double voxel = mean_voxel(volume.geometry);
   const double a0 = voxel * voxel;
+  const auto& spacing = volume.geometry.spacing;
+  const Vec3 cell{spacing[0], spacing[1], spacing[2]};
   return {{lattice.row(), lattice.plane()},
           a0,
           retire_cost(length_in(volume, options.error), a0, options.triangles),
           options.drop_specks,
           most_distance(options.max_distance, voxel),
-          {volume.geometry.spacing[0], volume.geometry.spacing[1], volume.geometry.spacing[2]},
+          cell,
+          cell,
           options.normals == Normals::kQuadric,
           options.quality};
 }

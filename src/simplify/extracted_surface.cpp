@@ -18,7 +18,9 @@ using measure::Vector;
 
 // Below this sine of an angle the normal of a triangle is rounding noise; its sides say where it is.
 constexpr double kLeastSine = 1e-12;
-constexpr double kMostCells = 64;     // of a triangle that is listed in its cells
+constexpr double kMostCells = 64;     // of one grid that a triangle is listed in
+constexpr int kLastLevel = 63;        // of grids
+constexpr double kUsualReach = 1;     // of the distance, beyond the largest triangle: longer parts are seldom near one
 constexpr double kFinest = 1.0 / 16;  // of the distance
 constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
 
@@ -67,10 +69,25 @@ bool is_within(double most, const Vector& p, const ExtractedSurface::Corners& tr
   return comes_within(most, {triangle[0] - p, triangle[1] - p, triangle[2] - p});
 }
 
+// Calls visit(cell) for all cells of a box; ends when it answers false.
+template <class CellBox, class Visit>
+void each_cell(const CellBox& box, const Visit& visit) {
+  auto cell = box.first;
+  for (cell[2] = box.first[2]; cell[2] <= box.last[2]; ++cell[2]) {
+    for (cell[1] = box.first[1]; cell[1] <= box.last[1]; ++cell[1]) {
+      for (cell[0] = box.first[0]; cell[0] <= box.last[0]; ++cell[0]) {
+        if (!visit(cell)) return;
+      }
+    }
+  }
+}
+
 }  // namespace
 
-ExtractedSurface::ExtractedSurface(double most, const Vec3& cell)
-    : most_(most), cell_{std::max(cell.x, most / 2), std::max(cell.y, most / 2), std::max(cell.z, most / 2)} {}
+ExtractedSurface::ExtractedSurface(double most, const Vec3& cell, const Vec3& largest)
+    : most_(most),
+      cell_{std::max(cell.x, most / 2), std::max(cell.y, most / 2), std::max(cell.z, most / 2)},
+      largest_{largest.x, largest.y, largest.z} {}
 
 ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners) {
   Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), 0};
@@ -82,64 +99,96 @@ ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners) {
   return part;
 }
 
+// A part that is too long to be near one triangle is cut at once. That is a guess, and cutting early is never wrong.
+bool ExtractedSurface::is_long(const Part& part) const {
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
+    if (high - low > largest_[n] + kUsualReach * most_) return true;
+  }
+  return false;
+}
+
+double ExtractedSurface::length(int level, std::size_t axis) const { return std::ldexp(cell_[axis], 2 * level); }
+
 ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p) const {
   return {cell_number(p[0] / cell_[0]), cell_number(p[1] / cell_[1]), cell_number(p[2] / cell_[2])};
 }
 
 // Cells far apart may share a key: they are looked into together.
-std::uint64_t ExtractedSurface::key_of(const Cell& cell) {
-  constexpr std::uint64_t kMask = (1U << 21) - 1;
+std::uint64_t ExtractedSurface::key_of(int level, const Cell& cell) {
+  constexpr int kBits = 19;
+  constexpr std::uint64_t kMask = (1U << kBits) - 1;
   const auto part = [&](std::size_t n) { return static_cast<std::uint64_t>(cell[n]) & kMask; };
-  return part(2) << 42 | part(1) << 21 | part(0);
+  return static_cast<std::uint64_t>(level) << 3 * kBits | part(2) << 2 * kBits | part(1) << kBits | part(0);
 }
 
-// Calls visit(cell) for the cells of a triangle's box, of which the upper borders are not a part; false when they are
-// too many.
-template <class Visit>
-bool ExtractedSurface::each_cell(const Corners& triangle, const Visit& visit) const {
-  Cell first{};
-  Cell last{};
+double ExtractedSurface::CellBox::cells() const {
   double cells = 1;
+  for (std::size_t n = 0; n < 3; ++n) cells *= static_cast<double>(last[n] - first[n] + 1);
+  return cells;
+}
+
+// The cells of a triangle's box, of which the upper borders are not a part.
+ExtractedSurface::CellBox ExtractedSurface::cells_of(const Corners& triangle, int level) const {
+  CellBox box;
   for (std::size_t n = 0; n < 3; ++n) {
     const auto [low, high] = std::minmax({triangle[0][n], triangle[1][n], triangle[2][n]});
-    first[n] = cell_number(low / cell_[n]);
-    last[n] = std::max(first[n], -cell_number(-high / cell_[n]) - 1);
-    cells *= static_cast<double>(last[n] - first[n] + 1);
+    box.first[n] = cell_number(low / length(level, n));
+    box.last[n] = std::max(box.first[n], -cell_number(-high / length(level, n)) - 1);
   }
-  if (!(cells <= kMostCells)) return false;
-  Cell cell{};
-  for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
-    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
-      for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) visit(cell);
-    }
+  return box;
+}
+
+// The cells that a ball of the distance may touch.
+ExtractedSurface::CellBox ExtractedSurface::cells_around(const Vector& p, int level) const {
+  CellBox box;
+  for (std::size_t n = 0; n < 3; ++n) {
+    box.first[n] = cell_number((p[n] - most_) / length(level, n));
+    box.last[n] = cell_number((p[n] + most_) / length(level, n));
   }
-  return true;
+  return box;
+}
+
+// Lists a triangle in its cells of the finest grid in which they are few, and tells which one that is.
+int ExtractedSurface::list_in_cells(const Corners& triangle, std::uint32_t number, std::vector<Place>& places) const {
+  int level = 0;
+  CellBox box = cells_of(triangle, level);
+  while (!(box.cells() <= kMostCells) && level < kLastLevel) box = cells_of(triangle, ++level);
+  each_cell(box, [&](const Cell& cell) {
+    places.push_back({key_of(level, cell), number});
+    return true;
+  });
+  return level;
 }
 
 void ExtractedSurface::append(const Array<Corners>& triangles, double complete_below) {
   complete_below_ = complete_below;
   if (triangles.empty()) return;
-  Piece& piece = pieces_.emplace_back();
+  Piece piece;
   std::vector<Place> places;
-  std::vector<std::uint32_t> large;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    piece.top = std::max({piece.top, triangles[t][0][2], triangles[t][1][2], triangles[t][2][2]});
-    const bool listed = each_cell(triangles[t], [&](const Cell& cell) {
-      piece.first_layer = std::min(piece.first_layer, cell[2]);
-      piece.last_layer = std::max(piece.last_layer, cell[2]);
-      places.push_back({key_of(cell), t});
-    });
-    if (!listed) large.push_back(t);
+    const auto [low, high] = std::minmax({triangles[t][0][2], triangles[t][1][2], triangles[t][2][2]});
+    piece.lowest = std::min(piece.lowest, low);
+    piece.top = std::max(piece.top, high);
+    piece.levels |= std::uint64_t{1} << list_in_cells(triangles[t], t, places);
   }
   make_slots(piece, places);
-  piece.triangles.resize(places.size() + large.size());
+  piece.triangles.resize(places.size());
   std::vector<std::uint32_t> filled(piece.slots.size(), 0);
   for (const Place& place : places) {
     const std::size_t at = slot_of(piece, place.key);
     piece.triangles[piece.slots[at].first + filled[at]++] = triangles[place.triangle];
   }
-  piece.listed = places.size();
-  for (std::size_t n = 0; n < large.size(); ++n) piece.triangles[piece.listed + n] = triangles[large[n]];
+  push_piece(std::move(piece));
+}
+
+// Pieces lie one above the other, but for a few triangles.
+void ExtractedSurface::push_piece(Piece&& piece) {
+  piece.highest = pieces_.empty() ? piece.top : std::max(piece.top, pieces_.back().highest);
+  for (auto before = pieces_.rbegin(); before != pieces_.rend() && before->lowest > piece.lowest; ++before) {
+    before->lowest = piece.lowest;
+  }
+  pieces_.push_back(std::move(piece));
 }
 
 // A slot for each cell, with room for its triangles. The triangles of a cell come one after the other, as a rule.
@@ -180,32 +229,32 @@ std::uint64_t ExtractedSurface::bytes() const {
 }
 
 // What is within the distance of one of these triangles: all of the part, or its centre.
-ExtractedSurface::Found ExtractedSurface::find_among(const Part& part, std::span<const Corners> triangles) const {
-  const double most = most_ * most_;
+ExtractedSurface::Found ExtractedSurface::find_among(const Part& part, std::span<const Corners> triangles,
+                                                     double most) {
   Found found = Found::kNothing;
   for (const Corners& triangle : triangles) {
     const bool all = std::all_of(part.corners.begin(), part.corners.end(),
-                                 [&](const Vector& corner) { return is_within(most, corner, triangle); });
+                                 [&](const Vector& corner) { return is_within(most * most, corner, triangle); });
     if (all) return Found::kAll;
-    if (found == Found::kNothing && is_within(most, part.centre, triangle)) found = Found::kCentre;
+    if (found == Found::kNothing && is_within(most * most, part.centre, triangle)) found = Found::kCentre;
   }
   return found;
 }
 
-ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, const Cell& cell) const {
+ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
+                                                       std::span<const Piece> pieces, double most) {
   Found found = Found::kNothing;
-  const std::uint64_t key = key_of(cell);
-  for (const Piece& piece : pieces_) {
-    if (cell[2] < piece.first_layer || cell[2] > piece.last_layer) continue;
+  for (const Piece& piece : pieces) {
     const Slot& slot = piece.slots[slot_of(piece, key)];
-    found = std::max(found, find_among(part, {piece.triangles.data() + slot.first, slot.count}));
+    found = std::max(found, find_among(part, {piece.triangles.data() + slot.first, slot.count}, most));
     if (found == Found::kAll) break;
   }
   return found;
 }
 
 // In the cells that are `ring` cells away from that of the centre.
-ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring) const {
+ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring,
+                                                       std::span<const Piece> pieces) const {
   // Squared distance along an axis to a cell.
   const auto gap = [&](std::size_t n, std::int64_t number) {
     const double low = static_cast<double>(number) * cell_[n];
@@ -220,7 +269,7 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
       const std::int64_t step = side ? 1 : 2 * ring;
       for (cell[0] = centre[0] - ring; cell[0] <= centre[0] + ring; cell[0] += step) {
         if (gap(0, cell[0]) + gap(1, cell[1]) + gap(2, cell[2]) > most_ * most_) continue;
-        found = std::max(found, find_in_cell(part, cell));
+        found = std::max(found, find_in_cell(part, key_of(0, cell), pieces, most_));
         if (found == Found::kAll) return found;
       }
     }
@@ -228,36 +277,56 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
   return found;
 }
 
+// In the grids of larger triangles, where the cells that come near the centre are few.
+ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span<const Piece> pieces) const {
+  std::uint64_t levels = 0;
+  for (const Piece& piece : pieces) levels |= piece.levels;
+  Found found = Found::kNothing;
+  for (levels &= ~std::uint64_t{1}; levels != 0 && found != Found::kAll; levels &= levels - 1) {
+    const int level = std::countr_zero(levels);
+    each_cell(cells_around(part.centre, level), [&](const Cell& cell) {
+      found = std::max(found, find_in_cell(part, key_of(level, cell), pieces, most_));
+      return found != Found::kAll;
+    });
+  }
+  return found;
+}
+
+// The pieces with triangles that may be within the distance of the centre.
+std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Part& part) const {
+  const auto first = std::ranges::lower_bound(pieces_, part.centre[2] - most_, {}, &Piece::highest);
+  const auto end = std::upper_bound(first, pieces_.end(), part.centre[2] + most_,
+                                    [](double z, const Piece& piece) { return z < piece.lowest; });
+  return {first, end};
+}
+
 // Looks at the cells around the centre, ring by ring. Of a part that can be cut some more, rings behind the first one
 // that is near are left out: the surface farther away will do no better.
 ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
-  Found found = Found::kNothing;
-  for (const Piece& piece : pieces_) {
-    found = std::max(found,
-                     find_among(part, std::span(piece.triangles.data(), piece.triangles.size()).subspan(piece.listed)));
-  }
+  const std::span<const Piece> pieces = pieces_near(part);
+  if (pieces.empty()) return Found::kNothing;
+  Found found = find_above(part, pieces);
   const Cell centre = cell_of(part.centre);
   const double smallest = *std::min_element(cell_.begin(), cell_.end());
   const auto rings = static_cast<std::int64_t>(std::ceil(most_ / smallest));
   for (std::int64_t ring = 0; ring <= rings && found != Found::kAll; ++ring) {
     if (found == Found::kCentre && part.radius > kSmall * most_) break;
-    found = std::max(found, find_in_ring(part, centre, ring));
+    found = std::max(found, find_in_ring(part, centre, ring, pieces));
   }
   return found;
 }
 
 Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c) const {
-  std::array<Corners, 128> parts;                 // cut in depth: one sibling waits for each cut
-  const double promising = most_ + cell_[0] / 2;  // larger parts are seldom near one triangle: they are cut at once
+  std::array<Corners, 128> parts;  // cut in depth: one sibling waits for each cut
   std::size_t open = 0;
   parts[open++] = {vector_of(a), vector_of(b), vector_of(c)};
-  while (open > 0) {
+  for (int looked_at = 0; open > 0; ++looked_at) {
     Part part = part_of(parts[--open]);
-    const Found found = part.radius > promising ? Found::kCentre : find(part);
+    const Found found = is_long(part) ? Found::kCentre : find(part);
     if (found == Found::kAll) continue;
     if (part.centre[2] + most_ > complete_below_) return Reach::kUnknown;
     if (found == Found::kNothing || part.radius <= kFinest * most_) return Reach::kBeyond;
-    if (open + 2 > parts.size()) return Reach::kBeyond;
+    if (open + 2 > parts.size() || looked_at == kMostParts) return Reach::kBeyond;
     turn_longest_side_first(part.corners);
     const Vector middle = 0.5 * (part.corners[0] + part.corners[1]);
     parts[open++] = {part.corners[0], middle, part.corners[2]};

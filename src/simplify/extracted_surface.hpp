@@ -15,15 +15,17 @@
 
 namespace isoweave {
 
-// The triangles of a surface that comes in pieces, ordered by z, in a grid of cells, for one question: is every point
+// The triangles of a surface that comes in pieces, ordered by z, in grids of cells, for one question: is every point
 // of a triangle within a distance of them? The answer, once it is known, depends on the whole surface alone, not on the
-// pieces.
+// pieces. Its cost is bounded: no more than kMostParts parts of a triangle are looked at, each among the triangles in a
+// few cells of the few pieces that are near in z, however many there are.
 class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
 
-  // most: the distance, above 0. cell: lengths of a box in which there are a few triangles.
-  ExtractedSurface(double most, const Vec3& cell);
+  // most: the distance, above 0. cell: lengths of a box in which there are a few triangles. largest: lengths of a box
+  // that no triangle exceeds.
+  ExtractedSurface(double most, const Vec3& cell, const Vec3& largest);
 
   // The layer of cells that holds z.
   double layer_of(double z) const { return std::floor(z / cell_[2] + kShift); }
@@ -37,7 +39,8 @@ class ExtractedSurface {
   // Whether all of a triangle lies within the distance. It is cut at its longest side until the corners of each part
   // are within the distance of one and the same triangle of the surface, and with them, as that is convex, the part.
   // Parts smaller than a sixteenth of the distance are not cut again. So what is within 15/16 of the distance is always
-  // found to be, and nothing beyond it ever is. May be called by several threads at the same time.
+  // found to be, unless that takes more parts than kMostParts, and nothing beyond it ever is. May be called by several
+  // threads at the same time.
   Reach reach(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
   std::uint64_t bytes() const;
@@ -54,10 +57,10 @@ class ExtractedSurface {
       Piece& piece = pieces_[n];
       archive.list(piece.triangles);
       archive.list(piece.slots);
-      archive.value(piece.listed);
-      archive.value(piece.first_layer);
-      archive.value(piece.last_layer);
+      archive.value(piece.levels);
       archive.value(piece.top);
+      archive.value(piece.highest);
+      archive.value(piece.lowest);
     }
   }
 
@@ -66,6 +69,9 @@ class ExtractedSurface {
 
   // Of the layers that layer_of() tells apart: not where surfaces like to lie, on slices or halfway between them.
   static constexpr double kShift = 0.382;
+
+  // Parts of one triangle that is asked about.
+  static constexpr int kMostParts = 1 << 14;
 
   // A cell that holds triangles of its piece.
   struct Slot {
@@ -80,12 +86,12 @@ class ExtractedSurface {
   };
 
   struct Piece {
-    Array<Corners> triangles;  // one cell after the other, in each that it may touch; then those in too many cells
-    std::vector<Slot> slots;   // a hash table with open addresses
-    std::uint64_t listed = 0;  // triangles that are in cells
-    std::int64_t first_layer = std::numeric_limits<std::int64_t>::max();  // of cells
-    std::int64_t last_layer = std::numeric_limits<std::int64_t>::min();
-    double top = -std::numeric_limits<double>::infinity();  // z
+    Array<Corners> triangles;                                   // one cell after the other, in each that it may touch
+    std::vector<Slot> slots;                                    // a hash table with open addresses
+    std::uint64_t levels = 0;                                   // bit n: grid n has triangles
+    double top = -std::numeric_limits<double>::infinity();      // z
+    double highest = -std::numeric_limits<double>::infinity();  // of this piece and of all before it
+    double lowest = std::numeric_limits<double>::infinity();    // of this piece and of all behind it
   };
 
   // A part of the triangle that is asked about.
@@ -97,20 +103,34 @@ class ExtractedSurface {
 
   enum class Found : std::uint8_t { kNothing, kCentre, kAll };  // what is within the distance of some triangle
 
+  // Cells with both, in a grid of some level: those of level 0 are as long as they were asked for, those of each other
+  // one four times as long as those below.
+  struct CellBox {
+    Cell first{}, last{};
+    double cells() const;
+  };
+
   static Part part_of(const Corners& corners);
+  bool is_long(const Part& part) const;
+  double length(int level, std::size_t axis) const;
   Cell cell_of(const measure::Vector& p) const;
-  static std::uint64_t key_of(const Cell& cell);
-  template <class Visit>
-  bool each_cell(const Corners& triangle, const Visit& visit) const;
+  CellBox cells_of(const Corners& triangle, int level) const;
+  CellBox cells_around(const measure::Vector& p, int level) const;
+  static std::uint64_t key_of(int level, const Cell& cell);
+  int list_in_cells(const Corners& triangle, std::uint32_t number, std::vector<Place>& places) const;
   static void make_slots(Piece& piece, std::span<const Place> places);
   static std::size_t slot_of(const Piece& piece, std::uint64_t key);
+  void push_piece(Piece&& piece);
+  std::span<const Piece> pieces_near(const Part& part) const;
   Found find(const Part& part) const;
-  Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring) const;
-  Found find_in_cell(const Part& part, const Cell& cell) const;
-  Found find_among(const Part& part, std::span<const Corners> triangles) const;
+  Found find_above(const Part& part, std::span<const Piece> pieces) const;
+  Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring, std::span<const Piece> pieces) const;
+  static Found find_in_cell(const Part& part, std::uint64_t key, std::span<const Piece> pieces, double most);
+  static Found find_among(const Part& part, std::span<const Corners> triangles, double most);
 
   double most_;
   std::array<double, 3> cell_;
+  std::array<double, 3> largest_;
   double complete_below_ = -std::numeric_limits<double>::infinity();
   std::vector<Piece> pieces_;
 };

@@ -25,7 +25,7 @@ Zone::Zone(const ZoneOptions& zone_options, std::size_t finer_levels) : levels(f
   options = zone_options;
   limit = zone_options.retire;
   if (options.most_distance > 0) {
-    extracted_surface_ = std::make_unique<ExtractedSurface>(options.most_distance, options.cell);
+    extracted_surface_ = std::make_unique<ExtractedSurface>(options.most_distance, options.cell, options.largest);
     extracted = extracted_surface_.get();
   }
 }

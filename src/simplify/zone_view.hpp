@@ -93,6 +93,7 @@ struct ZoneOptions {
   bool drop_specks = false;    // a tetrahedron within its cost vanishes
   double most_distance = 0;    // of any point from the extracted surface; 0: no such bound
   Vec3 cell{};                 // lengths of a box that holds a few triangles, where there is such a bound
+  Vec3 largest{};              // lengths of a box that no triangle exceeds, likewise
   bool normals_count = false;  // in costs and places, by quadrics of their own
   Quality quality = Quality::kNormal;
 };

@@ -57,6 +57,18 @@ std::vector<Corners> sheet(unsigned seed) {
   return triangles;
 }
 
+// Lengths of a box that none of the triangles exceeds.
+Vec3 largest_of(const std::vector<Corners>& triangles) {
+  Vector largest{};
+  for (const Corners& t : triangles) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      const auto [low, high] = std::minmax({t[0][n], t[1][n], t[2][n]});
+      largest[n] = std::max(largest[n], high - low);
+    }
+  }
+  return {largest[0], largest[1], largest[2]};
+}
+
 double distance_to(const std::vector<Corners>& surface, const Vector& p) {
   double least = kAll;
   for (const Corners& triangle : surface) least = std::min(least, measure::squared_distance(p, triangle));
@@ -93,7 +105,7 @@ TEST(ExtractedSurface, SaysWhatDistancesSay) {
   for (const double most : {0.1, 0.4, 1.0}) {
     if (testing::kSanitized && most != 0.4) continue;
     const std::vector<Corners> triangles = sheet(1);
-    ExtractedSurface surface(most, {0.5, 0.5, 0.7});
+    ExtractedSurface surface(most, {0.5, 0.5, 0.7}, largest_of(triangles));
     surface.append(array_of(triangles), kAll);
     Random random(2);
     int within = 0;
@@ -128,7 +140,7 @@ TEST(ExtractedSurface, IsExactToASixteenth) {
       plane.push_back({Vector{x + 1, y, 0}, Vector{x + 1, y + 1, 0}, Vector{x, y + 1, 0}});
     }
   }
-  ExtractedSurface surface(1, {1, 1, 1});
+  ExtractedSurface surface(1, {1, 1, 1}, {1, 1, 0});
   surface.append(array_of(plane), kAll);
   const auto at = [&](double z) { return reach(surface, {Vector{0.2, 0.3, z}, Vector{7.1, 0.4, z}, Vector{3, 8, z}}); };
   EXPECT_EQ(at(0), Reach::kWithin);
@@ -148,9 +160,9 @@ TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
     return a[0][2] + a[1][2] + a[2][2] < b[0][2] + b[1][2] + b[2][2];
   });
   for (const double most : {0.2, 0.8}) {
-    ExtractedSurface whole(most, {0.5, 0.5, 0.5});
+    ExtractedSurface whole(most, {0.5, 0.5, 0.5}, largest_of(triangles));
     whole.append(array_of(triangles), kAll);
-    ExtractedSurface pieces(most, {0.5, 0.5, 0.5});
+    ExtractedSurface pieces(most, {0.5, 0.5, 0.5}, largest_of(triangles));
     int unknown = 0;
     for (std::size_t begin = 0; begin < triangles.size(); begin += 40) {
       const std::size_t end = std::min(begin + 40, triangles.size());
@@ -176,10 +188,56 @@ TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
   }
 }
 
+// Triangles of very different sizes, needles above all, are found in the grid that fits each of them.
+TEST(ExtractedSurface, SaysWhatDistancesSayAmongNeedles) {
+  Random random(8);
+  std::vector<Corners> needles = sheet(5);
+  for (int n = 0; n < 300; ++n) {
+    const Vector from = random.point(0, 6);
+    const double length = std::exp(random.number(-2, 7));
+    const Vector along = random.point(-length, length);
+    needles.push_back({from, from + along, from + along + random.point(-0.01, 0.01)});
+  }
+  constexpr double kMost = 0.3;
+  ExtractedSurface surface(kMost, {0.2, 0.4, 0.3}, largest_of(needles));
+  surface.append(array_of(needles), kAll);
+  int within = 0;
+  for (int trial = 0; trial < (testing::kSanitized ? 40 : 400); ++trial) {
+    const Corners triangle = random_triangle(random);
+    const double distance = farthest(needles, triangle);
+    if (reach(surface, triangle) == Reach::kWithin) {
+      ++within;
+      EXPECT_LE(distance, kMost * (1 + 1e-9)) << "trial " << trial;
+    } else {
+      EXPECT_GT(distance, kMost * 15 / 16 - 0.15) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(within, 10);
+  const Corners& longest = *std::ranges::max_element(needles, {}, [](const Corners& t) {
+    const Vector side = t[1] + -1.0 * t[0];
+    return measure::dot(side, side);
+  });
+  EXPECT_EQ(reach(surface, longest), Reach::kWithin) << "a triangle is near itself";
+}
+
+// Each triangle as a piece of its own, in any order.
+TEST(ExtractedSurface, PiecesMayOverlap) {
+  const std::vector<Corners> triangles = sheet(9);
+  ExtractedSurface whole(0.4, {0.5, 0.5, 0.5}, largest_of(triangles));
+  whole.append(array_of(triangles), kAll);
+  ExtractedSurface pieces(0.4, {0.5, 0.5, 0.5}, largest_of(triangles));
+  for (std::size_t n = triangles.size(); n > 0; --n) pieces.append(array_of({triangles[n - 1]}), kAll);
+  Random random(10);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Corners triangle = random_triangle(random);
+    EXPECT_EQ(reach(pieces, triangle), reach(whole, triangle)) << trial;
+  }
+}
+
 TEST(ExtractedSurface, ForgetsOnlyWhatNobodyAsksAbout) {
   constexpr double kMost = 0.3;
-  ExtractedSurface all(kMost, {0.5, 0.5, 0.5});
-  ExtractedSurface recent(kMost, {0.5, 0.5, 0.5});
+  ExtractedSurface all(kMost, {0.5, 0.5, 0.5}, {0.5, 0.5, 1});
+  ExtractedSurface recent(kMost, {0.5, 0.5, 0.5}, {0.5, 0.5, 1});
   for (int k = 0; k < 20; ++k) {
     std::vector<Corners> layer = sheet(static_cast<unsigned>(k));
     layer.resize(layer.size() - 3);
