@@ -89,6 +89,7 @@ AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& o
       take_index(choice, n, axes, options.time, "time", path);
     } else if (kind == AxisKind::kOther) {
       if (axes[n].size > 1) bad_input(path, "axes x, y, z, channel and time", text_of(axes));
+      if (axes[n].name.empty()) continue;
       choice.notes.push_back("axis " + isoweave::quoted(axes[n].name) + " has one sample and is left out");
     } else {
       std::size_t& slot = choice.axis.at(static_cast<std::size_t>(kind));

@@ -157,6 +157,18 @@ std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begi
   return open_text(file, from, layout, bytes);
 }
 
+std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
+                                           const DataLayout& layout, std::uint64_t bytes) {
+  auto samples = open_samples(file, begin, layout, bytes);
+  if (layout.encoding != DataLayout::Encoding::kRaw || layout.byte_skip < 0) return samples;
+  const std::uint64_t from = behind_lines(file, begin, layout.line_skip);
+  const std::uint64_t behind = file->size() - from - static_cast<std::uint64_t>(layout.byte_skip) - bytes;
+  if (behind > 0) {
+    info.notes.push_back(std::to_string(behind) + " bytes behind the samples that the header describes are not read");
+  }
+  return samples;
+}
+
 std::unique_ptr<ByteStream> open_samples(const DataFiles& files, const DataLayout& layout, std::uint64_t bytes,
                                          const std::string& header_path) {
   const auto count = static_cast<std::uint64_t>(files.count);

@@ -39,6 +39,11 @@ DataFiles numbered_files(const std::string& header_path, const std::string& patt
 std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begin, const DataLayout& layout,
                                          std::uint64_t bytes);
 
+// The same for the only file of a volume. What lies behind the samples, as where a header is wrong in its sizes, is
+// noted unless only reading would tell.
+std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
+                                           const DataLayout& layout, std::uint64_t bytes);
+
 // The samples in a series, `bytes` in all. Every file is looked at, so that a missing one is found now.
 std::unique_ptr<ByteStream> open_samples(const DataFiles& files, const DataLayout& layout, std::uint64_t bytes,
                                          const std::string& header_path);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <filesystem>
+#include <functional>
 #include <utility>
 
 #include "volume/band_stream.hpp"
@@ -14,6 +14,7 @@
 #include "volume/hdf5_place.hpp"
 #include "volume/length_units.hpp"
 #include "volume/printable.hpp"
+#include "volume/scaled_stream.hpp"
 
 namespace isoweave {
 namespace {
@@ -269,8 +270,50 @@ void take_place(OpenedVolume& volume, const Hdf5Place& place) {
   set_geometry(info.geometry, axes, info.path);
   take_unit(volume, unit);
   info.geometry.space = place.space;
-  info.slope = place.slope;
-  info.intercept = place.intercept;
+}
+
+// The scaling of the chosen samples along the one axis of the volume that it may change along.
+AxisScaling scaling_of(const Hdf5Place& place, const std::vector<ArrayAxis>& axes, const AxisChoice& choice,
+                       const std::string& path) {
+  AxisScaling scaling;
+  std::int64_t first = 0, step = 0, stride = 1, count = 1;
+  for (std::size_t n = place.scaled_axes; n-- > 0; stride *= axes[n].size) {
+    const auto found = std::find(choice.axis.begin(), choice.axis.end(), n);
+    if (found == choice.axis.end()) {
+      first += choice.at[n] * stride;
+    } else if (count > 1) {
+      bad_input(path, "a scaling that changes along one axis", "one that changes along two");
+    } else {
+      scaling.axis = static_cast<std::size_t>(found - choice.axis.begin());
+      step = stride;
+      count = axes[n].size;
+    }
+  }
+  for (std::int64_t n = 0; n < count; ++n) {
+    scaling.slope.push_back(place.slope[static_cast<std::size_t>(first + n * step)]);
+    scaling.intercept.push_back(place.intercept[static_cast<std::size_t>(first + n * step)]);
+  }
+  return scaling;
+}
+
+// A scaling that all samples share stays with the volume; with one that changes they are read as values.
+void scale_samples(OpenedVolume& volume, AxisScaling scaling) {
+  VolumeInfo& info = volume.info;
+  const auto varies = [](const std::vector<double>& list) {
+    return std::adjacent_find(list.begin(), list.end(), std::not_equal_to<>()) != list.end();
+  };
+  if (!varies(scaling.slope) && !varies(scaling.intercept) && scaling.slope.front() != 0) {
+    info.slope = scaling.slope.front();
+    info.intercept = scaling.intercept.front();
+    return;
+  }
+  const std::size_t axis = scaling.axis;
+  volume.samples = std::make_unique<ScaledStream>(std::move(volume.samples), info,
+                                                  std::exchange(volume.swap_bytes, false), std::move(scaling));
+  info.type = type_of_values(info.type);
+  info.notes.push_back("the scaling changes along axis " + std::to_string(axis) + ": samples are read as values, in " +
+                       std::string(sample_type_name(info.type)));
+  checked_volume_bytes(info);
 }
 
 OpenedVolume describe_volume(const Hdf5Dataset& dataset, const FoundDataset& found, const ArrayAttributes& attributes,
@@ -326,6 +369,9 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const std::int64_t depth = band_depth(volume.info, choice, chunk);
   check_stored(volume.info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
   volume.samples = std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth);
+  if (found.place && !found.place->slope.empty()) {
+    scale_samples(volume, scaling_of(*found.place, axes, choice, path));
+  }
   return volume;
 }
 

@@ -1,5 +1,7 @@
 // MINC 2: one image, its dimensions with starts, steps and directions, and the range of values that samples stand for.
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 
 #include "volume/hdf5_place.hpp"
@@ -88,29 +90,48 @@ std::pair<double, double> valid_range(const ArrayAttributes& image, SampleType t
   });
 }
 
-// One value of image-min or image-max; those of slices must be the same on all.
-std::optional<double> value_in(const Hdf5File& file, const std::string& name) {
-  const auto values = numbers_in(file, kRange + name);
-  if (!values || values->empty()) return std::nullopt;
-  for (const double value : *values) {
-    if (value == values->front()) continue;
-    bad_input(file.path, "one scaling for all slices",
-              "image-" + name + " from " + rounded_text(values->front()) + " to " + rounded_text(value) +
-                  " (mincconvert or mincreshape -normalize makes it one)");
-  }
-  return values->front();
+// The values of image-min or image-max: one, or one for each index along the first axes of the image.
+std::vector<double> values_in(const Hdf5File& file, const std::string& name) {
+  std::optional<std::vector<double>> values = numbers_in(file, kRange + name);
+  return values ? std::move(*values) : std::vector<double>();
 }
 
-void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes& image, SampleType type) {
-  if (type == SampleType::kFloat32 || type == SampleType::kFloat64) return;
-  const auto least = value_in(file, "min"), most = value_in(file, "max");
-  if (!least || !most || *least == *most) {
+// How many of the first axes have so many indices in all. Throws BadInput where none have.
+std::size_t axes_of_range(const std::vector<std::int64_t>& shape, std::size_t values, const std::string& path) {
+  std::uint64_t indices = 1;
+  for (std::size_t n = 0; n < shape.size(); ++n) {
+    if (indices == values) return n;
+    if (__builtin_mul_overflow(indices, static_cast<std::uint64_t>(shape[n]), &indices)) break;
+  }
+  bad_input(path, "image-min and image-max for each index along the first axes of the image",
+            std::to_string(values) + " values");
+}
+
+void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes& image, const Hdf5Dataset& dataset) {
+  if (!dataset.type || *dataset.type == SampleType::kFloat32 || *dataset.type == SampleType::kFloat64) return;
+  const std::vector<double> least = values_in(file, "min"), most = values_in(file, "max");
+  const bool empty =
+      least == most && std::adjacent_find(least.begin(), least.end(), std::not_equal_to<>()) == least.end();
+  if (least.empty() || most.empty() || empty) {
     place.notes.emplace_back("image-min and image-max give no range of values, and samples are read as stored");
     return;
   }
-  const auto [low, high] = valid_range(image, type);
-  place.slope = (*most - *least) / (high - low);
-  place.intercept = *least - low * place.slope;
+  if (least.size() != most.size()) {
+    bad_input(file.path, std::to_string(least.size()) + " values in image-max as in image-min",
+              std::to_string(most.size()));
+  }
+  place.scaled_axes = axes_of_range(dataset.shape, least.size(), file.path);
+  const auto [low, high] = valid_range(image, *dataset.type);
+  const double largest_sample = std::ldexp(1.0, 8 * static_cast<int>(sample_bytes(*dataset.type)));
+  for (std::size_t n = 0; n < least.size(); ++n) {
+    place.slope.push_back((most[n] - least[n]) / (high - low));
+    place.intercept.push_back(least[n] - low * place.slope.back());
+    const double largest = std::abs(place.slope.back()) * largest_sample + std::abs(place.intercept.back());
+    if (!(largest <= static_cast<double>(std::numeric_limits<float>::max()))) {
+      bad_input(file.path, "values that fit in float32 by image-min and image-max",
+                rounded_text(least[n]) + " to " + rounded_text(most[n]));
+    }
+  }
 }
 
 }  // namespace
@@ -135,7 +156,7 @@ std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& nam
     if (std::find(names.begin(), names.end(), kSpatial[axis].ours) != names.end()) take_dimension(place, file, axis);
   }
   check_units(place, file.path);
-  if (dataset.type) take_scaling(place, file, attributes, *dataset.type);
+  take_scaling(place, file, attributes, dataset);
   return place;
 }
 

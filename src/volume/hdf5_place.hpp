@@ -31,8 +31,10 @@ struct Hdf5Place {
   Axes axes;                            // of x, y and z
   std::array<std::string, 3> units;
   Space space = Space::kUnknown;
-  double slope = 1;
-  double intercept = 0;
+  // Scaling of the samples, where there is one: a single one, or one for each index along the first axes.
+  std::vector<double> slope;
+  std::vector<double> intercept;
+  std::size_t scaled_axes = 0;
   std::vector<std::string> notes;
 };
 

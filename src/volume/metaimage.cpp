@@ -239,7 +239,8 @@ std::optional<DataFiles> numbered_series(std::string_view value, const std::stri
   return numbered_files(path, std::string(words[0]), numbers);
 }
 
-std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const MetaFields& fields, std::uint64_t bytes) {
+std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, const MetaFields& fields,
+                                       std::uint64_t bytes) {
   const std::string& path = file->path();
   const std::string value(fields.get({kDataFile}));
   DataLayout layout;
@@ -248,12 +249,12 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const MetaFields& fi
   if (layout.byte_skip < -1) bad_input(path, "a HeaderSize of at least -1", std::to_string(layout.byte_skip));
   if (lower_case(value) == "local") {
     layout.byte_skip = 0;
-    return open_samples(file, fields.end, layout, bytes);
+    return open_only_file(info, file, fields.end, layout, bytes);
   }
   if (is_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
   if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
   const FilePtr data = open_file(beside(path, value));
-  if (layout.encoding == DataLayout::Encoding::kRaw) return open_samples(data, 0, layout, bytes);
+  if (layout.encoding == DataLayout::Encoding::kRaw) return open_only_file(info, data, 0, layout, bytes);
   const std::uint64_t begin = compressed_begin(data, fields, std::exchange(layout.byte_skip, 0));
   return open_samples(data, begin, layout, bytes);
 }
@@ -287,7 +288,7 @@ OpenedVolume open_metaimage(const FilePtr& file, const OpenOptions& options) {
   const bool big = is_true(fields.get({"binarydatabyteordermsb", "elementbyteordermsb"}));
   volume.swap_bytes = big != (std::endian::native == std::endian::big);
   const std::size_t each = sample_bytes(info.type);
-  auto samples = samples_of(file, fields, checked_bytes_of(axes, each, info.path));
+  auto samples = samples_of(info, file, fields, checked_bytes_of(axes, each, info.path));
   volume.samples = pick_volume(std::move(samples), axes, choice, each, info.path);
   return volume;
 }

@@ -381,8 +381,13 @@ OpenedVolume open_nifti(const FilePtr& file, bool gzip, const OpenOptions& optio
   const bool packed = header->single_file ? gzip : starts_as_gzip(image);
   const std::size_t each = sample_bytes(volume.info.type);
   check_size(image, packed, offset + picked_extent(axes, choice, each, file->path()));
-  if (!packed && image->size() < offset + checked_bytes_of(axes, each, file->path())) {
+  const std::uint64_t whole = offset + checked_bytes_of(axes, each, file->path());
+  if (!packed && image->size() < whole) {
     volume.info.notes.emplace_back("the file ends before the last of the volumes that its header says");
+  }
+  if (!packed && image->size() > whole) {
+    volume.info.notes.push_back(std::to_string(image->size() - whole) +
+                                " bytes behind the samples that the header describes are not read");
   }
   auto samples = whole_file(image, packed);
   if (samples->skip(offset) < offset) {

@@ -249,17 +249,17 @@ std::optional<DataFiles> numbered_series(std::string_view value, const std::stri
   return numbered_files(path, pattern, numbers);
 }
 
-std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const NrrdFields& fields, const DataLayout& layout,
-                                       std::uint64_t bytes) {
+std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, const NrrdFields& fields,
+                                       const DataLayout& layout, std::uint64_t bytes) {
   const std::string_view value = fields.get("datafile");
   const std::string& path = file->path();
   if (value.empty()) {
     if (!fields.blank_line) bad_input(path, "a blank line behind the header, or a data file", "neither");
-    return open_samples(file, fields.end, layout, bytes);
+    return open_only_file(info, file, fields.end, layout, bytes);
   }
   if (is_nrrd_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
   if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
-  return open_samples(open_file(beside(path, std::string(value))), 0, layout, bytes);
+  return open_only_file(info, open_file(beside(path, std::string(value))), 0, layout, bytes);
 }
 
 }  // namespace
@@ -284,7 +284,7 @@ OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options) {
   const bool text = layout.encoding == DataLayout::Encoding::kNumbers;
   volume.swap_bytes = !text && is_swapped(fields, info.type, info.path);
   const std::size_t each = sample_bytes(info.type);
-  auto samples = samples_of(file, fields, layout, checked_bytes_of(named, each, info.path));
+  auto samples = samples_of(info, file, fields, layout, checked_bytes_of(named, each, info.path));
   volume.samples = pick_volume(std::move(samples), named, choice, each, info.path);
   return volume;
 }

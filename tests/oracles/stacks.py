@@ -106,7 +106,7 @@ def check_minc(oracle, path):
 
 def check_minc_files(oracle):
     folder = os.path.join(os.path.dirname(nibabel.__file__), "tests", "data")
-    for name in ("minc2_1_scale.mnc", "minc2_4d.mnc", "minc2-4d-d.mnc"):
+    for name in ("minc2_1_scale.mnc", "minc2_4d.mnc", "minc2-4d-d.mnc", "small.mnc"):
         path = os.path.join(folder, name)
         if not os.path.exists(path):
             continue

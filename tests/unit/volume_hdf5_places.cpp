@@ -1,4 +1,6 @@
 // Where samples lie by Imaris, ITK, MINC and DREAM.3D, which stand on HDF5.
+#include <cmath>
+
 #include "hdf5_helpers.hpp"
 
 namespace isoweave::testing {
@@ -176,16 +178,51 @@ TEST(Hdf5Places, MincAxesInAnotherOrder) {
   EXPECT_EQ(samples_of<std::int16_t>(*source).at(1 + 2 * 2), 15);
 }
 
-TEST(Hdf5Places, MincScalingsThatDifferAreRefused) {
+TEST(Hdf5Places, MincScalingsOfSlicesGiveValues) {
   const TempFolder folder;
   {
     Writer writer(folder / "a.mnc");
     put_minc(writer, {"zspace,yspace,xspace", {0, 1}, {90, 90}});
     Writer other(folder / "b.mnc");
-    put_minc(other, {"zspace,yspace", {0}, {90}});
+    put_minc(other, {"xspace,yspace,zspace", {0, 1}, {90, 90}});
   }
-  EXPECT_TRUE(contains(refusal(folder / "a.mnc"), "expected one scaling for all slices, found image-min from 0 to 1"));
-  EXPECT_TRUE(contains(refusal(folder / "b.mnc"), "expected 3 names of axes in dimorder"));
+  const auto source = open_volume(folder / "a.mnc");
+  EXPECT_EQ(source->info().type, SampleType::kFloat32);
+  EXPECT_EQ(source->info().slope, 1);
+  EXPECT_TRUE(contains(source->info().notes.at(0), "the scaling changes along axis 2: samples are read as values"));
+  const auto values = samples_of<float>(*source, 1);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const double sample = static_cast<double>(n + 1);
+    EXPECT_FLOAT_EQ(values[n], static_cast<float>(n < 12 ? 0.45 * sample : 0.445 * sample + 1)) << n;
+  }
+  const auto skipped = open_volume(folder / "a.mnc");
+  std::vector<float> last(12);
+  skipped->read(1, 1, std::as_writable_bytes(std::span(last)));
+  EXPECT_TRUE(std::equal(last.begin(), last.end(), values.begin() + 12));
+  // The slowest axis of the file is that of the columns.
+  const auto turned = open_volume(folder / "b.mnc");
+  EXPECT_EQ(turned->info().dims, (std::array<std::int64_t, 3>{2, 3, 4}));
+  const auto columns = samples_of<float>(*turned, 1);
+  EXPECT_FLOAT_EQ(columns[0], 0.45F);
+  EXPECT_FLOAT_EQ(columns[1], 0.445F * 13 + 1);
+  EXPECT_FLOAT_EQ(columns[2], 0.45F * 5);
+}
+
+TEST(Hdf5Places, WrongMincHeadersAreRefused) {
+  const TempFolder folder;
+  const auto refused = [&folder](const MincFields& fields) {
+    {
+      Writer writer(folder / "a.mnc");
+      put_minc(writer, fields);
+    }
+    return refusal(folder / "a.mnc");
+  };
+  EXPECT_TRUE(contains(refused({"zspace,yspace", {0}, {90}}), "expected 3 names of axes in dimorder"));
+  EXPECT_TRUE(
+      contains(refused({"zspace,yspace,xspace", {0, 0, 1}, {9, 9, 9}}), "image-min and image-max for each index"));
+  EXPECT_TRUE(contains(refused({"zspace,yspace,xspace", {0, 1}, {9}}), "expected 2 values in image-max"));
+  EXPECT_TRUE(contains(refused({"zspace,yspace,xspace", {0}, {1e300}}), "expected values that fit in float32"));
+  EXPECT_TRUE(contains(refused({"zspace,yspace,xspace", {0}, {std::nan("")}}), "expected values that fit in float32"));
 }
 
 TEST(Hdf5Places, Dream3dSamplesAreInTheMiddleOfCells) {

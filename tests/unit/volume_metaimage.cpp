@@ -189,6 +189,12 @@ TEST(MetaImage, ContradictionsAreTold) {
   EXPECT_TRUE(contains(notes(7).at(0), "CompressedDataSize is 7, and the file has " + std::to_string(packed.size())));
 }
 
+TEST(MetaImage, BytesBehindTheSamplesAreTold) {
+  const TempFolder folder;
+  EXPECT_EQ(info_of(folder, "DimSize = 3 2 3\nElementSpacing = 1 1 1\n").notes.at(0),
+            "24 bytes behind the samples that the header describes are not read");
+}
+
 TEST(MetaImage, TakesOtherUnits) {
   const TempFolder folder;
   const Geometry geometry = info_of(folder, "Offset = 1 2 3\nElementSpacing = 2 3 4\nDistanceUnits = cm\n").geometry;

@@ -202,6 +202,15 @@ TEST(Nifti, SlicesThatWereWrittenAsTimes) {
   EXPECT_EQ(channels.at(6), samples.at(54));
 }
 
+TEST(Nifti, BytesBehindTheSamplesAreTold) {
+  const TempFolder folder;
+  NiftiFields fields;
+  fields.sform = 1;
+  fields.rows = {0.5, 0, 0, 10, 0, 0.75, 0, 20, 0, 0, 2, 30};
+  const VolumeInfo info = open_volume(folder.put("a.nii", nifti_file(fields) + "xyz"))->info();
+  EXPECT_EQ(info.notes.at(0), "3 bytes behind the samples that the header describes are not read");
+}
+
 TEST(Nifti, FormsThatDifferAreTold) {
   const TempFolder folder;
   NiftiFields fields;

@@ -263,6 +263,17 @@ TEST(Nrrd, TakesUnitsOfTheAxesOrTheWorld) {
   EXPECT_TRUE(contains(refusal_of(folder, "space units: \"mm\" \"mm\" \"ell\"\n"), "found 'mm', 'mm', 'ell'"));
 }
 
+TEST(Nrrd, BytesBehindTheSamplesAreTold) {
+  const TempFolder folder;
+  const std::string fields = "spacings: 1 1 1\n";
+  EXPECT_TRUE(info_of(folder, fields).notes.empty());
+  const VolumeInfo half = info_of(folder, fields + "sizes: 3 2 2\n");
+  EXPECT_EQ(half.notes.at(0), "36 bytes behind the samples that the header describes are not read");
+  folder.put("d.raw", "ab\ncd" + stored(kSamples) + "x");
+  const std::string detached = header(fields + "line skip: 1\nbyte skip: 2\ndata file: d.raw\n");
+  EXPECT_EQ(open_volume(folder.put("a.nhdr", detached))->info().notes.at(0).substr(0, 8), "1 bytes ");
+}
+
 TEST(Nrrd, SpacingsBesideDirectionsAreTold) {
   const TempFolder folder;
   const std::string axes = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n";
