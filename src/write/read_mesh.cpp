@@ -62,6 +62,13 @@ std::string_view text_of(std::string_view head) {
   }
 }
 
+// Text that begins with 'solid'. Some programs fill the line of the name up with bytes of 0.
+bool is_stl_text(const std::string& head) {
+  if (mesh_io::looks_like_text(head)) return true;
+  const std::string text = mesh_io::lower_case(head);
+  return text.find("facet") != std::string::npos && text.find("vertex") != std::string::npos;
+}
+
 // The formats that tell themselves, whatever the name says; nothing for others.
 std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string& head, bool named_obj) {
   if (head.starts_with("glTF")) return mesh_io::read_glb(input);
@@ -74,7 +81,7 @@ std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string&
   const std::string keyword = mesh_io::lower_case(word.substr(0, kLongestKeyword));
   if (keyword == "ply") return mesh_io::read_ply(input);
   if (mesh_io::is_off_keyword(word)) return mesh_io::read_off(input);
-  if (!named_obj && keyword == "solid" && mesh_io::looks_like_text(head)) return mesh_io::read_stl_ascii(input);
+  if (!named_obj && keyword == "solid" && is_stl_text(head)) return mesh_io::read_stl_ascii(input);
   return std::nullopt;
 }
 

@@ -122,6 +122,7 @@ TEST(ReadMeshDialects, StlTextWithOtherWords) {
   expect_square(parse("a.stl", replaced(replaced(kStl, "endfacet", "end facet"), "endloop", "End Loop")), "end facet");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "end solid")), "end solid");
   expect_square(parse("a.stl", replaced(kStl, "solid part 1", "solid")), "no name");
+  expect_square(parse("a.stl", replaced(kStl, "part 1", "p" + std::string(70, '\0'))), "a name filled up");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "endsolid another name")), "another name");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1", "endsolidPart")), "no blank before the name");
   expect_square(parse("a.stl", replaced(kStl, "endsolid part 1\n", "endsolid\n\nsolid empty\nendsolid")), "two solids");
