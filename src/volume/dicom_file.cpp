@@ -67,7 +67,8 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
     std::uint32_t tag;
     std::string DicomSlice::*field;
   };
-  static constexpr std::array<Known, 14> kKnown{{{0x00020002, &DicomSlice::media},
+  static constexpr std::array<Known, 15> kKnown{{{0x00080018, &DicomSlice::image},
+                                                 {0x00020002, &DicomSlice::media},
                                                  {0x00020010, &DicomSlice::syntax},
                                                  {0x00080008, &DicomSlice::image_type},
                                                  {0x0008103e, &DicomSlice::description},
@@ -269,6 +270,15 @@ bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes)
   return visit_sample_type(type, [&]<class Sample>() {
     if constexpr (std::is_integral_v<Sample>) return has_bits_above<Sample>(samples, slice.high);
     return false;
+  });
+}
+
+bool is_copy(const DicomSlice& a, const DicomSlice& b) {
+  if (a.image != b.image || a.syntax != b.syntax || a.pixels.size() != b.pixels.size()) return false;
+  const DicomBytesPtr first = bytes_of(a.file, a.syntax, a.data_set);
+  const DicomBytesPtr second = bytes_of(b.file, b.syntax, b.data_set);
+  return std::equal(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), [&](const DicomRange& x, const DicomRange& y) {
+    return x.second == y.second && bytes_at(*first, x) == bytes_at(*second, y);
   });
 }
 

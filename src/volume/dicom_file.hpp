@@ -20,6 +20,7 @@ struct DicomSlice {
   std::string path;    // of the file, for messages; with the number of the frame where there are several
   std::string syntax;  // Transfer Syntax UID
   std::string media;   // SOP class of the file, by its first group
+  std::string image;   // SOP Instance UID
   std::string series;  // Series Instance UID; programs that hide patients may drop it
   std::string description;
   std::string image_type;  // words between backslashes
@@ -68,6 +69,9 @@ bool is_dicomdir(const std::string& path);
 // Whether samples have bits above those that the header says are stored, and not just as many signs. They are cleared
 // by decode_dicom.
 bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes);
+
+// Whether the files of two slices hold the same bytes as samples.
+bool is_copy(const DicomSlice& a, const DicomSlice& b);
 
 // The samples, in the machine's byte order. Throws BadInput unless they are `bytes` of `type`.
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes);

@@ -26,7 +26,6 @@ void DicomFrames::take(const DicomElementWalk& walk, const DicomElement& element
   stack_.take(walk, element);
   if (walk.depth() == 0) {
     group_ = element.tag == kSharedGroups ? Group::kShared : element.tag == kFrameGroups ? Group::kFrame : Group::kNone;
-    enhanced_ = enhanced_ || group_ != Group::kNone;
   } else if (group_ == Group::kFrame && walk.depth() == 1 && element.tag == DicomElement::kItem) {
     if (frames_.size() == kMostFrames) {
       bad_input(file_.path(), "no more than " + std::to_string(kMostFrames) + " frames", "more");
@@ -70,7 +69,7 @@ std::size_t DicomFrames::count_of(const DicomSlice& common) const {
   if (static_cast<std::uint64_t>(said) > kMostFrames) {
     bad_input(common.path, "no more than " + std::to_string(kMostFrames) + " frames", std::to_string(said));
   }
-  if (enhanced_ && frames_.size() != static_cast<std::uint64_t>(said)) {
+  if (!frames_.empty() && frames_.size() != static_cast<std::uint64_t>(said)) {
     bad_input(common.path, "groups for each of " + std::to_string(said) + " frames", std::to_string(frames_.size()));
   }
   return static_cast<std::size_t>(said);
@@ -78,8 +77,7 @@ std::size_t DicomFrames::count_of(const DicomSlice& common) const {
 
 DicomSlice DicomFrames::slice(const DicomSlice& common, std::size_t frame) const {
   DicomSlice slice = common;
-  if (!enhanced_) return slice;
-  for (const Place* const place : {&shared_, &frames_[frame]}) {
+  for (const Place* const place : {&shared_, frames_.empty() ? &shared_ : &frames_[frame]}) {
     override_with(slice.position, place->position);
     override_with(slice.orientation, place->orientation);
     override_with(slice.pixel_spacing, place->pixel_spacing);
@@ -103,7 +101,7 @@ std::vector<DicomSlice> DicomFrames::slices(const DicomSlice& common) const {
     slices.back().packed = packed_;
     slices.back().pixels = std::move(samples[frame]);
   }
-  if (!enhanced_ && count > 1) stack_.place(slices);
+  if (frames_.empty() && count > 1) stack_.place(slices);
   return slices;
 }
 
@@ -114,6 +112,7 @@ std::vector<std::vector<DicomRange>> DicomFrames::samples_of(const DicomSlice& c
   const auto bits = static_cast<std::uint64_t>(common.bits) * static_cast<std::uint64_t>(common.samples);
   const auto bytes = static_cast<std::uint64_t>(common.rows * common.columns) * bits / 8;
   // All three are numbers of 16 bits, and there are fewer than 2^17 frames.
+  if (bytes == 0) bad_input(common.path, "samples of 8, 16 or 32 bits", std::to_string(common.bits));
   if (!packed_ && bytes * count > plain_.second) {
     bad_input(common.path, std::to_string(bytes * count) + " bytes of samples", std::to_string(plain_.second));
   }

@@ -41,7 +41,6 @@ class DicomFrames {
   DicomBytes& file_;
   DicomStack stack_;
   Group group_ = Group::kNone;  // that the last element lies in
-  bool enhanced_ = false;
   Place shared_;
   std::vector<Place> frames_;
   bool has_samples_ = false;

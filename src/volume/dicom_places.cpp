@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "volume/dicom_numbers.hpp"
 #include "volume/dicom_scouts.hpp"
@@ -69,8 +70,28 @@ PlacedSlice placed(const DicomSlice& slice, const Vector3& normal) {
   if (!std::isfinite(result.depth)) bad_input(slice.path, "a finite position", quoted(slice.position));
   result.slope = number_or(slice.slope, 1, "Rescale Slope", slice.path);
   result.intercept = number_or(slice.intercept, 0, "Rescale Intercept", slice.path);
-  if (result.slope == 0) bad_input(slice.path, "a Rescale Slope other than 0", "0");
   return result;
+}
+
+// Drops slices that are in the place of the one before and are copies of it: exports hold images twice.
+void drop_copies(PlacedSeries& series) {
+  std::vector<PlacedSlice> kept;
+  std::string copy;
+  for (PlacedSlice& slice : series.slices) {
+    const bool same_place = !kept.empty() && kept.back().position == slice.position;
+    if (same_place && is_copy(kept.back().slice, slice.slice)) {
+      copy = quoted(slice.slice.name());
+    } else {
+      kept.push_back(std::move(slice));
+    }
+  }
+  const std::size_t dropped = series.slices.size() - kept.size();
+  series.slices = std::move(kept);
+  if (dropped == 0) return;
+  series.notes.push_back(
+      std::to_string(dropped) +
+      (dropped == 1 ? " image is a copy of another and is" : " images are copies of others and are") +
+      " left out, as " + copy);
 }
 
 }  // namespace
@@ -94,6 +115,7 @@ PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   }
   std::stable_sort(result.slices.begin(), result.slices.end(),
                    [](const PlacedSlice& a, const PlacedSlice& b) { return a.depth < b.depth; });
+  drop_copies(result);
   return result;
 }
 

@@ -1,6 +1,9 @@
 #include "volume/dicom_series.hpp"
 
+#include <algorithm>
 #include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "volume/dicom_file.hpp"
@@ -63,6 +66,25 @@ OpenedVolume open_dicom_series(const SliceFiles& slices, const OpenOptions& opti
   return volume;
 }
 
+namespace {
+
+using Places = std::set<std::pair<std::string, double>>;
+
+Places places_of(const Series& slices) {
+  Places places;
+  for (const DicomSlice& slice : slices) places.emplace(slice.position, slice.offset);
+  return places;
+}
+
+// Whether two files are stacks in one place: several volumes, of which a file that is named is one.
+bool is_other_volume(const Series& slices, const Places& of_named_file) {
+  return std::any_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
+    return of_named_file.contains({slice.position, slice.offset});
+  });
+}
+
+}  // namespace
+
 OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options) {
   const std::vector<DicomSlice> self = read_dicom_header(path);
   if (self.empty()) bad_input(path, "a DICOM image", "a DICOM file without one");
@@ -70,16 +92,27 @@ OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options
   const std::string& chosen = options.series;
   if (!chosen.empty() && chosen != name_of(uid)) bad_input(path, "the series " + quoted(chosen), quoted(name_of(uid)));
   Series series;
+  const Places places = places_of(self);
   std::size_t files = 0;
+  std::size_t others = 0;
   for (const std::string& name : dicom_files_beside(path)) {
     const std::vector<DicomSlice> slices = read_dicom_header(name);
     if (slices.empty() || slices.front().series != uid) continue;
+    if (self.size() > 1 && !is_same_file(name, path) && is_other_volume(slices, places)) {
+      ++others;
+      continue;
+    }
     ++files;
     series.insert(series.end(), slices.begin(), slices.end());
   }
   OpenedVolume volume = open_dicom_slices(series, path, options);
   if (files > 1) {
     volume.info.notes.push_back("the series of this file: " + std::to_string(files) + " files of its folder");
+  }
+  if (others > 0) {
+    volume.info.notes.push_back(std::to_string(others) + (others == 1 ? " file" : " files") +
+                                " of the same series in the same place " + (others == 1 ? "is" : "are") +
+                                " left out: another volume");
   }
   return volume;
 }

@@ -98,6 +98,7 @@ bool is_scaled_alike(const Slices& slices) {
 // Sets how samples become values: by the scaling that all slices share, or by that of each slice while it is read.
 void set_scaling(VolumeInfo& info, const Slices& slices) {
   if (is_scaled_alike(slices)) {
+    if (slices.front().slope == 0) bad_input(slices.front().slice.path, "a Rescale Slope other than 0", "0");
     info.slope = slices.front().slope;
     info.intercept = slices.front().intercept;
     return;

@@ -36,8 +36,8 @@ struct EvenGrid {
 };
 
 // The grid that slices are read on, and notes about slices that seem to be missing or do not lie on it. Throws BadInput
-// when two slices lie in one place; when they are uneven and to be refused; and when an even distance would make
-// hundreds of slices of each.
+// when two slices lie in one place; when they are uneven and to be refused; and when a gap is much too wide to be
+// filled.
 EvenGrid even_grid(const SlicePlaces& places, UnevenSlices uneven, std::vector<std::string>& notes);
 
 // The slices of a grid, linear between the two nearest ones of `slices`; integers are rounded to the nearest, halves

@@ -126,13 +126,17 @@ double finest_distance(const Gaps& gaps) {
 
 // Slices at the finest distance, or a little closer so that the last one stays where it is.
 EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
-  constexpr double kMostForEach = 256;
+  constexpr double kWidest = 32;
   constexpr double kRounding = 0.05;  // of a slice
   EvenGrid grid{places.depths, 0, true};
-  const double steps = (places.depths.back() - places.depths.front()) / finest_distance(gaps);
-  if (!(steps <= kMostForEach * static_cast<double>(places.depths.size()))) {
-    bad_input(places.path, "distances between slices that go together", gaps.range());
+  const double finest = finest_distance(gaps);
+  // What lies so far apart are several volumes, and nothing can be said of what is between them.
+  if (!(gaps.lengths[gaps.widest] <= kWidest * finest)) {
+    bad_input(places.path, "slices that lie together, with no gap of more than 32 of them",
+              length_text(gaps.lengths[gaps.widest]) + " mm " + between_names(places, gaps.widest) + ", where " +
+                  length_text(finest) + " mm are usual");
   }
+  const double steps = (places.depths.back() - places.depths.front()) / finest;
   grid.count = std::max<std::int64_t>(std::llround(std::ceil(steps - kRounding)), 1) + 1;
   return grid;
 }

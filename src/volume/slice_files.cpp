@@ -167,6 +167,11 @@ bool is_folder(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return a == b || fs::equivalent(a, b, error);
+}
+
 bool is_pattern(const std::string& path) {
   std::error_code error;
   return path.find_first_of("*?[") != std::string::npos && !fs::exists(path, error);

@@ -37,6 +37,9 @@ struct SliceFiles {
 // BadInput when there is none, when there are two kinds, or when the content of a file is not what its name says.
 SliceFiles find_slices(const std::string& path);
 
+// Whether two paths name one file.
+bool is_same_file(const std::string& a, const std::string& b);
+
 // The slices of the folder that a DICOMDIR lies in, and of those below.
 SliceFiles slices_of_export(const std::string& dicomdir);
 

@@ -92,9 +92,25 @@ TEST(Dicom, RefusesSlicesInOnePlace) {
   put_series(folder);
   DicomFields fields;
   fields.position = at(32.5);
-  folder.put("t", dicom(fields, slice(2)));
+  folder.put("t", dicom(fields, slice(3)));
   const std::string message = refusal(folder / "");
   EXPECT_TRUE(contains(message, "expected a position of its own for every slice, found that of '")) << message;
+}
+
+TEST(Dicom, LeavesCopiesOut) {
+  const TempFolder folder;
+  put_series(folder);
+  for (const char* name : {"s7 (copy)", "s8 (copy)", "s8 (another copy)"}) {
+    folder.put(name, get(folder / std::string(name).substr(0, 2)));
+  }
+  const auto source = open_volume(folder / "");
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
+  EXPECT_TRUE(contains(source->info().notes.at(0), "3 images are copies of others and are left out, as '"));
+  // The same image by its UID, and other samples.
+  DicomFields fields;
+  fields.position = at(35);
+  folder.put("s7 (copy)", dicom(fields, slice(0)));
+  EXPECT_TRUE(contains(refusal(folder / ""), "expected a position of its own for every slice"));
 }
 
 TEST(Dicom, ReadsSignedSamplesScalingAndBothPhotometricInterpretations) {

@@ -126,6 +126,35 @@ TEST(DicomStack, RefusesFramesThatAreMoments) {
   EXPECT_TRUE(contains(refusal(folder.put("a", stack(fields))), "found frames that differ by Rotation Vector"));
 }
 
+// Several doses in one series: a file that is named is one of them.
+TEST(DicomStack, IsReadWithoutOthersInItsPlace) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.thickness = "2";
+  folder.put("a", stack(fields));
+  folder.put("b", stack(fields, slice(2) + slice(3) + slice(4)));
+  const auto source = open_volume(folder / "b");
+  EXPECT_EQ(samples_of<std::uint16_t>(*source), in_order({2, 3, 4}));
+  EXPECT_TRUE(
+      contains(all_notes(source->info()), "1 file of the same series in the same place is left out: another volume"));
+  EXPECT_TRUE(contains(refusal(folder / ""), "expected a position of its own for every slice"));
+  // Where it lies elsewhere it is another part of the volume.
+  fields.position = at(36);
+  folder.put("a", stack(fields));
+  EXPECT_EQ(open_volume(folder / "b")->info().dims[2], 6);
+}
+
+TEST(DicomStack, TakesGroupsThatAllFramesShare) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.pixel_spacing.clear();
+  const std::string measures = element(0x18, 0x88, "DS", "3") + element(0x28, 0x30, "DS", "0.5\\0.25");
+  fields.more = element(0x5200, 0x9229, "SQ", item(group(0x28, 0x9110, measures)));
+  const VolumeInfo info = open_volume(folder.put("a", stack(fields)))->info();
+  EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.25, 0.5, 3}));
+  EXPECT_EQ(info.dims[2], 3);
+}
+
 // The data set of a file without what is in front of it, and in implicit form.
 std::string bare(const std::string& file) {
   return file.substr(file.find(element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2")));
@@ -153,6 +182,12 @@ TEST(DicomBare, IsReadWithoutPreamble) {
     expect_prefixes_are_safe(one, "a", content);
     expect_flips_are_safe(one, "a", content, content.size(), 1000);
   }
+}
+
+TEST(DicomBare, TellsItsFormWhereOnlyTheMagicIsThere) {
+  const TempFolder folder;
+  const std::string content = std::string(128, '\0') + "DICM" + bare(dicom({}, slice(0)));
+  EXPECT_EQ(read_file<std::uint16_t>(folder.put("a", content)), in_order({0}));
 }
 
 TEST(DicomBare, IsNotSeenInOtherFiles) {

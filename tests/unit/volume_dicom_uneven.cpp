@@ -205,9 +205,16 @@ TEST(DicomUneven, TakesDistancesThatAreGivenForThoseOfTheSlices) {
 
 TEST(DicomUneven, RefusesDistancesThatDoNotGoTogether) {
   const TempFolder folder;
-  put_at(folder, {0, 1, 2, 1e9});
+  put_at(folder, {0, 1.25, 2.5, 205});
   const std::string message = refusal(folder / "");
-  EXPECT_TRUE(contains(message, "expected distances between slices that go together, found 1 to 1e+09 mm")) << message;
+  EXPECT_TRUE(contains(message,
+                       "expected slices that lie together, with no gap of more than 32 of them, found 202.5 mm between "
+                       "'"))
+      << message;
+  EXPECT_TRUE(contains(message, "where 1.25 mm are usual")) << message;
+  put_at(folder, {0, 1.25, 2.5, 42.5});
+  EXPECT_EQ(open_volume(folder / "")->info().dims[2], 35);
+  EXPECT_EQ(open_volume(folder / "", with(UnevenSlices::kMean))->info().dims[2], 4);
 }
 
 TEST(DicomUneven, NotesSlicesBesideTheirLine) {
@@ -258,6 +265,27 @@ TEST(DicomScaling, ScalesFramesByTheirOwnGroups) {
   const auto values = samples_of<float>(*source);
   EXPECT_EQ(values[3], 2.0F * kSamples[3] - 7);
   EXPECT_EQ(values[kSlice + 3], 5.0F * kSamples[kSlice + 3] - 7);
+}
+
+// A slice of nothing may have a slope of 0, where the others have their own.
+TEST(DicomScaling, TakesASlopeOfZeroAmongOthers) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.slope = "0.5";
+  folder.put("a", dicom(fields, slice(0)));
+  fields.position = at(32);
+  fields.slope = "0";
+  fields.intercept = "3";
+  folder.put("b", dicom(fields, slice(1)));
+  const auto values = read_file<float>(folder / "");
+  EXPECT_EQ(values[1], 0.5F * kSamples[1]);
+  EXPECT_EQ(values[kSlice + 1], 3);
+}
+
+TEST(DicomUneven, SurvivesFlips) {
+  const TempFolder folder;
+  put_at(folder, {30, 32, 36, 38});
+  expect_flips_are_safe(folder, "s1", get(folder / "s1"), 600, 1000);
 }
 
 TEST(DicomScaling, RefusesValuesThatNoFloatHolds) {
