@@ -172,6 +172,9 @@ class MeshJob {
     check_watch(arguments_.watch, control_.device);
     check_components(rule_, control_.device);
     check_labels(arguments_, control_);
+    if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
+      throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
+    }
     if (control_.device == Device::kCuda && !arguments_.checkpoint.empty()) {
       throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
     }

@@ -14,6 +14,7 @@ namespace isoweave::cli {
 namespace {
 
 constexpr std::string_view kGeneratePrefix = "generate:";
+constexpr std::string_view kStandardInput = "-";
 constexpr std::int64_t kMostThreads = 4096;
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -142,11 +143,18 @@ Quality parse_quality(std::string_view text) {
                                {{"fast", Quality::kFast}, {"normal", Quality::kNormal}, {"fine", Quality::kFine}});
 }
 
+bool is_read_once(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  return path == kStandardInput || std::filesystem::is_fifo(status) || std::filesystem::is_socket(status);
+}
+
 void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("VOLUME", input.path,
-                  "Volume file, folder of Zarr, N5 or slices, quoted pattern such as 'slices/*.tif', or "
-                  "generate:KIND:WxHxD[:TYPE[:SEED]]");
-  verb.add_option("--raw", input.raw, "Read headerless data: WxHxD:TYPE[:big][:skip=N]");
+                  "Volume file, - for standard input, folder of Zarr, N5 or slices, quoted pattern such as "
+                  "'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
+  verb.add_option("--raw", input.raw,
+                  "Read headerless data: WxHxD:TYPE[:big][:skip=N]; of a folder or pattern, a file for each slice");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
@@ -225,7 +233,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
                                                   {{"channel", SliceAxis::kChannels}, {"time", SliceAxis::kTimes}});
   }
   options.uneven_slices = parse_uneven(input.even_spacing);
-  return open_volume(input.path, options);
+  return open_volume(input.path == kStandardInput ? "/dev/stdin" : input.path, options);
 }
 
 // One end of a range, or what it is when it is left out.

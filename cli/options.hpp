@@ -56,6 +56,9 @@ struct InputOptions {
   std::string even_spacing;  // empty: resample, but refuse where labels are read
 };
 
+// Whether the volume comes out of standard input or another pipe, so that a later process cannot read it again.
+bool is_read_once(const std::string& path);
+
 void add_input_options(CLI::App& verb, InputOptions& input);
 std::optional<GenerateOptions> generated_input(const InputOptions& input);
 std::unique_ptr<SliceSource> open_input(const InputOptions& input);

@@ -28,7 +28,7 @@ std::uint64_t ByteStream::skip(std::uint64_t count) {
   return done;
 }
 
-FileStream::FileStream(std::shared_ptr<const InputFile> file, std::uint64_t begin, std::uint64_t end)
+FileStream::FileStream(FilePtr file, std::uint64_t begin, std::uint64_t end)
     : file_(std::move(file)), position_(std::min(begin, end)), end_(end) {}
 
 std::size_t FileStream::read(std::span<std::byte> out) {
@@ -38,6 +38,7 @@ std::size_t FileStream::read(std::span<std::byte> out) {
   constexpr std::uint64_t kHuge = std::uint64_t{8} << 30;
   if (file_->size() > kHuge) file_->forget(position_, got);
   position_ += got;
+  if (wanted < out.size()) file_->check_end(end_);
   return got;
 }
 

@@ -32,14 +32,14 @@ class ByteStream {
 // Bytes [begin, end) of a file, read straight into the caller's memory.
 class FileStream final : public ByteStream {
  public:
-  FileStream(std::shared_ptr<const InputFile> file, std::uint64_t begin, std::uint64_t end);
+  FileStream(FilePtr file, std::uint64_t begin, std::uint64_t end);
 
   std::size_t read(std::span<std::byte> out) override;
   std::uint64_t skip(std::uint64_t count) override;
-  bool skips() const override { return true; }
+  bool skips() const override { return file_->jumps(); }
 
  private:
-  std::shared_ptr<const InputFile> file_;
+  FilePtr file_;
   std::uint64_t position_;
   std::uint64_t end_;
 };

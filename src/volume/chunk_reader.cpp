@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The file, or nothing when there is none of this name.
-std::shared_ptr<InputFile> open_if_there(const std::string& path) {
+FilePtr open_if_there(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) return nullptr;
@@ -78,7 +78,7 @@ struct ChunkReader::Shard {
     std::uint64_t bytes = 0;
   };
   std::string path;
-  std::shared_ptr<InputFile> file;  // none: the shard is not stored
+  FilePtr file;  // none: the shard is not stored
   std::vector<Place> index;
 };
 
@@ -149,7 +149,7 @@ bool ChunkReader::read(const std::vector<std::int64_t>& index, Chunk& chunk) {
     if (stored) decode(std::move(*stored), path, chunk);
     return stored.has_value();
   }
-  const std::shared_ptr<InputFile> file = open_if_there(path);
+  const FilePtr file = open_if_there(path);
   if (!file) return false;
   if (file->size() > most_stored(chunk_bytes_)) {
     bad_input(path,

@@ -32,16 +32,17 @@ std::uint64_t bytes_behind(std::int64_t byte_skip) { return static_cast<std::uin
 
 [[noreturn]] void too_short(const FilePtr& file, std::uint64_t begin, std::uint64_t bytes) {
   bad_input(file->path(), std::to_string(bytes) + " bytes of samples from byte " + std::to_string(begin) + " on",
-            "a file of " + std::to_string(file->size()));
+            "a file of " + file->size_text());
 }
 
 std::unique_ptr<ByteStream> open_plain(const FilePtr& file, std::uint64_t begin, std::int64_t byte_skip,
                                        std::uint64_t bytes) {
   // Differences, not sums: the numbers come from a header and may be as large as they like.
-  const std::uint64_t available = file->size() - std::min(begin, file->size());
+  const std::uint64_t size = byte_skip >= 0 ? file->size() : file->exact_size();
+  const std::uint64_t available = size - std::min(begin, size);
   const std::uint64_t aside = byte_skip >= 0 ? static_cast<std::uint64_t>(byte_skip) : bytes_behind(byte_skip);
   if (aside > available || bytes > available - aside) too_short(file, begin, bytes);
-  const std::uint64_t first = byte_skip >= 0 ? begin + aside : file->size() - aside - bytes;
+  const std::uint64_t first = byte_skip >= 0 ? begin + aside : size - aside - bytes;
   return std::make_unique<FileStream>(file, first, first + bytes);
 }
 
@@ -160,7 +161,7 @@ std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begi
 std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
                                            const DataLayout& layout, std::uint64_t bytes) {
   auto samples = open_samples(file, begin, layout, bytes);
-  if (layout.encoding != DataLayout::Encoding::kRaw || layout.byte_skip < 0) return samples;
+  if (layout.encoding != DataLayout::Encoding::kRaw || layout.byte_skip < 0 || !file->jumps()) return samples;
   const std::uint64_t from = behind_lines(file, begin, layout.line_skip);
   const std::uint64_t behind = file->size() - from - static_cast<std::uint64_t>(layout.byte_skip) - bytes;
   if (behind > 0) {

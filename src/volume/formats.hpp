@@ -12,16 +12,45 @@
 
 namespace isoweave {
 
-using FilePtr = std::shared_ptr<const InputFile>;
-
 OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout);
+// Whether a file has just the size of the layout.
+bool fits_raw(const InputFile& file, const RawLayout& layout);
+// A file of samples without a header for each slice: those that a pattern names, or that are in a folder.
+OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout);
 
-// Whether `head`, the first bytes of a file (of its inflated data where `gzip`), are a NIfTI header.
+// Whether `head`, the first bytes of a file, are a NIfTI header.
 bool is_nifti(std::string_view head);
-// `gzip`: the header and the samples are in a gzip stream.
-OpenedVolume open_nifti(const FilePtr& file, bool gzip, const OpenOptions& options);
+OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options);
+// The file of samples that belongs to a header file: "scan.img" or "scan.img.gz" for "scan.hdr".
+FilePtr image_of_header(const std::string& header_path);
 // Bytes of a file that is_nifti needs.
 inline constexpr std::size_t kNiftiHeadBytes = 540;
+
+// Needs as many bytes as is_nifti.
+bool is_analyze(std::string_view head);
+OpenedVolume open_analyze(const FilePtr& file);
+
+bool is_mgh(std::string_view head);
+OpenedVolume open_mgh(const FilePtr& file);
+
+bool is_mrc(std::string_view head);
+// Whether the numbers are those of a header, as in files from before there was a magic.
+bool is_old_mrc(std::string_view head);
+OpenedVolume open_mrc(const FilePtr& file);
+// Bytes of a file that is_mrc and is_old_mrc need.
+inline constexpr std::size_t kMrcHeadBytes = 1024;
+
+bool is_npy(std::string_view head);
+OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options);
+
+bool is_amira(std::string_view head);
+OpenedVolume open_amira(const FilePtr& file);
+
+bool is_slc(std::string_view head);
+OpenedVolume open_slc(const FilePtr& file);
+
+bool is_fits(std::string_view head);
+OpenedVolume open_fits(const FilePtr& file);
 
 OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options);
 

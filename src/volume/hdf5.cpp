@@ -15,6 +15,7 @@
 #include "volume/length_units.hpp"
 #include "volume/printable.hpp"
 #include "volume/scaled_stream.hpp"
+#include "volume/whole_input.hpp"
 
 namespace isoweave {
 namespace {
@@ -347,7 +348,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const Hdf5Session session(path);
   const Hdf5Functions& h5 = session.h5();
   OpenDataset open;
-  open.file = Hdf5Handle(h5.fopen(path.c_str(), kReadOnly, kDefault), h5.fclose);
+  open.file = Hdf5Handle(h5.fopen(FileName(*file).text().c_str(), kReadOnly, kDefault), h5.fclose);
   if (!open.file) session.refuse(path, "a readable HDF5 file");
   const FoundDataset found = find_dataset({session, open.file.id(), path}, options);
   open.dataset = Hdf5Handle(h5.oopen(open.file.id(), found.name.c_str(), kDefault), h5.oclose);

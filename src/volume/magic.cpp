@@ -6,6 +6,7 @@
 
 #include "volume/dicom_bare.hpp"
 #include "volume/formats.hpp"
+#include "volume/header_text.hpp"
 
 namespace isoweave {
 
@@ -30,7 +31,9 @@ bool has_dicom_magic(std::string_view head) {
 bool is_hdf5(const InputFile& file) {
   constexpr std::string_view kMagic = "\x89HDF\r\n\x1a\n";
   constexpr std::uint64_t kFirstBlock = 512;
-  for (std::uint64_t at = 0; at < file.size(); at = at == 0 ? kFirstBlock : 2 * at) {
+  // Of a file that is inflated as it is read, only what is at hand.
+  const std::uint64_t end = file.jumps() ? file.size() : std::min<std::uint64_t>(file.size(), kLargestHeader);
+  for (std::uint64_t at = 0; at < end; at = at == 0 ? kFirstBlock : 2 * at) {
     std::array<char, kMagic.size()> head{};
     file.read_at(at, std::as_writable_bytes(std::span(head)));
     if (std::equal(head.begin(), head.end(), kMagic.begin())) return true;

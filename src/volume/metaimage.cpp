@@ -201,10 +201,10 @@ void set_axes(OpenedVolume& volume, const MetaFields& fields, std::size_t axes) 
 std::uint64_t compressed_begin(const FilePtr& file, const MetaFields& fields, std::int64_t header_size) {
   if (header_size >= 0) return static_cast<std::uint64_t>(header_size);
   const auto stored = integer_of(fields, {"compresseddatasize"}, file->path());
-  if (!stored || *stored < 1 || static_cast<std::uint64_t>(*stored) > file->size()) {
+  if (!stored || *stored < 1 || static_cast<std::uint64_t>(*stored) > file->exact_size()) {
     bad_input(file->path(), "a CompressedDataSize within the file, for HeaderSize -1", "none");
   }
-  return file->size() - static_cast<std::uint64_t>(*stored);
+  return file->exact_size() - static_cast<std::uint64_t>(*stored);
 }
 
 // What is stored behind the header, or in the one other file, is as long as the header says. Nobody needs the number:
@@ -219,7 +219,7 @@ void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaField
       local ? static_cast<std::int64_t>(fields.end) : integer_of(fields, {"headersize"}, info.path).value_or(0);
   if (skip < 0) return;
   const FilePtr data = local ? file : open_file(beside(info.path, std::string(fields.get({kDataFile}))));
-  const auto found = static_cast<std::int64_t>(data->size()) - skip;
+  const auto found = static_cast<std::int64_t>(data->exact_size()) - skip;
   if (found == *said) return;
   info.notes.push_back("CompressedDataSize is " + std::to_string(*said) + ", and the file has " +
                        std::to_string(found) + " bytes of compressed samples, which are read");

@@ -5,17 +5,19 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "isoweave/error.hpp"
 #include "volume/array_axes.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/header_fields.hpp"
 #include "volume/header_text.hpp"
+#include "volume/packed_file.hpp"
 #include "volume/picked_stream.hpp"
 
 namespace isoweave {
@@ -42,29 +44,7 @@ struct NiftiHeader {
   std::int64_t units = 0;
 };
 
-class FieldReader {
- public:
-  FieldReader(std::string_view bytes, bool swapped) : bytes_(bytes), swapped_(swapped) {}
-
-  template <class Field>
-  Field at(std::size_t offset) const {
-    std::array<char, sizeof(Field)> raw;
-    std::memcpy(raw.data(), bytes_.data() + offset, sizeof(Field));
-    if (swapped_) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<Field>(raw);
-  }
-
-  template <class Field, class Value, std::size_t kCount>
-  void fill(std::array<Value, kCount>& values, std::size_t offset) const {
-    for (std::size_t n = 0; n < kCount; ++n) values[n] = static_cast<Value>(at<Field>(offset + n * sizeof(Field)));
-  }
-
- private:
-  std::string_view bytes_;
-  bool swapped_;
-};
-
-NiftiHeader parse_version1(const FieldReader& field) {
+NiftiHeader parse_version1(const HeaderFields& field) {
   NiftiHeader header;
   field.fill<std::int16_t>(header.dim, 40);
   header.type = field.at<std::int16_t>(70);
@@ -80,7 +60,7 @@ NiftiHeader parse_version1(const FieldReader& field) {
   return header;
 }
 
-NiftiHeader parse_version2(const FieldReader& field) {
+NiftiHeader parse_version2(const HeaderFields& field) {
   NiftiHeader header;
   header.version = 2;
   header.type = field.at<std::int16_t>(12);
@@ -100,7 +80,7 @@ NiftiHeader parse_version2(const FieldReader& field) {
 // Nothing unless both the size field and the magic are those of a NIfTI header.
 std::optional<NiftiHeader> parse_header(std::string_view bytes) {
   for (const bool swapped : {false, true}) {
-    const FieldReader field(bytes, swapped);
+    const HeaderFields field(bytes, swapped);
     if (bytes.size() >= kHeader1 && field.at<std::int32_t>(0) == kHeader1) {
       const std::string_view magic = bytes.substr(344, 4);
       if (magic != std::string_view("n+1\0", 4) && magic != std::string_view("ni1\0", 4)) return std::nullopt;
@@ -329,70 +309,43 @@ std::uint64_t data_offset(const NiftiHeader& header, std::string_view path) {
   return static_cast<std::uint64_t>(offset);
 }
 
-std::unique_ptr<ByteStream> whole_file(const FilePtr& file, bool gzip) {
-  auto stored = std::make_unique<FileStream>(file, 0, file->size());
-  if (!gzip) return stored;
-  return std::make_unique<InflateStream>(std::move(stored), file->path());
-}
+}  // namespace
 
-// The file of samples that belongs to a header file: "scan.img" or "scan.img.gz" for "scan.hdr".
-FilePtr image_of(const std::string& header_path) {
+FilePtr image_of_header(const std::string& header_path) {
   std::string stem = header_path;
   if (stem.ends_with(".gz")) stem.resize(stem.size() - 3);
-  if (stem.ends_with(".hdr")) stem.resize(stem.size() - 4);
-  const std::string plain = stem + ".img";
+  const bool capitals = stem.ends_with(".HDR");
+  if (capitals || stem.ends_with(".hdr")) stem.resize(stem.size() - 4);
+  const std::string plain = stem + (capitals ? ".IMG" : ".img");
   const std::string packed = plain + ".gz";
-  try {
-    return open_file(plain);
-  } catch (const BadInput& error) {
-    try {
-      return open_file(packed);
-    } catch (const BadInput&) {
-      throw error;
-    }
-  }
+  std::error_code error;
+  const bool only_packed = !std::filesystem::exists(plain, error) && std::filesystem::exists(packed, error);
+  return unpacked(open_file(only_packed ? packed : plain));
 }
-
-bool starts_as_gzip(const FilePtr& file) { return file->head(2) == "\x1f\x8b"; }
-
-void check_size(const FilePtr& file, bool gzip, std::uint64_t needed) {
-  if (gzip) {
-    check_plausible(file->path(), needed, file->size(), kDeflateRatio);
-  } else if (file->size() < needed) {
-    bad_input(file->path(), std::to_string(needed) + " bytes by its header", std::to_string(file->size()));
-  }
-}
-
-}  // namespace
 
 bool is_nifti(std::string_view head) { return parse_header(head).has_value(); }
 
-OpenedVolume open_nifti(const FilePtr& file, bool gzip, const OpenOptions& options) {
-  std::string head(kNiftiHeadBytes, '\0');
-  head.resize(whole_file(file, gzip)->read(std::as_writable_bytes(std::span(head))));
-  const std::optional<NiftiHeader> header = parse_header(head);
+OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options) {
+  const std::optional<NiftiHeader> header = parse_header(file->head(kNiftiHeadBytes));
   if (!header) bad_input(file->path(), "a NIfTI header (size 348 or 540 and its magic)", "other bytes");
   const std::vector<ArrayAxis> axes = axes_of(*header, file->path());
   const AxisChoice choice = choose_axes(axes, options, file->path());
   OpenedVolume volume;
   volume.info = read_info(*header, axes, choice, file->path());
   const std::uint64_t offset = data_offset(*header, file->path());
-  const FilePtr image = header->single_file ? file : image_of(file->path());
-  const bool packed = header->single_file ? gzip : starts_as_gzip(image);
+  const FilePtr image = header->single_file ? file : image_of_header(file->path());
   const std::size_t each = sample_bytes(volume.info.type);
-  check_size(image, packed, offset + picked_extent(axes, choice, each, file->path()));
+  samples_in(image, offset, picked_extent(axes, choice, each, file->path()));  // refuses a file that cannot hold them
   const std::uint64_t whole = offset + checked_bytes_of(axes, each, file->path());
-  if (!packed && image->size() < whole) {
+  if (image->size() < whole) {
     volume.info.notes.emplace_back("the file ends before the last of the volumes that its header says");
   }
-  if (!packed && image->size() > whole) {
+  // A packed file's size is not known before all of it is inflated.
+  if (image->jumps() && image->size() > whole) {
     volume.info.notes.push_back(std::to_string(image->size() - whole) +
                                 " bytes behind the samples that the header describes are not read");
   }
-  auto samples = whole_file(image, packed);
-  if (samples->skip(offset) < offset) {
-    bad_input(image->path(), "samples from byte " + std::to_string(offset) + " on", "fewer bytes");
-  }
+  auto samples = std::make_unique<FileStream>(image, offset, image->size());
   volume.samples = pick_volume(std::move(samples), axes, choice, each, file->path());
   volume.swap_bytes = header->swapped;
   return volume;

@@ -1,5 +1,6 @@
 // Tells the format of a file by its content, then by its name, and hands it to the format's reader.
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -11,22 +12,23 @@
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/packed_file.hpp"
 #include "volume/printable.hpp"
 #include "volume/slice_files.hpp"
 #include "volume/slice_series.hpp"
+#include "volume/unread_formats.hpp"
+#include "volume/whole_input.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr std::size_t kHeadBytes = 1024;
+constexpr std::size_t kHeadBytes = std::max(kWhatElseBytes, kMrcHeadBytes);
 
-// What a file holds once inflated; empty when it is no gzip file, or a broken one.
-std::string inflated_head(const FilePtr& file, std::string_view head) {
-  if (!head.starts_with("\x1f\x8b")) return {};
-  std::string text(kNiftiHeadBytes, '\0');
-  InflateStream stream(std::make_unique<FileStream>(file, 0, file->size()), file->path());
-  text.resize(stream.read(std::as_writable_bytes(std::span(text))));
-  return text;
+// Maps of electron microscopy, which had no magic before the year 2000.
+bool is_mrc_name(std::string_view name) {
+  static constexpr std::array<std::string_view, 8> kEndings{".mrc", ".mrcs", ".map", ".ccp4",
+                                                            ".rec", ".st",   ".ali", ".preali"};
+  return std::any_of(kEndings.begin(), kEndings.end(), [&](std::string_view end) { return name.ends_with(end); });
 }
 
 // The format that a name stands for, for the message when the content is not of it.
@@ -40,43 +42,77 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
   if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
   if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes, or the elements of a DICOM data set";
+  if (name.ends_with(".am")) return "the line '# AmiraMesh'";
+  if (name.ends_with(".npy")) return "the magic of NPY";
+  if (name.ends_with(".mgh") || name.ends_with(".mgz")) return "an MGH header of version 1";
+  if (is_mrc_name(name)) return "an MRC header with dimensions, mode and axes";
   if (name.ends_with(".h5") || name.ends_with(".hdf5")) return "the magic of HDF5";
-  return "NRRD, MetaImage, NIfTI, PVM, TIFF, PNG, DICOM, VTK, HDF5, or raw with a layout";
+  return "NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, AmiraMesh, FITS, SLC, PVM, TIFF, PNG, DICOM, VTK, HDF5, NPY, or "
+         "raw with a layout";
 }
 
-// "scan.hdr" for "scan.img": the samples of a NIfTI pair do not say what they are.
+// "scan.hdr" for "scan.img" or "scan.img.gz": the samples of a pair do not say what they are.
 std::string header_of_image(const std::string& path) {
-  constexpr std::string_view kImage = ".img";
-  return path.ends_with(kImage) ? path.substr(0, path.size() - kImage.size()) + ".hdr" : std::string();
+  std::string stem = path.ends_with(".gz") ? path.substr(0, path.size() - 3) : path;
+  const bool capitals = stem.ends_with(".IMG");
+  if (!capitals && !stem.ends_with(".img")) return {};
+  stem.resize(stem.size() - 4);
+  return stem + (capitals ? ".HDR" : ".hdr");
 }
 
-OpenedVolume open_by_name(const FilePtr& file, const OpenOptions& options) {
+// What has no magic, or one that other data may begin with by chance.
+OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const OpenOptions& options) {
   const std::string& path = file->path();
   if (const std::optional<RawLayout> layout = raw_layout_from_name(path)) return open_raw(file, *layout);
-  const std::string name = lower_case(path);
+  std::string name = lower_case(path);
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  if (is_analyze(head)) return open_analyze(file);
+  if (is_mgh(head)) return open_mgh(file);
+  if (is_mrc_name(name) && is_old_mrc(head)) return open_mrc(file);
   if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file, options);
   const std::string header = header_of_image(path);
   if (!header.empty()) {
-    OpenedVolume volume = open_nifti(open_file(header), false, options);
+    const FilePtr described = unpacked(open_file(header));
+    const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
+    OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described);
     volume.info.path = path;
     return volume;
   }
-  bad_input(path, format_of_name(name), "other content");
+  bad_input(path, format_of_name(name), what_else(head, path));
 }
 
 OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   const std::string head = file->head(kHeadBytes);
   if (head.starts_with("NRRD")) return open_nrrd(file, options);
-  if (is_tiff(head)) return open_tiff(file, false, options);
+  if (is_tiff(head)) return open_tiff(jumping_file(file), false, options);
   if (is_png(head)) return open_png(file);
-  if (is_vti(head)) return open_vti(file, options);
-  if (is_vtk_legacy(head)) return open_vtk_legacy(file, options);
-  if (is_pvm(head)) return open_pvm(file);
+  if (is_vti(head)) return open_vti(jumping_file(file), options);
+  if (is_vtk_legacy(head)) return open_vtk_legacy(jumping_file(file), options);
+  if (is_pvm(head)) return open_pvm(jumping_file(file));
   if (is_metaimage(head)) return open_metaimage(file, options);
-  if (is_nifti(head)) return open_nifti(file, false, options);
-  if (is_nifti(inflated_head(file, head))) return open_nifti(file, true, options);
-  if (is_hdf5(*file)) return open_hdf5(file, options);
-  return open_by_name(file, options);
+  if (is_nifti(head)) return open_nifti(file, options);
+  if (is_npy(head)) return open_npy(file, options);
+  if (is_mrc(head)) return open_mrc(file);
+  if (is_amira(head)) return open_amira(file);
+  if (is_slc(head)) return open_slc(file);
+  if (is_fits(head)) return open_fits(file);
+  if (is_hdf5(*file)) return open_hdf5(jumping_file(file), options);
+  return open_by_name(file, head, options);
+}
+
+// A DICOM file that is a file, not what comes out of a pipe or a packed one, stands for the files beside it.
+OpenedVolume open_dicom(const FilePtr& file, const OpenOptions& options) {
+  if (!file->jumps() || file->system_path() != file->path()) {
+    bad_input(file->path(), "DICOM as a plain file or a folder of them", "DICOM in a pipe or in gzip");
+  }
+  if (is_dicomdir(file->path())) return open_dicom_series(slices_of_export(file->path()), options);
+  return open_dicom_file(file->path(), options);
+}
+
+// What the file holds. Samples without a header may begin as gzip does by chance: then their number is right.
+FilePtr content_of(const FilePtr& stored, const OpenOptions& options) {
+  const std::optional<RawLayout> layout = options.raw ? options.raw : raw_layout_from_name(stored->path());
+  return layout && fits_raw(*stored, *layout) ? stored : unpacked(stored);
 }
 
 void refuse_series(const std::string& path, const std::string& series) {
@@ -95,9 +131,9 @@ void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   if ((!named && !options.dataset.empty()) || (!array && options.level)) {
     bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
   }
-  const bool axes = array || is_one_of(info.format, {"tiff", "nifti", "nrrd", "metaimage"});
+  const bool axes = array || is_one_of(info.format, {"npy", "tiff", "nifti", "nrrd", "metaimage"});
   if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {
-    bad_input(info.path, "TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and --slices-from",
+    bad_input(info.path, "NPY, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and --slices-from",
               info.format);
   }
 }
@@ -113,18 +149,22 @@ OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
   return open_slice_series(slices, options);
 }
 
-OpenedVolume open_dicom(const std::string& path, const OpenOptions& options) {
-  if (!is_dicomdir(path)) return open_dicom_file(path, options);
-  return open_dicom_series(slices_of_export(path), options);
+OpenedVolume open_single(const FilePtr& stored, const OpenOptions& options) {
+  const FilePtr file = content_of(stored, options);
+  if (options.raw) return open_raw(file, *options.raw);
+  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom(file, options);
+  refuse_series(file->path(), options.series);
+  return open_by_content(file, options);
 }
 
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
-  if (options.raw) return open_raw(open_file(path), *options.raw);
-  if (is_folder(path) || is_pattern(path)) return open_folder(path, options);
-  const FilePtr file = open_file(path);
-  if (is_dicom(file->head(kDicomHeadBytes))) return open_dicom(path, options);
-  refuse_series(path, options.series);
-  return open_by_content(file, options);
+  const bool several = is_folder(path) || is_pattern(path);
+  if (several && options.raw) return open_raw_slices(path, *options.raw);
+  if (several) return open_folder(path, options);
+  const FilePtr input = open_input_file(path);
+  OpenedVolume volume = open_single(input, options);
+  volume.input = input;
+  return volume;
 }
 
 }  // namespace

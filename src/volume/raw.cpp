@@ -8,7 +8,9 @@
 
 #include "volume/formats.hpp"
 #include "volume/header_text.hpp"
+#include "volume/packed_file.hpp"
 #include "volume/printable.hpp"
+#include "volume/slice_files.hpp"
 
 namespace isoweave {
 namespace {
@@ -73,6 +75,8 @@ RawLayout parse_raw_layout(std::string_view text) {
 
 std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
   constexpr std::string_view kEnding = ".raw";
+  constexpr std::string_view kPacked = ".gz";
+  if (path.ends_with(kPacked)) path.remove_suffix(kPacked.size());
   if (!path.ends_with(kEnding)) return std::nullopt;
   path.remove_suffix(kEnding.size());
   path = path.substr(path.find_last_of('/') + 1);
@@ -84,21 +88,61 @@ std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
   return RawLayout{*dims, *type, false, 0};
 }
 
-OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout) {
-  OpenedVolume volume;
-  volume.info.path = file->path();
-  volume.info.format = "raw";
-  volume.info.dims = layout.dims;
-  volume.info.type = layout.type;
-  const std::uint64_t bytes = checked_volume_bytes(volume.info);
-  if (layout.skip_bytes < 0) bad_input(file->path(), "a skip of at least 0", std::to_string(layout.skip_bytes));
+namespace {
+
+VolumeInfo raw_info(const std::string& path, const RawLayout& layout) {
+  VolumeInfo info;
+  info.path = path;
+  info.format = "raw";
+  info.dims = layout.dims;
+  info.type = layout.type;
+  checked_volume_bytes(info);
+  if (layout.skip_bytes < 0) bad_input(path, "a skip of at least 0", std::to_string(layout.skip_bytes));
+  return info;
+}
+
+// The `bytes` behind the skip, which end the file.
+std::unique_ptr<ByteStream> samples_to_end(const FilePtr& file, const RawLayout& layout, std::uint64_t bytes) {
   const auto skip = static_cast<std::uint64_t>(layout.skip_bytes);
   // Both are below 2^63, so the sum does not wrap.
-  if (file->size() != skip + bytes) {
+  if (file->exact_size() != skip + bytes) {
     bad_input(file->path(), std::to_string(skip + bytes) + " bytes by its layout", std::to_string(file->size()));
   }
-  volume.samples = std::make_unique<FileStream>(file, skip, skip + bytes);
-  volume.swap_bytes = layout.big_endian != (std::endian::native == std::endian::big);
+  return std::make_unique<FileStream>(file, skip, skip + bytes);
+}
+
+bool is_swapped(const RawLayout& layout) { return layout.big_endian != (std::endian::native == std::endian::big); }
+
+}  // namespace
+
+bool fits_raw(const InputFile& file, const RawLayout& layout) {
+  const std::uint64_t bytes = checked_volume_bytes(raw_info(file.path(), layout));
+  return file.size() == static_cast<std::uint64_t>(layout.skip_bytes) + bytes;
+}
+
+OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout) {
+  OpenedVolume volume;
+  volume.info = raw_info(file->path(), layout);
+  volume.samples = samples_to_end(file, layout, checked_volume_bytes(volume.info));
+  volume.swap_bytes = is_swapped(layout);
+  return volume;
+}
+
+OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
+  OpenedVolume volume;
+  volume.info = raw_info(path, layout);
+  const std::vector<std::string> files = is_pattern(path) ? files_of_pattern(path) : files_of_folder(path);
+  const auto count = static_cast<std::int64_t>(files.size());
+  if (count != layout.dims[2]) {
+    bad_input(path, std::to_string(layout.dims[2]) + " files by the layout, one for each slice", std::to_string(count));
+  }
+  const std::uint64_t slice = volume.info.slice_bytes();
+  const auto name = [files](std::int64_t n) { return files[static_cast<std::size_t>(n)]; };
+  const auto open = [=](std::int64_t n) { return samples_to_end(unpacked(open_file(name(n))), layout, slice); };
+  // A file that is missing or of another size is found now.
+  for (std::int64_t n = 0; n < count; ++n) open(n);
+  volume.samples = std::make_unique<FileSequence>(count, slice, open, name);
+  volume.swap_bytes = is_swapped(layout);
   return volume;
 }
 

@@ -14,6 +14,7 @@
 #include "volume/header_text.hpp"
 #include "volume/input_file.hpp"
 #include "volume/printable.hpp"
+#include "volume/unread_formats.hpp"
 
 namespace isoweave {
 namespace {
@@ -198,7 +199,9 @@ SliceFiles slices_of_pattern(const std::string& pattern) {
   slices.path = pattern;
   for (const std::string& file : files_of_pattern(pattern)) {
     const SliceKind kind = kind_of(file, false);
-    if (kind == SliceKind::kOther) bad_input(file, "a slice in TIFF, PNG or DICOM", "other content");
+    if (kind == SliceKind::kOther) {
+      bad_input(file, "a slice in TIFF, PNG or DICOM", what_else(open_file(file)->head(kWhatElseBytes), file));
+    }
     take_slice(slices, file, kind);
   }
   return slices;

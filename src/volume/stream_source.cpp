@@ -67,6 +67,15 @@ void check_plausible(std::string_view path, std::uint64_t bytes, std::uint64_t s
             std::to_string(stored) + " bytes, which cannot hold them");
 }
 
+std::unique_ptr<ByteStream> samples_in(const FilePtr& file, std::uint64_t begin, std::uint64_t bytes) {
+  // Differences, not sums: the numbers may be as large as they like.
+  if (begin > file->size() || bytes > file->size() - begin) {
+    bad_input(file->path(), std::to_string(bytes) + " bytes of samples from byte " + std::to_string(begin) + " on",
+              "a file of " + file->size_text());
+  }
+  return std::make_unique<FileStream>(file, begin, begin + bytes);
+}
+
 StreamSource::StreamSource(OpenedVolume volume) : volume_(std::move(volume)) {}
 
 void StreamSource::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {

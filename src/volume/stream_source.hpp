@@ -17,6 +17,7 @@ struct OpenedVolume {
   std::unique_ptr<ByteStream> samples;
   bool swap_bytes = false;    // the stored byte order is not the machine's
   std::string unit_conflict;  // units of the axes that cannot be made one: without --spacing no volume
+  FilePtr input;  // what the user named, open as long as the volume: what came out of a pipe is kept with it
 };
 
 class StreamSource final : public SliceSource {
@@ -45,6 +46,9 @@ std::uint64_t checked_volume_bytes(const VolumeInfo& info);
 // Throws BadInput unless a stored stream of `stored` bytes can hold `bytes` at all, given that one stored byte
 // decodes to at most `largest_ratio`. A header's claim is believed only after this.
 void check_plausible(std::string_view path, std::uint64_t bytes, std::uint64_t stored, std::uint64_t largest_ratio);
+
+// The `bytes` of samples that lie from byte `begin` of a file on. Throws BadInput when the file cannot hold them.
+std::unique_ptr<ByteStream> samples_in(const FilePtr& file, std::uint64_t begin, std::uint64_t bytes);
 
 // Deflate cannot do better than 258 bytes from two bits.
 inline constexpr std::uint64_t kDeflateRatio = 1032;

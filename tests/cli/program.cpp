@@ -24,7 +24,7 @@ void redirect(int descriptor, const char* path, int flags) {
 // In the new process, between fork and exec.
 void become_program(const std::string& folder, char* const* arguments, const std::string& out, const std::string& err,
                     const Setup& setup) {
-  redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  redirect(STDIN_FILENO, setup.in_path.empty() ? "/dev/null" : setup.in_path.c_str(), O_RDONLY);
   redirect(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   redirect(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   if (::chdir(folder.c_str()) != 0) ::_exit(99);

@@ -23,6 +23,7 @@ struct Result {
 struct Setup {
   std::optional<std::size_t> file_limit;  // bytes, as RLIMIT_FSIZE
   std::string out_path;                   // standard output goes here instead
+  std::string in_path;                    // standard input comes from here; nothing: there is none
   int signal = 0;                         // sent once `ready`
   std::function<bool(pid_t)> ready;
 };

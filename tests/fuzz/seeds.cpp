@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "header_helpers.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
@@ -105,6 +106,53 @@ void put_nifti(Seeds& seeds) {
       fields.pair = true;
       seeds.put("nifti_pair", nifti_header(fields) + kNext + kWords);
     }
+  }
+}
+
+// Headers of numbers at fixed places, and NumPy's.
+void put_plain_headers(Seeds& seeds) {
+  for (const bool big : {false, true}) {
+    const std::string samples = stored(ramp<std::int16_t>(3 * 2 * 5), big);
+    seeds.put("analyze", analyze_header({.big = big, .scale = 0.5, .origin = {1, 2, 3}}) + kNext + samples);
+    seeds.put("mrc", mrc_header({.big = big, .start = {1, 2, 3}, .extended = 4}) + "ext " + samples);
+    seeds.put("mrc", mrc_header({.big = big,
+                                 .angles = {60, 70, 80},
+                                 .axes = {3, 1, 2},
+                                 .imod_flags = 0,
+                                 .origin = {1, 2, 3},
+                                 .magic = false}) +
+                         samples);
+    seeds.put("npy", npy_header(big ? ">i2" : "<i2", "(5, 2, 3)", big) + samples);
+    seeds.put("npy", npy_header(big ? ">i2" : "<i2", "(1L, 10, 3,)", false, big ? 2 : 3) + samples);
+    seeds.put("mgh", mgh_header({.placed = big, .centre = {1, 2, 3}}) + stored(ramp<std::int16_t>(3 * 2 * 5), true));
+  }
+  const std::string amira =
+      " 2.1\ndefine Lattice 3 2 5\nParameters {\n    BoundingBox 1 2 -4 -2 10 30,\n    CoordType "
+      "\"uniform\"\n}\nLattice { ";
+  seeds.put("amira", "# AmiraMesh BINARY-LITTLE-ENDIAN" + amira + "short Data } @1\n@1\n" + kWords);
+  seeds.put("amira", "# Avizo BINARY" + amira + "byte Data } @1(HxByteRLE,4)\n@1\n\x1c\x07\x82z");
+  const std::string zipped = zlibbed(kWords);
+  seeds.put("amira", "# AmiraMesh BINARY" + amira + "ushort Data } @1(HxZip," + std::to_string(zipped.size()) +
+                         ")\n@1\n" + zipped);
+  const std::string slc = "11111\n4 3 2 8\n0.5 0.75 2\n1 0 0\n";
+  seeds.put("slc", slc + "0\n2 1 Xrrggbb" + kWords.substr(0, 24));
+  seeds.put("slc", slc + "1\n0 0 X" +
+                       std::string("3 X\x0c\x07\0"
+                                   "4 X\x08\x07\x84zzzz",
+                                   16));
+  std::string fits;
+  for (std::string card : {"SIMPLE  = T", "BITPIX  = 16 / bits", "NAXIS   = 3", "NAXIS1  = 3", "NAXIS2  = 2",
+                           "NAXIS3  = 5", "BSCALE  = 2.5", "BZERO   = 1e3", "END"}) {
+    card.resize(80, ' ');
+    fits += card;
+  }
+  fits.resize(2880, ' ');
+  seeds.put("fits", fits + kWords);
+  seeds.put("mgh", gzipped(mgh_header({}) + kWords));
+  for (const std::string& content :
+       {npy_header("<i2", "(5, 2, 3)") + kWords, npy_header("<i2", "(5, 2, 3)", true) + kWords, mrc_header({}) + kWords,
+        std::string("II*\0", 4), std::string("PVM\n1 1 1\n1\nx")}) {
+    seeds.put("gzip", gzipped(content));
   }
 }
 
@@ -362,6 +410,7 @@ int main(int argc, char** argv) {
   put_nrrd(seeds);
   put_metaimage(seeds);
   put_nifti(seeds);
+  put_plain_headers(seeds);
   put_pvm(seeds);
   put_vtk(seeds);
 #ifdef ISOWEAVE_HAS_TIFF

@@ -5,6 +5,7 @@ Equal digests: where a format holds the whole geometry, in the world; elsewhere 
 least and the largest value that an independent reader finds. Surfaces lie where VTK has them.
 """
 
+import gzip
 import os
 import shutil
 import subprocess
@@ -287,6 +288,36 @@ def write_raw(folder):
     path = os.path.join(folder, "a_{}x{}x{}_uint16.raw".format(*DIMS))
     VALUES.tofile(path)
     yield path, None
+    with gzip.open(path + ".gz", "wb") as file:
+        file.write(VALUES.tobytes())
+    yield path + ".gz", None
+
+
+def write_npy(folder):
+    """The same array is the same volume, however NumPy stores it."""
+    for name, array in (("c", VALUES), ("f", np.asfortranarray(VALUES)), ("big", VALUES.astype(">u2")),
+                        ("float", VALUES.astype(float)), ("four", VALUES[None])):
+        path = os.path.join(folder, f"{name}.npy")
+        np.save(path, array)
+        yield path, None
+    for version in ((1, 0), (2, 0), (3, 0)):
+        path = os.path.join(folder, f"{version[0]}.npy.gz")
+        with gzip.open(path, "wb") as file:
+            np.lib.format.write_array(file, VALUES, version)
+        yield path, None
+
+
+def write_analyze(folder):
+    """By nibabel, in its three dialects; all but the first keep a scale, which is 1 here."""
+    for kind in (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage):
+        for order in "<>":
+            path = os.path.join(folder, f"{kind.__name__}{'big' if order == '>' else 'little'}.hdr")
+            header = kind.header_class(endianness=order)
+            header.set_data_dtype(np.int16)
+            image = kind(VALUES.T.astype(np.int16), np.diag([*SPACING, 1]), header)
+            nibabel.save(image, path)
+            yield path, SPACING
+            yield path[:-3] + "img", SPACING
 
 
 def check_values(oracle, info, path):
@@ -322,13 +353,28 @@ def check_placed(oracle, folder, mesh):
     return digests
 
 
+def check_mgh(oracle, folder, mesh, digests):
+    """FreeSurfer's directions are rounded to single precision, so that only places in index space are bit for bit."""
+    for sign in (1, -1):
+        for name in ("a.mgh", "a.mgz"):
+            path = os.path.join(folder, f"{sign}{name}")
+            nibabel.save(nibabel.MGHImage(VALUES.T.astype(np.int16), ras(affine(DIRECTION * [1, sign, 1]))), path)
+            with oracle.file(path):
+                info = oracle.info(path)
+                check_values(oracle, info, path)
+                oracle.expect_equal(info["space"], "ras", f"{path}: space")
+                oracle.expect_near(affine_of(info), nibabel.load(path).affine, 1e-5, f"{path}: affine")
+                oracle.expect_near(ras(affine_of(info)), affine(DIRECTION * [1, sign, 1]), 1e-4, f"{path}: as written")
+                in_index_space(oracle, path, mesh, digests)
+
+
 def in_index_space(oracle, path, mesh, digests):
     check = oracle.mesh(path, mesh, "--iso", ISO, "--space", "index", "--spacing", "1,1,1")
     digests.setdefault(("index", check["digest"]), []).append(path)
 
 
 def check_unplaced(oracle, folder, mesh, digests):
-    for write in (write_tiff, write_png, write_legacy_vtk, write_raw):
+    for write in (write_tiff, write_png, write_legacy_vtk, write_raw, write_npy, write_analyze):
         place = os.path.join(folder, write.__name__)
         os.mkdir(place)
         for path, spacing in write(place):
@@ -379,6 +425,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         mesh = os.path.join(folder, "mesh.ply")
         digests = check_placed(oracle, folder, mesh)
+        check_mgh(oracle, folder, mesh, digests)
         check_unplaced(oracle, folder, mesh, digests)
         for group in (1, -1, "index"):
             found = {digest: paths for (which, digest), paths in digests.items() if which == group}

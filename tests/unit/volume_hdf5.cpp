@@ -94,6 +94,15 @@ TEST(Hdf5, TheMagicMayLieBehindABlockOfTheUser) {
   EXPECT_EQ(read_file<std::int16_t>(folder / "a.mat"), counting(8));
 }
 
+TEST(Hdf5, MayBeInGzip) {
+  const TempFolder folder;
+  Writer(folder / "a.h5").put_int16("v", {2, 3, 4});
+  const std::string packed = folder.put("b.h5.gz", gzipped(get(folder / "a.h5")));
+  EXPECT_EQ(read_file<std::int16_t>(packed), read_file<std::int16_t>(folder / "a.h5"));
+  EXPECT_EQ(open_volume(packed)->info().path, packed);
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
 TEST(Hdf5, AttributesSayWhereSamplesLie) {
   const TempFolder folder;
   {

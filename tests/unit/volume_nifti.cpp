@@ -179,7 +179,7 @@ TEST(Nifti, ChoosesATimeAndAChannel) {
   OpenOptions last;
   last.time = 1;
   last.channel = 5;
-  EXPECT_TRUE(contains(refusal(cut, last), "bytes by its header"));
+  EXPECT_TRUE(contains(refusal(cut, last), "bytes of samples from byte 352"));
 }
 
 TEST(Nifti, SlicesThatWereWrittenAsTimes) {
@@ -274,12 +274,12 @@ TEST(Nifti, RefusesHeadersThatLie) {
     const std::string content = nifti_file(fields);
     for (const auto& path : {folder.put("a.nii", content), folder.put("a.nii.gz", gzipped(content))}) {
       const std::string message = refusal(path);
-      EXPECT_TRUE(contains(message, why) || contains(message, "cannot hold them")) << message;
+      EXPECT_TRUE(contains(message, why)) << message;
     }
   };
   NiftiFields fields;
   fields.dim = {3, 32767, 32767, 32767, 1, 1, 1, 1};
-  refused(fields, "by its header");
+  refused(fields, "70362301923326 bytes of samples from byte 352 on, found a file of 412");
   fields.version = 2;
   fields.dim = {3, 1 << 30, 1 << 30, 1 << 30, 1, 1, 1, 1};
   refused(fields, "2^63");

@@ -181,7 +181,46 @@ TEST(OpenVolume, RefusesWhatIsNoReadableFile) {
   EXPECT_TRUE(contains(refusal(folder.put("empty.nii", "")), "an empty file"));
   EXPECT_TRUE(contains(refusal(""), "No such file"));
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_TRUE(contains(refusal(folder / "pipe"), "expected a regular file"));
+  // Opening a pipe that nobody writes to would wait.
+  const std::string header = "NDims = 3\nDimSize = 1 1 1\nElementType = MET_CHAR\nElementDataFile = pipe\n";
+  EXPECT_TRUE(contains(refusal(folder.put("a.mhd", header)), "expected a regular file"));
+}
+
+TEST(RawSlices, AreReadInTheOrderOfTheirNumbers) {
+  const TempFolder folder;
+  const std::vector<std::int16_t> samples = ramp<std::int16_t>(2 * 3 * 11);
+  std::filesystem::create_directory(folder / "s");
+  for (int n = 0; n < 11; ++n) {
+    const std::vector<std::int16_t> slice(samples.begin() + 6 * n, samples.begin() + 6 * (n + 1));
+    folder.put("s/CT." + std::to_string(n + 1), "head" + stored(slice, true));
+  }
+  OpenOptions options;
+  options.raw = parse_raw_layout("2x3x11:int16:big:skip=4");
+  for (const char* name : {"s/CT.*", "s"}) {
+    const auto source = open_volume(folder / name, options);
+    EXPECT_EQ(source->info().path, folder / name);
+    EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{2, 3, 11}));
+    EXPECT_EQ(samples_of<std::int16_t>(*source), samples) << name;
+  }
+}
+
+TEST(RawSlices, AreAsManyAndAsLongAsTheLayoutSays) {
+  const TempFolder folder;
+  for (const char* name : {"z9", "z10"}) folder.put(name, std::string(6, 'x'));
+  OpenOptions options;
+  const auto refused = [&](const char* layout, const char* why) {
+    options.raw = parse_raw_layout(layout);
+    const std::string message = refusal(folder / "z*", options);
+    EXPECT_TRUE(contains(message, why)) << message;
+  };
+  refused("2x3x3:uint8", "expected 3 files by the layout, one for each slice, found 2");
+  refused("2x3x1:uint8", "expected 1 files by the layout, one for each slice, found 2");
+  refused("2x2x2:uint8", "z9: expected 4 bytes by its layout, found 6");
+  refused("2x3x2:uint8:skip=1", "z9: expected 7 bytes by its layout, found 6");
+  folder.put("z10", std::string(5, 'x'));
+  refused("2x3x2:uint8", "z10: expected 6 bytes by its layout, found 5");
+  options.raw = parse_raw_layout("2x3x2:uint8");
+  EXPECT_TRUE(contains(refusal(folder / "y*", options), "none"));
 }
 
 TEST(OpenVolume, RefusesAFileItMayNotRead) {
@@ -194,7 +233,7 @@ TEST(OpenVolume, RefusesAFileItMayNotRead) {
 
 TEST(OpenVolume, SaysWhatItExpectedOfANameOrContent) {
   const TempFolder folder;
-  EXPECT_TRUE(contains(refusal(folder.put("a.txt", "hello")), "expected NRRD, MetaImage, NIfTI, PVM"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.txt", "hello")), "expected NRRD, MetaImage, NIfTI, Analyze, MGH, MRC"));
   EXPECT_TRUE(contains(refusal(folder.put("a.raw", "hello")), "a layout in the name"));
   EXPECT_TRUE(contains(refusal(folder.put("a.nrrd", "hello")), "NRRD0001"));
   EXPECT_TRUE(contains(refusal(folder.put("a.nii.gz", gzipped("hello"))), "a NIfTI header"));

@@ -134,7 +134,12 @@ TEST_F(RealFiles, HeaderlessSlicesNeedALayout) {
   const std::string slices = "vtk_headsq_quarter/quarter.";
   EXPECT_TRUE(contains(refusal(data_file(slices + "*")), "expected a slice in TIFF, PNG or DICOM"));
   OpenOptions options;
-  options.raw = RawLayout{{64, 64, 1}, SampleType::kUint16, false, 0};
+  options.raw = RawLayout{{64, 64, 93}, SampleType::kUint16, false, 0};
+  const auto all = samples_of<std::uint16_t>(*open_volume(data_file(slices + "[1-9]*"), options));
+  EXPECT_EQ(all.size(), 64u * 64 * 93);
+  options.raw->dims[2] = 1;
+  const auto tenth = samples_of<std::uint16_t>(*open_volume(data_file(slices + "10"), options));
+  EXPECT_TRUE(std::equal(tenth.begin(), tenth.end(), all.begin() + 9 * 64 * 64));
   std::int64_t sum = 0;
   for (int n = 1; n <= 93; ++n) {
     const std::string path = data_file(slices + std::to_string(n));

@@ -1,0 +1,45 @@
+// A file in gzip, read as what it holds.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "volume/byte_stream.hpp"
+#include "volume/input_file.hpp"
+
+namespace isoweave {
+
+bool is_gzip(std::string_view head);
+
+// Inflates as it is read, in bounded memory: the first bytes are kept, the others are read in their order. Reading
+// before the place that was reached begins again from the start.
+class PackedFile final : public InputFile {
+ public:
+  // Throws BadInput when the first bytes cannot be inflated, or there are none.
+  explicit PackedFile(FilePtr stored);
+
+  std::uint64_t exact_size() const override;
+  bool jumps() const override { return false; }
+  std::size_t read_at(std::uint64_t offset, std::span<std::byte> out) const override;
+  void check_end(std::uint64_t offset) const override;
+
+ protected:
+  bool knows_size() const override { return ended_; }
+
+ private:
+  std::unique_ptr<InflateStream> from_start() const;
+  bool reach(std::uint64_t offset) const;
+
+  FilePtr stored_;
+  std::string head_;
+  bool whole_ = false;  // head_ is all there is
+  mutable bool ended_ = false;
+  mutable std::unique_ptr<InflateStream> stream_;
+  mutable std::uint64_t position_ = 0;  // of the stream
+};
+
+// What a file holds that may be in gzip.
+FilePtr unpacked(const FilePtr& file);
+
+}  // namespace isoweave
