@@ -21,6 +21,16 @@ std::vector<double> leading_numbers(std::string_view text) {
   return numbers;
 }
 
+int decimals_of(std::string_view text, std::size_t place) {
+  constexpr int kMany = 99;
+  for (; place > 0 && text.find('\\') != std::string_view::npos; --place) text.remove_prefix(text.find('\\') + 1);
+  text = trimmed(text.substr(0, text.find('\\')));
+  if (text.find_first_of("eE") != std::string_view::npos) return kMany;
+  const std::size_t point = text.find('.');
+  if (point == std::string_view::npos) return 0;
+  return static_cast<int>(text.find_last_not_of('0') - point);
+}
+
 std::vector<double> numbers_of(const std::string& text, std::string_view what, std::size_t count,
                                const std::string& path) {
   std::vector<double> numbers = leading_numbers(text);

@@ -155,12 +155,28 @@ std::unique_ptr<ByteStream> samples_of(const VolumeInfo& info, const PlacedSerie
   return even_slices(std::move(slices), grid, info.type, info.slice_bytes());
 }
 
-EvenGrid grid_of(VolumeInfo& info, const Slices& slices, const OpenOptions& options) {
+// The last digit of the positions, in the coordinate that the normal is nearest to. Zeros behind are none.
+double rounding_of(const PlacedSeries& series) {
+  const Vector3 normal = series.plane.normal();
+  const auto along = static_cast<std::size_t>(
+      std::max_element(normal.begin(), normal.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+      normal.begin());
+  int decimals = 0;
+  for (const PlacedSlice& placed : series.slices) {
+    if (placed.slice.offset != 0) return 0;
+    decimals = std::max(decimals, decimals_of(placed.slice.position, along));
+  }
+  return std::pow(10.0, -decimals);
+}
+
+EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions& options) {
+  const Slices& slices = series.slices;
   SlicePlaces places{info.path,
                      {},
                      [&](std::size_t n) { return slices[n].slice.name(); },
                      [&](std::size_t n) { return slices[n].slice.path; }};
   for (const PlacedSlice& slice : slices) places.depths.push_back(slice.depth);
+  places.rounding = rounding_of(series);
   // Distances that are given instead of the file's are those of the slices that there are.
   EvenGrid grid = even_grid(places, options.spacing ? UnevenSlices::kMean : options.uneven_slices, info.notes);
   if (grid.is_resampled) info.part = "slices made at an even distance";
@@ -204,7 +220,7 @@ OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std:
   checked_volume_bytes(info);
   check_sizes(slices, info.slice_bytes());
   info.notes = placed.notes;
-  const EvenGrid grid = grid_of(info, slices, options);
+  const EvenGrid grid = grid_of(info, placed, options);
   info.dims[2] = grid.count;
   set_axes(info, placed, grid);
   set_scaling(info, slices);

@@ -114,10 +114,7 @@ double EvenGrid::distance() const {
 }
 
 EvenGrid::Place EvenGrid::place(std::int64_t slice) const {
-  // As little as a slice may lie beside its place without being moved there.
-  constexpr double kSamePlace = 1e-2;
   if (!is_resampled) return {slice, 0};
-  const double slack = kSamePlace * distance();
   const double depth = depths.front() + distance() * static_cast<double>(slice);
   const auto above = std::upper_bound(depths.begin() + 1, depths.end() - 1, depth);
   const auto lower = static_cast<std::int64_t>(above - depths.begin()) - 1;

@@ -18,6 +18,7 @@ struct SlicePlaces {
   std::vector<double> depths;
   std::function<std::string(std::size_t)> name;  // of a slice, for messages about several
   std::function<std::string(std::size_t)> file;  // its whole path
+  double rounding = 0;                           // of the depths, where they are written in few digits
 };
 
 // Slices at an even distance, the first and the last of them in the places of the first and the last that there are.
@@ -29,6 +30,7 @@ struct EvenGrid {
 
   std::vector<double> depths;  // of the slices that there are
   std::int64_t count = 0;
+  double slack = 0;           // as little as a slice may lie beside its place without being moved there
   bool is_resampled = false;  // else the slices are taken as they are
 
   double distance() const;

@@ -124,11 +124,19 @@ double finest_distance(const Gaps& gaps) {
   }
 }
 
+// What a slice may lie beside its place: a hundredth of the distance, or as much as positions are rounded by where that
+// is little.
+double slack_at(const SlicePlaces& places, double distance) {
+  constexpr double kLittle = 0.05;
+  const double rounding = places.rounding <= kLittle * distance ? places.rounding : 0;
+  return std::max(kEven * distance, rounding);
+}
+
 // Slices at the finest distance, or a little closer so that the last one stays where it is.
 EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
   constexpr double kWidest = 32;
   constexpr double kRounding = 0.05;  // of a slice
-  EvenGrid grid{places.depths, 0, true};
+  EvenGrid grid{places.depths, 0, 0, true};
   const double finest = finest_distance(gaps);
   // What lies so far apart are several volumes, and nothing can be said of what is between them.
   if (!(gaps.lengths[gaps.widest] <= kWidest * finest)) {
@@ -138,6 +146,7 @@ EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
   }
   const double steps = (places.depths.back() - places.depths.front()) / finest;
   grid.count = std::max<std::int64_t>(std::llround(std::ceil(steps - kRounding)), 1) + 1;
+  grid.slack = slack_at(places, grid.distance());
   return grid;
 }
 
@@ -161,16 +170,18 @@ std::string resampled_text(const EvenGrid& grid) {
 
 EvenGrid even_grid(const SlicePlaces& places, UnevenSlices uneven, std::vector<std::string>& notes) {
   constexpr double kExact = 1e-3;
-  EvenGrid as_they_are{places.depths, static_cast<std::int64_t>(places.depths.size()), false};
+  EvenGrid as_they_are{places.depths, static_cast<std::int64_t>(places.depths.size()), 0, false};
   if (places.depths.size() < 2) return as_they_are;
   const Gaps gaps(places.depths);
   refuse_coinciding(places, gaps);
   const double farthest = farthest_from_even(places.depths);
   const double mean = as_they_are.distance();
   if (farthest <= kExact * mean) return as_they_are;
-  if (farthest <= kEven * mean) {
+  if (farthest <= slack_at(places, mean)) {
+    const bool is_rounded = farthest > kEven * mean;
     notes.push_back("the slices lie up to " + length_text(farthest) + " mm beside an even distance of " +
-                    length_text(mean) + " mm: less than a hundredth of it, and taken as even");
+                    length_text(mean) + " mm: less than " +
+                    (is_rounded ? "their positions are rounded by" : "a hundredth of it") + ", and taken as even");
     return as_they_are;
   }
   if (uneven == UnevenSlices::kRefuse) {

@@ -1,4 +1,7 @@
 // Slices of DICOM series that do not lie at an even distance, and images that are no slices of it.
+#include <cmath>
+#include <cstdio>
+
 #include "dicom_helpers.hpp"
 #include "volume/even_slices.hpp"
 
@@ -120,6 +123,9 @@ TEST(DicomUneven, TakesADistanceThatFewHave) {
   const Grid grid({0, 5, 10, 15, 20, 25, 26, 27, 28, 33, 38});
   EXPECT_EQ(grid.grid.count, 39);
   EXPECT_EQ(grid.grid.distance(), 1);
+  std::vector<double> finer{0};
+  for (int n = 0; n < 24; ++n) finer.push_back(finer.back() + (n < 14 ? 10 : 1));
+  EXPECT_EQ(Grid(finer).grid.count, 151);
   // A slice that lies beside another by mistake does not make the distance.
   std::vector<double> depths;
   for (int n = 0; n < 20; ++n) depths.push_back(2.5 * n);
@@ -152,6 +158,34 @@ TEST(DicomUneven, TakesJitterAsEven) {
             "the slices lie up to 0.01 mm beside an even distance of 2.5 mm: less than a hundredth of it, and taken as "
             "even");
   EXPECT_TRUE(Grid({0, 2.4, 5, 7.5}).grid.is_resampled);
+}
+
+// 0.625 mm apart, as files with few digits have it.
+TEST(DicomUneven, TakesPositionsThatAreRoundedAsEven) {
+  const auto write = [](const TempFolder& folder, int digits, int left_out) {
+    for (int n = 0; n < 40; ++n) {
+      std::array<char, 64> text;
+      DicomFields fields;
+      const double unit = std::pow(10.0, -digits);
+      std::snprintf(text.data(), text.size(), "10\\20.3125\\%.*f00", digits, std::nearbyint(0.625 * n / unit) * unit);
+      fields.position = text.data();
+      if (n != left_out) folder.put("s" + std::to_string(n), dicom(fields, slice(static_cast<std::size_t>(n % 5))));
+    }
+  };
+  const TempFolder folder;
+  write(folder, 2, -1);
+  const VolumeInfo info = open_volume(folder / "")->info();
+  EXPECT_EQ(info.dims[2], 40);
+  EXPECT_TRUE(info.part.empty());
+  EXPECT_TRUE(contains(all_notes(info), "less than their positions are rounded by, and taken as even"))
+      << all_notes(info);
+  const TempFolder gap;
+  write(gap, 2, 20);
+  EXPECT_TRUE(contains(all_notes(open_volume(gap / "")->info()), "1 of which is interpolated (number 20, from 0)"));
+  // A tenth of a millimetre is too much of it.
+  const TempFolder coarse;
+  write(coarse, 1, -1);
+  EXPECT_FALSE(open_volume(coarse / "")->info().part.empty());
 }
 
 // Each gap differs from the next by less than a hundredth, and the slices in the middle lie 1.2 mm off all the same.
