@@ -62,14 +62,27 @@ std::optional<Choice> named_choice(const std::string& named) {
   return Choice{*level, *time, *channel};
 }
 
-// Samples that count along x, y or z: of the channel, or of the image for its full size.
-std::int64_t size_along(const ArrayAttributes& channel, const ArrayAttributes& image, const Choice& choice,
-                        const std::string& axis, const std::string& path) {
+// Samples that count along x, y or z: of the channel, or of the image for its full size; else all that are `stored`.
+std::int64_t size_along(Hdf5Place& place, const ArrayAttributes& channel, const std::string& of_image,
+                        std::int64_t stored, const std::string& axis, const std::string& path) {
   std::string text = text_in(channel, "ImageSize" + axis);
-  if (text.empty() && choice.level == 0) text = text_in(image, axis);
+  if (text.empty()) text = of_image;
+  if (text.empty()) {
+    place.notes.push_back("ImageSize" + axis + " is not given, and samples that fill up chunks are read as well");
+    return stored;
+  }
   const auto size = parse_integer(text);
   if (!size || *size < 1) bad_input(path, "a size of at least 1 as ImageSize" + axis, isoweave::quoted(text));
   return *size;
+}
+
+// The shape of a dataset of three axes.
+std::vector<std::int64_t> shape_of(const Hdf5File& file, const std::string& name) {
+  const Hdf5Handle dataset = open_object(file, name);
+  if (!dataset) bad_input(file.path, "a dataset " + isoweave::quoted(name), "none");
+  std::vector<std::int64_t> shape = describe_dataset(file.session, dataset.id(), name).shape;
+  if (shape.size() != 3) bad_input(file.path, "3 axes in " + isoweave::quoted(name), std::to_string(shape.size()));
+  return shape;
 }
 
 // The extent reaches from the outer side of the first sample to that of the last.
@@ -109,11 +122,13 @@ std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& n
   if (!channel) bad_input(file.path, "a group " + isoweave::quoted(channel_path(choice)), "none");
   const ArrayAttributes of_image = hdf5_attributes(file.session, image.id());
   const ArrayAttributes of_channel = hdf5_attributes(file.session, channel.id());
+  const std::vector<std::int64_t> stored = shape_of(file, place.dataset);
   place.axis_names = {"z", "y", "x"};
   place.shape.assign(3, 1);
   constexpr std::array<const char*, 3> kAxes{"X", "Y", "Z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    place.shape[2 - axis] = size_along(of_channel, of_image, choice, kAxes[axis], file.path);
+    const std::string of_full_size = choice.level == 0 ? text_in(of_image, kAxes[axis]) : std::string();
+    place.shape[2 - axis] = size_along(place, of_channel, of_full_size, stored[2 - axis], kAxes[axis], file.path);
     take_extent(place, of_image, axis, place.shape[2 - axis]);
   }
   const std::string unit = text_in(of_image, "Unit");

@@ -23,6 +23,8 @@ std::optional<std::vector<double>> numbers_in(const Hdf5File& file, const std::s
 std::string text_in(const ArrayAttributes& attributes, const std::string& name) {
   std::string text;
   for (const std::string& piece : attributes.texts(name)) text += piece;
+  const auto number = text.empty() ? attributes.numbers(name) : std::nullopt;
+  if (number && number->size() == 1) text = number_text(number->front());
   return std::string(trimmed(text));
 }
 

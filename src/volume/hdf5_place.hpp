@@ -56,7 +56,7 @@ Hdf5Handle open_object(const Hdf5File& file, const std::string& name);
 // The numbers of a dataset, of a bounded number of them; nothing where there is none, or it holds something else.
 std::optional<std::vector<double>> numbers_in(const Hdf5File& file, const std::string& name);
 
-// A text attribute, also where it is kept as one character each; empty where there is none.
+// An attribute as text, also where it is kept as one character each or as a number; empty where there is none.
 std::string text_in(const ArrayAttributes& attributes, const std::string& name);
 
 // "b" of "/a/b/c" for 1, "c" for 0, counted from the end; empty where there are fewer.

@@ -44,7 +44,7 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
 std::string plain_spelling(std::string_view text) {
   const std::string_view inner = trimmed(text);
   std::string plain = lower_case(inner);
-  for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\\u00b5", "\\u03bc", "&#181;", "&#xb5;", "&micro;"}) {
+  for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\\u00b5", "\\u03bc", "&micro;"}) {
     replace_all(plain, micro, "u");
   }
   if (plain == "\xb5m" || plain == "\xb5") plain.replace(0, 1, "u");

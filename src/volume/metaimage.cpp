@@ -180,7 +180,10 @@ void set_axes(OpenedVolume& volume, const MetaFields& fields, std::size_t axes) 
   const auto matrix = numbers_of(fields, {"transformmatrix", "rotation", "orientation"}, axes * axes, info.path);
   const auto origin = numbers_of(fields, {"offset", "position", "origin"}, axes, info.path);
   const std::vector<double> spacing = spacing_of(info, fields, axes);
-  const std::string text(fields.get({"distanceunits"}));
+  // What MetaIO writes where it knows none.
+  constexpr std::string_view kUnknown = "?";
+  const std::string_view given = fields.get({"distanceunits"});
+  const std::string text(given == kUnknown ? std::string_view() : given);
   const CommonUnit unit = common_unit({text, text, text});
   Axes out;
   const std::size_t used = std::min<std::size_t>(axes, 3);

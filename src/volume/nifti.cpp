@@ -37,6 +37,8 @@ struct NiftiHeader {
   double slope = 0;
   double intercept = 0;
   std::int64_t type = 0;
+  std::int64_t bits = 0;
+  std::int64_t intent = 0;
   std::int64_t qform = 0;
   std::int64_t sform = 0;
   std::array<double, 6> quaternion{};  // b, c, d, then the offsets of x, y, z
@@ -47,7 +49,9 @@ struct NiftiHeader {
 NiftiHeader parse_version1(const HeaderFields& field) {
   NiftiHeader header;
   field.fill<std::int16_t>(header.dim, 40);
+  header.intent = field.at<std::int16_t>(68);
   header.type = field.at<std::int16_t>(70);
+  header.bits = field.at<std::int16_t>(72);
   field.fill<float>(header.pixdim, 76);
   header.data_offset = static_cast<double>(field.at<float>(108));
   header.slope = static_cast<double>(field.at<float>(112));
@@ -64,6 +68,7 @@ NiftiHeader parse_version2(const HeaderFields& field) {
   NiftiHeader header;
   header.version = 2;
   header.type = field.at<std::int16_t>(12);
+  header.bits = field.at<std::int16_t>(14);
   field.fill<std::int64_t>(header.dim, 16);
   field.fill<double>(header.pixdim, 104);
   header.data_offset = static_cast<double>(field.at<std::int64_t>(168));
@@ -74,6 +79,7 @@ NiftiHeader parse_version2(const HeaderFields& field) {
   field.fill<double>(header.quaternion, 352);
   field.fill<double>(header.rows, 400);
   header.units = field.at<std::int32_t>(500);
+  header.intent = field.at<std::int32_t>(504);
   return header;
 }
 
@@ -282,6 +288,22 @@ void set_scaling(VolumeInfo& info, const NiftiHeader& header) {
   info.intercept = std::isfinite(header.intercept) ? header.intercept : 0;
 }
 
+// What the header says of its samples besides their type.
+void note_samples(VolumeInfo& info, const NiftiHeader& header, std::int64_t channels) {
+  const auto bits = static_cast<std::int64_t>(8 * sample_bytes(info.type));
+  if (header.bits != 0 && header.bits != bits) {
+    info.notes.push_back("samples are " + std::string(sample_type_name(info.type)) +
+                         " by the code of their type, which is taken, and of " + std::to_string(header.bits) +
+                         " bits by bitpix");
+  }
+  // Matrices, displacements, vectors, points, quaternions.
+  constexpr std::int64_t kFirstOfParts = 1004, kLastOfParts = 1010;
+  if (channels > 1 && header.intent >= kFirstOfParts && header.intent <= kLastOfParts) {
+    info.notes.push_back("samples are vectors or matrices (intent code " + std::to_string(header.intent) +
+                         "), of which one component is read");
+  }
+}
+
 VolumeInfo read_info(const NiftiHeader& header, const std::vector<ArrayAxis>& axes, const AxisChoice& choice,
                      const std::string& path) {
   VolumeInfo info;
@@ -294,6 +316,7 @@ VolumeInfo read_info(const NiftiHeader& header, const std::vector<ArrayAxis>& ax
   checked_volume_bytes(info);
   set_axes(info, header);
   set_scaling(info, header);
+  note_samples(info, header, axes.front().size);
   return info;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -133,8 +134,14 @@ Vector3 set_space(VolumeInfo& info, const NrrdFields& fields) {
   return {1, 1, 1};
 }
 
+// The distance of samples between the least and the most coordinate of an axis; NaN where these are not given.
+double spacing_by_ends(const NrrdAxis& axis) {
+  const auto gaps = static_cast<double>(axis.node_centred ? axis.size - 1 : axis.size);
+  return gaps > 0 ? (axis.most - axis.least) / gaps : std::numeric_limits<double>::quiet_NaN();
+}
+
 void set_plain_step(VolumeInfo& info, Axes& out, std::size_t n, const NrrdAxis& axis) {
-  double spacing = axis.spacing;
+  double spacing = std::isnan(axis.spacing) ? spacing_by_ends(axis) : axis.spacing;
   if (std::isnan(spacing)) {
     spacing = 1;
     const std::string note = "the spacing is not given for every axis and taken as 1 there";

@@ -138,6 +138,10 @@ std::vector<std::optional<NrrdVector>> parse_nrrd_vectors(std::string_view text,
 
 std::vector<std::string> quoted_words(std::string_view text) {
   std::vector<std::string> words;
+  if (text.find('"') == std::string_view::npos) {
+    for (const std::string_view word : words_of(text)) words.emplace_back(word);
+    return words;
+  }
   while (true) {
     const std::size_t open = text.find('"');
     if (open == std::string_view::npos) return words;
@@ -159,6 +163,7 @@ std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::strin
   const auto kinds = axis_words(fields, "kinds", axes.size(), path);
   const auto spacings = axis_numbers(fields, "spacings", axes.size(), path);
   const auto least = axis_numbers(fields, "axismins", axes.size(), path);
+  const auto most = axis_numbers(fields, "axismaxs", axes.size(), path);
   const auto centres = axis_words(fields, fields.get("centers").empty() ? "centerings" : "centers", axes.size(), path);
   const auto units = quoted_words(fields.get("units"));
   const auto steps = parse_nrrd_vectors(fields.get("spacedirections"), path);
@@ -173,6 +178,7 @@ std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::strin
     if (!kinds.empty()) axes[n].kind = lower_case(kinds[n]);
     if (!spacings.empty()) axes[n].spacing = spacings[n];
     if (!least.empty()) axes[n].least = least[n];
+    if (!most.empty()) axes[n].most = most[n];
     if (!centres.empty()) axes[n].node_centred = lower_case(centres[n]) == "node";
     if (!steps.empty()) take_step(axes[n], steps[n], path);
     if (units.size() == axes.size()) axes[n].unit = units[n];

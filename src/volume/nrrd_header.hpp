@@ -37,6 +37,7 @@ struct NrrdAxis {
   std::optional<Vector3> step;
   double spacing = std::numeric_limits<double>::quiet_NaN();
   double least = std::numeric_limits<double>::quiet_NaN();  // "axis mins"
+  double most = std::numeric_limits<double>::quiet_NaN();   // "axis maxs"
   bool node_centred = false;
   std::string unit;
 };
@@ -57,7 +58,7 @@ std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::strin
 // "(1,0,0) none (0,1,0)"; a vector of NaN says none, too.
 std::vector<std::optional<NrrdVector>> parse_nrrd_vectors(std::string_view text, std::string_view path);
 
-// The words between double quotes.
+// The words between double quotes; between blanks where there is no quote.
 std::vector<std::string> quoted_words(std::string_view text);
 
 }  // namespace isoweave

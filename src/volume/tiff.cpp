@@ -44,6 +44,15 @@ void use_resolution(StackDescription& stack, const TiffFile& tiff) {
   }
 }
 
+// ImageJ leaves out a unit that is the pixel, also where another axis has one.
+void name_pixels(StackDescription& stack) {
+  const bool any =
+      std::any_of(stack.units.begin(), stack.units.end(), [](const std::string& unit) { return !unit.empty(); });
+  for (std::string& unit : stack.units) {
+    if (any && unit.empty()) unit = "pixel";
+  }
+}
+
 void set_axes(OpenedVolume& volume, const StackDescription& stack) {
   VolumeInfo& info = volume.info;
   std::array<std::optional<std::string>, 3> texts;
@@ -166,7 +175,10 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
   auto tiff = std::make_unique<TiffFile>(file);
   StackDescription stack = parse_stack_description(description_of(*tiff), file->path());
   if (one_of_series) describe_one_slice(stack, file->path());
-  if (stack.writer == StackDescription::Writer::kImageJ) use_resolution(stack, *tiff);
+  if (stack.writer == StackDescription::Writer::kImageJ) {
+    use_resolution(stack, *tiff);
+    name_pixels(stack);
+  }
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();

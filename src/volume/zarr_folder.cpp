@@ -6,6 +6,7 @@
 
 #include "volume/array_places.hpp"
 #include "volume/formats.hpp"
+#include "volume/header_text.hpp"
 #include "volume/ome_multiscale.hpp"
 #include "volume/printable.hpp"
 #include "volume/slice_files.hpp"
@@ -120,11 +121,33 @@ FoundArray level_of_image(const ZarrNode& node, const Multiscale& image, const O
   return found;
 }
 
+// Factors of one level, out of a list for all of them.
+const Json* factors_of(const Json& attributes, std::int64_t level) {
+  for (const char* key : {"downsamplingFactors", "scales"}) {
+    const Json* list = member(attributes, key);
+    const auto number = static_cast<std::size_t>(level);
+    if (list != nullptr && list->is_array() && number < list->size() && (*list)[number].is_array()) {
+      return &(*list)[number];
+    }
+  }
+  return nullptr;
+}
+
 // What is said of all levels holds for one that says nothing of its own.
-void take_group_attributes(ZarrNode& level, const ZarrNode& group) {
-  if (!group.attributes.is_object() || !level.attributes.is_object()) return;
+void take_group_attributes(FoundArray& found, const ZarrNode& group, std::int64_t level) {
+  Json& own = found.node.attributes;
+  if (!group.attributes.is_object() || !own.is_object()) return;
+  const auto says = [&own](const char* key) { return member(own, key) != nullptr; };
+  const bool placed =
+      says("downsamplingFactors") || says("resolution") || says("pixelResolution") || says("voxel_size");
+  const Json* const factors = factors_of(group.attributes, level);
+  if (!placed && factors != nullptr) own["downsamplingFactors"] = *factors;
   for (const auto& [key, value] : group.attributes.items()) {
-    if (member(level.attributes, key) == nullptr) level.attributes[key] = value;
+    if (member(own, key) == nullptr) own[key] = value;
+  }
+  if (level > 0 && !placed && factors == nullptr) {
+    found.notes.emplace_back(
+        "how much smaller the level is than the image is not given: its spacing is that of level 0");
   }
 }
 
@@ -134,13 +157,15 @@ FoundArray level_of_n5(const ZarrNode& node, const OpenOptions& options) {
   check_level(options.level, levels, node.header);
   const std::int64_t number = options.level.value_or(0);
   FoundArray found{node_at(node.folder, "s" + std::to_string(number), node.header), {}, {}, {}, {}};
-  take_group_attributes(found.node, node);
+  take_group_attributes(found, node, number);
   note_levels(found, levels, number);
   return found;
 }
 
-bool is_n5_level(const std::string& name) {
-  return name.size() > 1 && name[0] == 's' && name.find_first_not_of("0123456789", 1) == std::string::npos;
+// N of "sN"; nothing for another name.
+std::optional<std::int64_t> n5_level(const std::string& name) {
+  if (!name.starts_with('s') || name.find_first_not_of("0123456789", 1) != std::string::npos) return std::nullopt;
+  return parse_integer(std::string_view(name).substr(1));
 }
 
 // What the group says of an array at `name` in it; nothing where it says nothing.
@@ -151,8 +176,8 @@ std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& ar
     found.places = in_image->image.levels[in_image->level].places;
     if (!in_image->image.axis_names.is_null()) found.axis_names = in_image->image.axis_names;
     level = std::to_string(in_image->level);
-  } else if (group.format == ZarrNode::Format::kN5 && is_n5_level(name)) {
-    take_group_attributes(found.node, group);
+  } else if (const auto number = n5_level(name); number && group.format == ZarrNode::Format::kN5) {
+    take_group_attributes(found, group, *number);
   } else {
     return std::nullopt;
   }

@@ -205,6 +205,8 @@ struct NiftiFields {
   std::array<double, 6> quaternion{0, 0, 0, 0, 0, 0};
   std::array<double, 12> rows{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   int units = 2;
+  std::int16_t bits = 0;
+  int intent = 0;
   bool pair = false;
 };
 
@@ -226,6 +228,9 @@ inline std::string nifti_header(const NiftiFields& fields) {
     put_real((first ? 76 : 104) + real * n, fields.pixdim[n]);
   }
   put(first ? 70 : 12, bytes_of(fields.type, big));
+  put(first ? 72 : 14, bytes_of(fields.bits, big));
+  if (first) put(68, bytes_of(static_cast<std::int16_t>(fields.intent), big));
+  if (!first) put(504, bytes_of(fields.intent, big));
   const double offset = fields.offset != 0 || fields.pair ? fields.offset : static_cast<double>(header.size());
   if (first) put_real(108, offset);
   if (!first) put(168, bytes_of(static_cast<std::int64_t>(offset), big));

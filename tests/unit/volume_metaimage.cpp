@@ -201,6 +201,7 @@ TEST(MetaImage, TakesOtherUnits) {
   EXPECT_EQ(geometry.spacing, (std::array<double, 3>{20, 30, 40}));
   EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
   EXPECT_EQ(geometry.unit, "mm");
+  EXPECT_TRUE(info_of(folder, "ElementSpacing = 2 3 4\nDistanceUnits = ?\n").notes.empty());
 }
 
 TEST(MetaImage, RefusesHeadersThatLie) {

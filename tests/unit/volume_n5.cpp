@@ -86,6 +86,22 @@ TEST(N5, LevelsAndTheirPlaces) {
   EXPECT_EQ(alone.geometry.origin, half.geometry.origin);
   EXPECT_EQ(alone.geometry.unit, "nm");
   EXPECT_TRUE(contains(alone.notes.back(), "level 's1' of the image in a folder above it"));
+  // Factors of all levels in the group, by either name; none at all.
+  for (const std::string key : {"scales", "downsamplingFactors", "nothing"}) {
+    const std::string group = folder / ("d" + key);
+    put_json(group + "/attributes.json", {{"n5", "2.5.0"}, {"resolution", {4, 4, 40}}, {key, {{1, 1, 1}, {2, 2, 1}}}});
+    put_n5(group + "/s0", "raw");
+    put_n5(group + "/s1", "raw");
+    EXPECT_EQ(open_volume(group)->info().geometry.spacing, (std::array<double, 3>{4, 4, 40}));
+    for (const VolumeInfo& info : {open_volume(group, options)->info(), open_volume(group + "/s1")->info()}) {
+      EXPECT_EQ(info.geometry.spacing,
+                (key == "nothing" ? std::array<double, 3>{4, 4, 40} : std::array<double, 3>{8, 8, 40}));
+      const auto told = std::count_if(info.notes.begin(), info.notes.end(), [](const std::string& note) {
+        return contains(note, "its spacing is that of level 0");
+      });
+      EXPECT_EQ(told, key == "nothing" ? 1 : 0);
+    }
+  }
   put_n5(folder / "b", "raw", {{"resolution", {1, 2, 3}}, {"units", {"um", "um", "um"}}, {"offset", {10, 20, 30}}});
   const Geometry geometry = open_volume(folder / "b")->info().geometry;
   EXPECT_EQ(geometry.spacing, (std::array<double, 3>{1, 2, 3}));

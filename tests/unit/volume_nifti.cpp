@@ -202,6 +202,25 @@ TEST(Nifti, SlicesThatWereWrittenAsTimes) {
   EXPECT_EQ(channels.at(6), samples.at(54));
 }
 
+TEST(Nifti, OtherBitsAndVectorsAreTold) {
+  const TempFolder folder;
+  for (const int version : {1, 2}) {
+    NiftiFields fields;
+    fields.version = version;
+    fields.sform = 1;
+    fields.rows = {0.5, 0, 0, 10, 0, 0.75, 0, 20, 0, 0, 2, 30};
+    fields.bits = 16;
+    fields.intent = 1007;
+    EXPECT_TRUE(info_of(folder, fields).notes.empty());
+    fields.bits = 32;
+    EXPECT_TRUE(
+        contains(info_of(folder, fields).notes.at(0), "int16 by the code of their type, which is taken, and of 32"));
+    fields.bits = 0;
+    fields.dim = {5, 3, 2, 1, 1, 5, 1, 1};
+    EXPECT_TRUE(contains(info_of(folder, fields).notes.back(), "vectors or matrices (intent code 1007)"));
+  }
+}
+
 TEST(Nifti, BytesBehindTheSamplesAreTold) {
   const TempFolder folder;
   NiftiFields fields;

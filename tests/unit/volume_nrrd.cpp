@@ -206,6 +206,15 @@ TEST(Nrrd, TakesSpacings) {
   }
 }
 
+TEST(Nrrd, TakesSpacingsFromTheEndsOfAxes) {
+  const TempFolder folder;
+  const Geometry geometry =
+      info_of(folder, "axis mins: 1 1 nan\naxis maxs: 7 2 nan\ncenters: cell node cell\nspacings: nan nan 3\n")
+          .geometry;
+  EXPECT_EQ(geometry.spacing, (std::array<double, 3>{2, 1, 3}));
+  EXPECT_EQ(geometry.origin, (std::array<double, 3>{2, 1, 0}));
+}
+
 TEST(Nrrd, TakesDirectionsOfTheSpace) {
   const TempFolder folder;
   const std::string axes = "space directions: (0,2,0) (-3, 0, 0) ( 0,0,4 )\nspace origin: (1,2,3)\n";
@@ -242,6 +251,7 @@ TEST(Nrrd, RefusesDirectionsThatSpanNothing) {
 TEST(Nrrd, TakesUnitsOfTheAxesOrTheWorld) {
   const TempFolder folder;
   EXPECT_EQ(info_of(folder, "units: \"mm\" \"mm\" \"mm\"\n").geometry.unit, "mm");
+  EXPECT_EQ(info_of(folder, "units: nm nm nm\n").geometry.unit, "nm");
   EXPECT_EQ(info_of(folder, "space units: \"microns\" \"microns\" \"microns\"\n").geometry.unit, "um");
   const VolumeInfo plain =
       info_of(folder, "spacings: 0.5 1 0.05\naxis mins: 0 0 1\ncenters: node node node\nunits: \"nm\" \"nm\" \"um\"\n");

@@ -115,6 +115,8 @@ TEST(Tiff, TurnsCentimetresAndInchesIntoMillimetres) {
   EXPECT_EQ(spacing("", RESUNIT_CENTIMETER, 4), std::pair(2.5, 20.0));
   EXPECT_EQ(spacing("", RESUNIT_INCH, 4), std::pair(6.35, 50.8));
   EXPECT_EQ(spacing("", RESUNIT_INCH, 72), std::pair(1.0, 2.0));
+  // Without resolution there is no unit of it.
+  EXPECT_EQ(info_of(folder, described("ImageJ=1.53q\nimages=6\nspacing=2\n")).geometry.spacing[2], 2);
   const VolumeInfo odd = info_of(folder, described("ImageJ=1.53q\nunit=furlong\nspacing=2\n"));
   EXPECT_TRUE(contains(odd.notes.at(0), "'furlong'"));
   EXPECT_EQ(odd.geometry.unit, "");
@@ -180,6 +182,8 @@ TEST(Tiff, AxesInOtherUnitsAreGivenInThatOfX) {
   EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.5, 0.5, 2000}));
   EXPECT_EQ(info.geometry.unit, "nm");
   EXPECT_TRUE(contains(info.notes.back(), "axis 2 is in"));
+  const std::string numbered = "PhysicalSizeXUnit=\"nm\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZUnit=\"&#xB5;m\" ";
+  EXPECT_EQ(info_of(folder, described(ome("XYZCT", numbered))).geometry.spacing[2], 2000);
   // The micrometre is OME's unit where none is given.
   EXPECT_EQ(info_of(folder, described(ome("XYZCT", "PhysicalSizeZUnit=\"mm\" "))).geometry.spacing[2], 2000);
   TiffPage page = described("ImageJ=1.53q\nimages=6\nunit=nm\nzunit=\\u00B5m\nspacing=0.05\nzorigin=2\n");
@@ -199,6 +203,10 @@ TEST(Tiff, UnitsThatCannotBeMadeOneNeedASpacing) {
   page.resolution = 4;
   EXPECT_TRUE(contains(refusal_of(folder, page, stored(kSamples)),
                        "expected units of length that can be made one, or --spacing, found 'um', 'um', 'pixel'"));
+  TiffPage absent = described("ImageJ=1.53q\nimages=6\nzunit=um\nspacing=2\n");
+  absent.resolution = 4;
+  EXPECT_TRUE(contains(refusal_of(folder, absent, stored(kSamples)), "found 'pixel', 'pixel', 'um'"));
+  write_stack(folder / "a.tif", page, stored(kSamples));
   OpenOptions options;
   options.spacing = {0.25, 0.25, 3};
   const VolumeInfo info = open_volume(folder / "a.tif", options)->info();
