@@ -20,7 +20,7 @@ InputMesh read_input_mesh(const std::string& path, bool weld) {
 
 std::vector<std::string> mesh_warnings(const std::string& path, const TriangleMesh& mesh) {
   std::vector<std::string> warnings;
-  for (const std::string& note : mesh.notes) warnings.push_back(path + ": " + note);
+  for (const std::string& note : mesh.notes) warnings.push_back(fmt::format("{}: {}", path, note));
   return warnings;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -44,7 +43,10 @@ struct Side {
   std::array<std::uint32_t, 2> places;
   std::array<std::uint32_t, 2> vertices;
 
-  auto operator<=>(const Side&) const = default;
+  bool operator==(const Side&) const = default;
+  bool operator<(const Side& other) const {
+    return places != other.places ? places < other.places : vertices < other.vertices;
+  }
 };
 
 Side side_between(const Places& places, std::uint32_t a, std::uint32_t b) {
