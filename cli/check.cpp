@@ -10,6 +10,7 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "verbs.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -31,9 +32,9 @@ std::string sharp_text(const TriangleAngles& angles) {
 }
 
 std::string check_text(const MeshCheck& check, const std::string& path) {
-  std::string text =
-      fmt::format("{}: {}{}\n", path, state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),
-                  check.misoriented_edges == 0 ? ", consistently oriented" : ", not consistently oriented");
+  std::string text = fmt::format(
+      "{}: {}{}\n", printable(path), state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),
+      check.misoriented_edges == 0 ? ", consistently oriented" : ", not consistently oriented");
   const auto line = [&](std::string_view name, const std::string& value) {
     text += fmt::format("{:<22}{:>18}\n", name, value);
   };

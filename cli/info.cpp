@@ -10,6 +10,7 @@
 #include "signals.hpp"
 #include "verbs.hpp"
 #include "volume/histogram.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -68,12 +69,12 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   const Geometry& geometry = info.geometry;
   const auto slices = static_cast<std::uint64_t>(info.dims[2]);
   const std::uint64_t samples = static_cast<std::uint64_t>(info.slice_samples()) * slices;
-  std::string text = fmt::format("volume     {}, {}\n", path, info.format);
-  if (!info.part.empty()) text += fmt::format("part       {}\n", info.part);
+  std::string text = fmt::format("volume     {}, {}\n", printable(path), info.format);
+  if (!info.part.empty()) text += fmt::format("part       {}\n", printable(info.part));
   text += fmt::format("size       {} x {} x {} {}, {} samples, {}\n", info.dims[0], info.dims[1], info.dims[2],
                       sample_type_name(info.type), grouped(samples), byte_text(info.slice_bytes() * slices));
   text += fmt::format("spacing    {:.6g} x {:.6g} x {:.6g} {}\n", geometry.spacing[0], geometry.spacing[1],
-                      geometry.spacing[2], geometry.unit.empty() ? "(no unit)" : geometry.unit);
+                      geometry.spacing[2], geometry.unit.empty() ? "(no unit)" : printable(geometry.unit));
   text +=
       fmt::format("origin     {:.6g}, {:.6g}, {:.6g}\n", geometry.origin[0], geometry.origin[1], geometry.origin[2]);
   text += fmt::format("axes       {}\n", axes_text(geometry));
@@ -85,7 +86,7 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
   if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
   if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
-  for (const std::string& note : info.notes) text += fmt::format("note       {}\n", note);
+  for (const std::string& note : info.notes) text += fmt::format("note       {}\n", printable(note));
   if (!histogram.empty()) text += histogram_text(histogram);
   return text;
 }
@@ -101,8 +102,8 @@ void run_info(const InfoArguments& arguments) {
   }
   const VolumeInfo& info = volume->info();
   const std::string& path = arguments.input.path;
-  print_out(arguments.json ? json_text(info_json(info, histogram, suggested, path))
-                           : info_text(info, histogram, suggested, path));
+  if (arguments.json) return print_out(json_text(info_json(info, histogram, suggested, path)));
+  print_to_reader(info_text(info, histogram, suggested, path));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const CLI::Success& wish) {
     std::ostringstream text;
     app.exit(wish, text, text);
-    print_out(text.str());
+    print_to_reader(text.str());
   } catch (const CLI::ParseError& error) {
     throw std::invalid_argument(std::string(error.what()) + "; see isoweave --help");
   }

@@ -230,8 +230,8 @@ class MeshJob {
   void tell_forecast(Evidence& evidence) const {
     const std::uint64_t bytes = output_bytes(*forecast_, arguments_, file_);
     const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    print_out(forecast_text(*forecast_, options_.triangles, bytes, threads));
-    if (!rule_.keeps_all()) print_out("components that --largest or --min-component drops are counted in\n");
+    print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
+    if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
     evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
   }
 

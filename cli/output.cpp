@@ -9,17 +9,25 @@
 #include <system_error>
 
 #include "isoweave/error.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {
 
 std::string one_line(std::string_view text) {
-  std::string line(text);
-  while (!line.empty() && line.back() == '\n') line.pop_back();
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return line;
+  while (text.ends_with('\n')) text.remove_suffix(1);
+  return printable(text);
+}
+
+// The error number of what kept the text from being written, or 0.
+int write_to(std::FILE* stream, std::string_view text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
+  return written ? 0 : errno != 0 ? errno : EIO;
+}
+
+[[noreturn]] void refuse_output(int error) {
+  throw CannotWrite("standard output: cannot write: " + std::generic_category().message(error));
 }
 
 int fail(int code, std::string_view text) {
@@ -30,12 +38,18 @@ int fail(int code, std::string_view text) {
 }  // namespace
 
 void print_out(std::string_view text) {
-  errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!written) throw CannotWrite("standard output: cannot write: " + std::generic_category().message(errno));
+  const int error = write_to(stdout, printable_lines(text));
+  if (error != 0) refuse_output(error);
 }
 
-void print_note(std::string_view text) { fmt::print(stderr, "isoweave: {}\n", one_line(text)); }
+void print_to_reader(std::string_view text) {
+  const int error = write_to(stdout, printable_lines(text));
+  if (error != 0 && error != EPIPE) refuse_output(error);
+}
+
+void print_note(std::string_view text) { write_to(stderr, "isoweave: " + one_line(text) + "\n"); }
+
+void draw_line(std::string_view text) { write_to(stderr, "\r\x1b[K" + one_line(text)); }
 
 int report_error(const std::exception& error) {
   const auto is = [&]<class E>(const E*) { return dynamic_cast<const E*>(&error) != nullptr; };

@@ -16,11 +16,21 @@ inline constexpr int kExitOverMemory = 5;
 inline constexpr int kExitDevice = 6;
 inline constexpr int kExitInterrupted = 130;
 
+// All that is printed goes through these four. Whatever characters a file or its name brought in, what reaches a
+// terminal are printable ones and ends of lines.
+
 // Writes to standard output and sees to it that the text got there. Throws CannotWrite.
 void print_out(std::string_view text);
 
-// "isoweave: TEXT" as one line on standard error, whatever characters a file name brought in.
+// The same for text that somebody reads as far as they like: a pipe that is closed meanwhile is no error.
+void print_to_reader(std::string_view text);
+
+// "isoweave: TEXT" as one line on standard error. A note that cannot be written is lost and ends nothing: it is not
+// worth a mesh.
 void print_note(std::string_view text);
+
+// Draws over the line of the terminal that standard error is; an empty text wipes it off.
+void draw_line(std::string_view text);
 
 // Says what went wrong and returns the exit code that stands for it.
 int report_error(const std::exception& error);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "output.hpp"
 
@@ -80,15 +79,13 @@ void ProgressPrinter::show(const Progress& progress) {
   const std::size_t width = terminal_width() - 1;
   const std::size_t room = width - std::min(width, text.size());
   const std::string line = (bar_text(fraction_done(progress), room) + text).substr(0, width);
-  fmt::print(stderr, "\r\x1b[K{}", line);
-  std::fflush(stderr);
+  draw_line(line);
   bar_drawn_ = true;
 }
 
 void ProgressPrinter::finish() {
   if (!bar_drawn_) return;
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  draw_line({});
   bar_drawn_ = false;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "output.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -29,6 +30,28 @@ Json angles_json(const TriangleAngles& angles) {
           {"largest", number_or_null(angles.largest)},
           {"triangles_under_5", angles.under_5_degrees},
           {"smallest_histogram", {{"low", 0}, {"high", 60}, {"triangles", angles.smallest_in_bins}}}};
+}
+
+// One half of a pair beyond 16 bits, or the whole.
+std::string unit_escaped(std::uint32_t unit) { return fmt::format("\\u{:04x}", unit); }
+
+std::string character_escaped(char32_t code) {
+  constexpr std::uint32_t kBasic = 0x10000;
+  if (code < kBasic) return unit_escaped(code);
+  const std::uint32_t beyond = code - kBasic;
+  return unit_escaped(0xd800 + (beyond >> 10U)) + unit_escaped(0xdc00 + (beyond & 0x3ffU));
+}
+
+// JSON text without characters that do not show. They can only be inside strings, where an escape means the same.
+std::string escaped(std::string_view json) {
+  std::string text;
+  while (!json.empty()) {
+    const TextCharacter character = first_character(json);
+    const bool plain = character.is_printable() || character.code == U'\n';
+    text += plain ? std::string(json.substr(0, character.bytes)) : character_escaped(character.code);
+    json.remove_prefix(character.bytes);
+  }
+  return text;
 }
 
 }  // namespace
@@ -145,7 +168,7 @@ Json distances_json(const MeshDistance& distance, double unit) {
 }
 
 std::string json_text(const Json& json) {
-  return json.dump(2, ' ', false, nlohmann::detail::error_handler_t::replace) + "\n";
+  return escaped(json.dump(2, ' ', false, nlohmann::detail::error_handler_t::replace)) + "\n";
 }
 
 void write_report(AtomicFile& file, const Json& json) {

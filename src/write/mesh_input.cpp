@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "isoweave/error.hpp"
+#include "volume/printable.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -41,11 +42,7 @@ MeshInput::~MeshInput() { ::close(fd_); }
 
 void MeshInput::fail(const std::string& what) const {
   // Words quoted from the file must not break the line, drive a terminal or fill it.
-  std::string message = path_ + ": " + what.substr(0, kLongestMessage);
-  for (char& c : message) {
-    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) c = '?';
-  }
-  throw BadInput(message);
+  throw BadInput(printable(path_) + ": " + printable(what.substr(0, kLongestMessage)));
 }
 
 // Adds what comes next to what is left in the buffer.

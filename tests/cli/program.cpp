@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
@@ -21,12 +22,22 @@ void redirect(int descriptor, const char* path, int flags) {
   ::close(file);
 }
 
+// Standard output becomes a pipe whose other end is closed.
+void redirect_to_nobody() {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(99);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
 // In the new process, between fork and exec.
 void become_program(const std::string& folder, char* const* arguments, const std::string& out, const std::string& err,
                     const Setup& setup) {
   redirect(STDIN_FILENO, setup.in_path.empty() ? "/dev/null" : setup.in_path.c_str(), O_RDONLY);
   redirect(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   redirect(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
+  if (setup.out_unread) redirect_to_nobody();
+  for (const int stream : setup.closed) ::close(stream);
   if (::chdir(folder.c_str()) != 0) ::_exit(99);
   if (setup.file_limit) {
     const rlimit limit{*setup.file_limit, *setup.file_limit};
@@ -60,7 +71,7 @@ bool has_file_open_in(pid_t process, const files::Folder& folder) {
 Running::Running(const std::string& folder, const std::vector<std::string>& arguments, const Setup& setup)
     : out_path_(setup.out_path) {
   const std::string out = out_path_.empty() ? streams_ / "out" : out_path_;
-  const std::string err = streams_ / "err";
+  const std::string err = setup.err_path.empty() ? streams_ / "err" : setup.err_path;
   std::vector<std::string> texts{ISOWEAVE_BINARY};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
@@ -91,9 +102,11 @@ std::string Running::err() const {
 
 Result Running::wait() {
   int status = 0;
-  if (::waitpid(process_, &status, 0) != process_) throw std::runtime_error("cannot wait for a process");
+  rusage usage{};
+  if (::wait4(process_, &status, 0, &usage) != process_) throw std::runtime_error("cannot wait for a process");
   process_ = -1;
   Result result;
+  result.peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
   if (out_path_.empty()) result.out = files::read_bytes(streams_ / "out");

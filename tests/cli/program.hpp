@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <csignal>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,16 +15,20 @@
 namespace isoweave::program {
 
 struct Result {
-  int code = -1;    // exit status; -1 when a signal ended it
-  int signal = 0;   // that ended it
-  std::string out;  // standard output
-  std::string err;  // standard error
+  int code = -1;                 // exit status; -1 when a signal ended it
+  int signal = 0;                // that ended it
+  std::string out;               // standard output
+  std::string err;               // standard error
+  std::uint64_t peak_bytes = 0;  // largest resident memory, as the system counts it
 };
 
 struct Setup {
   std::optional<std::size_t> file_limit;  // bytes, as RLIMIT_FSIZE
   std::string out_path;                   // standard output goes here instead
   std::string in_path;                    // standard input comes from here; nothing: there is none
+  std::string err_path;                   // standard error does
+  std::vector<int> closed;                // standard streams that are closed
+  bool out_unread = false;                // standard output is a pipe that nobody reads
   int signal = 0;                         // sent once `ready`
   std::function<bool(pid_t)> ready;
 };
