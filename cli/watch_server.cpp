@@ -4,20 +4,18 @@
 #include <httplib.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <charconv>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <random>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <utility>
+
+#include "watch_connections.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -26,11 +24,9 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr std::size_t kThreads = 4;
-constexpr std::size_t kMostWaiting = 16;
-constexpr Clock::duration kToAsk = 1s;
-constexpr Clock::duration kToTake = 2s;
-constexpr int kLook = 20;  // ms between two looks whether it is all over
+constexpr Clock::duration kToTake = 2s;      // a part of the answer
+constexpr Clock::duration kToTakeAll = 60s;  // the address may have been forwarded over a slow line
+constexpr int kLook = 20;                    // ms between two looks whether it is all over
 
 // 128 bits.
 std::string random_token() {
@@ -40,20 +36,34 @@ std::string random_token() {
   return token;
 }
 
-// One connection. httplib's own waits for its times to pass even when the server is to end.
+// What was asked, from memory, and the socket that the answer goes to.
 class Connection final : public httplib::Stream {
  public:
-  Connection(int socket, const std::atomic<bool>& over) : socket_(socket), over_(over) {}
+  Connection(const WatchConnections::Question& question, const std::atomic<bool>& over)
+      : question_(question), over_(over) {}
 
-  bool is_readable() const override { return wait_for(POLLIN, asked_by_); }
-  bool is_writable() const override { return wait_for(POLLOUT, Clock::now() + kToTake); }
+  bool is_readable() const override { return read_ < question_.head.size(); }
 
   ssize_t read(char* to, std::size_t size) override {
-    return is_readable() ? ::recv(socket_, to, size, MSG_DONTWAIT) : -1;
+    const std::size_t got = question_.head.copy(to, size, read_);
+    read_ += got;
+    return static_cast<ssize_t>(got);
+  }
+
+  // Looks once more when the time is up: a process that was stopped meanwhile finds what was taken.
+  bool is_writable() const override {
+    const Clock::time_point until = std::min(Clock::now() + kToTake, all_taken_by_);
+    while (!over_) {
+      const bool last = Clock::now() >= until;
+      pollfd ready{question_.socket, POLLOUT, 0};
+      if (::poll(&ready, 1, last ? 0 : kLook) > 0) return true;
+      if (last) return false;
+    }
+    return false;
   }
 
   ssize_t write(const char* from, std::size_t size) override {
-    return is_writable() ? ::send(socket_, from, size, MSG_DONTWAIT | MSG_NOSIGNAL) : -1;
+    return is_writable() ? ::send(question_.socket, from, size, MSG_DONTWAIT | MSG_NOSIGNAL) : -1;
   }
 
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
@@ -61,49 +71,20 @@ class Connection final : public httplib::Stream {
     port = 0;
   }
   void get_local_ip_and_port(std::string& ip, int& port) const override { get_remote_ip_and_port(ip, port); }
-  socket_t socket() const override { return socket_; }
+  socket_t socket() const override { return question_.socket; }
 
  private:
-  // Looks once more when the time is up: a process that was stopped meanwhile finds what has come.
-  bool wait_for(short event, Clock::time_point until) const {
-    while (!over_) {
-      const bool last = Clock::now() >= until;
-      pollfd ready{socket_, event, 0};
-      if (::poll(&ready, 1, last ? 0 : kLook) > 0) return true;
-      if (last) return false;
-    }
-    return false;
-  }
-
-  int socket_;
+  const WatchConnections::Question& question_;
   const std::atomic<bool>& over_;
-  const Clock::time_point asked_by_ = Clock::now() + kToAsk;
+  const Clock::time_point all_taken_by_ = Clock::now() + kToTakeAll;
+  std::size_t read_ = 0;
 };
 
-// Connections that wait for a thread; more of them wait in the system, and then nowhere.
-class Connections final : public httplib::ThreadPool {
+// Hands each connection on, at once.
+class HandOn final : public httplib::TaskQueue {
  public:
-  Connections() : httplib::ThreadPool(kThreads) {}
-
-  void enqueue(std::function<void()> serve) override {
-    std::unique_lock lock(mutex_);
-    taken_.wait(lock, [&] { return waiting_ < kMostWaiting; });
-    ++waiting_;
-    lock.unlock();
-    ThreadPool::enqueue([this, serve = std::move(serve)] {
-      {
-        const std::lock_guard guard(mutex_);
-        --waiting_;
-      }
-      taken_.notify_one();
-      serve();
-    });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable taken_;
-  std::size_t waiting_ = 0;
+  void enqueue(std::function<void()> take) override { take(); }
+  void shutdown() override {}
 };
 
 // "127.0.0.1:8080", with whatever port: it may have been forwarded.
@@ -153,7 +134,7 @@ class WatchServer::Http final : private httplib::Server {
       respond(request, response);
       return HandlerResponse::Handled;
     });
-    new_task_queue = [] { return new Connections; };
+    new_task_queue = [] { return new HandOn; };
     port_ = port == 0 ? bind_to_any_port(kLoopback) : bind_to_port(kLoopback, port) ? port : -1;
     if (port_ < 0) throw std::runtime_error("expected a port that is free, found it taken or not allowed");
     listener_ = std::thread([this] { listen_after_bind(); });
@@ -161,12 +142,11 @@ class WatchServer::Http final : private httplib::Server {
   }
 
   ~Http() override {
-    over_ = true;
     stop();
     listener_.join();
   }
 
-  bool is_idle() const { return served_ == 0; }
+  bool is_idle() const { return connections_.is_idle(); }
 
   std::string url() const { return fmt::format("http://{}:{}/{}/", kLoopback, port_, token_); }
 
@@ -190,23 +170,22 @@ class WatchServer::Http final : private httplib::Server {
   }
 
   bool process_and_close_socket(socket_t socket) override {
-    Connection connection(static_cast<int>(socket), over_);
+    connections_.take(static_cast<int>(socket));
+    return true;
+  }
+
+  void serve(const WatchConnections::Question& question) {
+    Connection connection(question, connections_.over());
     bool closed = false;
-    ++served_;
-    const bool served = process_request(connection, true, closed, nullptr);
-    ::shutdown(static_cast<int>(socket), SHUT_RDWR);
-    ::close(static_cast<int>(socket));
-    --served_;
-    return served;
+    process_request(connection, true, closed, nullptr);
   }
 
   const std::string token_ = random_token();
   const std::shared_ptr<const std::string> page_;
   const Visited visited_;
   const Answer answer_;
-  std::atomic<bool> over_ = false;
-  std::atomic<int> served_ = 0;  // connections
   int port_ = -1;
+  WatchConnections connections_{[this](const WatchConnections::Question& question) { serve(question); }};
   std::thread listener_;
 };
 

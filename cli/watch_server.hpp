@@ -11,8 +11,9 @@ namespace isoweave::cli {
 
 // On 127.0.0.1 only. What it shows may be a patient: an address holds 128 random bits, without which there is nothing
 // (404) for the other users and programs of the machine; a name that somebody has pointed to this machine is refused
-// (403: DNS rebinding); no other origin may read or frame it. Connections that have not asked within a second, and
-// those that take nothing for two, are closed. At most four are answered at a time and sixteen wait.
+// (403: DNS rebinding); no other origin may read or frame it. Connections that have not asked within a second and
+// 16 KiB, those that take nothing for two, and those that have not taken all in a minute, are closed. Whoever is idle
+// holds no thread (watch_connections.hpp); four are answered at a time.
 class WatchServer {
  public:
   using Visited = std::function<void()>;
