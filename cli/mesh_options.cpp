@@ -64,6 +64,7 @@ std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
   input.roi = arguments.input.roi;
   input.step = arguments.input.step;
   input.even_spacing = arguments.input.even_spacing;
+  input.external = arguments.input.external;
   return open_input(input);
 }
 

@@ -17,10 +17,10 @@ std::string absolute_path(const std::string& path) { return std::filesystem::abs
 
 // The task of a saved state, and how it was to run where nothing else is said now.
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
-  arguments.input = {task.at("volume"),      task.at("raw"),         task.at("spacing"), task.at("origin"),
-                     task.at("series"),      task.at("dataset"),     task.at("level"),   task.at("channel"),
-                     task.at("time"),        task.at("slices_from"), task.at("roi"),     task.at("step"),
-                     task.at("even_spacing")};
+  arguments.input = {task.at("volume"),       task.at("raw"),         task.at("spacing"), task.at("origin"),
+                     task.at("series"),       task.at("dataset"),     task.at("level"),   task.at("channel"),
+                     task.at("time"),         task.at("slices_from"), task.at("roi"),     task.at("step"),
+                     task.at("even_spacing"), task.at("external")};
   arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment"), task.at("one_file")};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
@@ -56,6 +56,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"roi", arguments.input.roi},
           {"step", arguments.input.step},
           {"even_spacing", arguments.input.even_spacing},
+          {"external", arguments.input.external},
           {"output", absolute_path(arguments.output.path)},
           {"compress", arguments.output.compress},
           {"one_file", arguments.output.one_file},

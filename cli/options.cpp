@@ -172,6 +172,9 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
                   "Take the axis of channels or of times for that of slices: channel or time");
   verb.add_option("--roi", input.roi,
                   "Only samples I0:I1,J0:J1,K0:K1, the last ones not included; an end left out is that of the volume");
+  verb.add_flag_callback(
+      "--no-external", [&input] { input.external = false; },
+      "Refuse a header that names other files, and links out of a folder: for files from strangers");
   verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
 }
 
@@ -233,6 +236,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
                                                   {{"channel", SliceAxis::kChannels}, {"time", SliceAxis::kTimes}});
   }
   options.uneven_slices = parse_uneven(input.even_spacing);
+  options.external = input.external;
   return open_volume(input.path == kStandardInput ? "/dev/stdin" : input.path, options);
 }
 

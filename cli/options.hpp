@@ -54,6 +54,7 @@ struct InputOptions {
   std::string path;
   std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
   std::string even_spacing;  // empty: resample, but refuse where labels are read
+  bool external = true;      // a header may name other files
 };
 
 // Whether the volume comes out of standard input or another pipe, so that a later process cannot read it again.

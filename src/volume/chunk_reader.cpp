@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "volume/chunked_array.hpp"
+#include "volume/external_files.hpp"
 #include "volume/input_file.hpp"
 
 namespace isoweave {
@@ -13,11 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file, or nothing when there is none of this name.
-FilePtr open_if_there(const std::string& path) {
+// The file, or nothing when there is none of this name. `root`: as in ChunkedArray.
+FilePtr open_if_there(const std::string& path, const std::string& root) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) return nullptr;
+  if (!root.empty()) check_within(path, root);
   return open_file(path);
 }
 
@@ -109,7 +111,7 @@ std::optional<std::vector<std::byte>> ChunkReader::from_shard(const std::vector<
   if (!shard_ || shard_->path != path) {
     auto shard = std::make_unique<Shard>();
     shard->path = path;
-    shard->file = open_if_there(path);
+    shard->file = open_if_there(path, array_.root);
     if (shard->file) {
       const std::size_t count = count_of(shards.chunks);
       const std::size_t bytes = count * sizeof(Shard::Place) + (shards.index_sum ? sizeof(std::uint32_t) : 0);
@@ -149,7 +151,7 @@ bool ChunkReader::read(const std::vector<std::int64_t>& index, Chunk& chunk) {
     if (stored) decode(std::move(*stored), path, chunk);
     return stored.has_value();
   }
-  const FilePtr file = open_if_there(path);
+  const FilePtr file = open_if_there(path, array_.root);
   if (!file) return false;
   if (file->size() > most_stored(chunk_bytes_)) {
     bad_input(path,

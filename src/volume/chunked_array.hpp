@@ -39,6 +39,7 @@ struct ChunkedArray {
   bool reversed_keys = false;  // names of files begin with the fastest axis (N5)
   bool block_headers = false;  // a chunk begins with its size, which is smaller at the end of an axis (N5)
   std::optional<Shards> shards;
+  std::string root;  // no file is read that lies outside this folder; empty: wherever links lead
   std::vector<std::string> notes;
 };
 

@@ -11,6 +11,7 @@
 
 #include "volume/array_axes.hpp"
 #include "volume/data_files.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
@@ -287,6 +288,8 @@ OpenedVolume open_metaimage(const FilePtr& file, const OpenOptions& options) {
   info.part = choice.part;
   info.notes = choice.notes;
   set_axes(volume, fields, words_of(fields.get({"dimsize"})).size());
+  const std::string_view data = fields.get({kDataFile});
+  if (lower_case(data) != "local") check_external(options, info.path, data);
   note_compressed_size(info, file, fields);
   const bool big = is_true(fields.get({"binarydatabyteordermsb", "elementbyteordermsb"}));
   volume.swap_bytes = big != (std::endian::native == std::endian::big);

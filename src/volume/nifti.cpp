@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "volume/array_axes.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_fields.hpp"
@@ -356,6 +357,7 @@ OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options) {
   OpenedVolume volume;
   volume.info = read_info(*header, axes, choice, file->path());
   const std::uint64_t offset = data_offset(*header, file->path());
+  if (!header->single_file) check_external(options, file->path(), "its image");
   const FilePtr image = header->single_file ? file : image_of_header(file->path());
   const std::size_t each = sample_bytes(volume.info.type);
   samples_in(image, offset, picked_extent(axes, choice, each, file->path()));  // refuses a file that cannot hold them

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volume/data_files.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
@@ -291,6 +292,7 @@ OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options) {
   const bool text = layout.encoding == DataLayout::Encoding::kNumbers;
   volume.swap_bytes = !text && is_swapped(fields, info.type, info.path);
   const std::size_t each = sample_bytes(info.type);
+  if (const std::string_view other = fields.get("datafile"); !other.empty()) check_external(options, info.path, other);
   auto samples = samples_of(info, file, fields, layout, checked_bytes_of(named, each, info.path));
   volume.samples = pick_volume(std::move(samples), named, choice, each, info.path);
   return volume;

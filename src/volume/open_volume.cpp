@@ -9,6 +9,7 @@
 #include "isoweave/error.hpp"
 #include "volume/dicom_file.hpp"
 #include "volume/dicom_series.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
@@ -66,12 +67,16 @@ OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const Open
   if (const std::optional<RawLayout> layout = raw_layout_from_name(path)) return open_raw(file, *layout);
   std::string name = lower_case(path);
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
-  if (is_analyze(head)) return open_analyze(file);
+  if (is_analyze(head)) {
+    check_external(options, path, "its image");
+    return open_analyze(file);
+  }
   if (is_mgh(head)) return open_mgh(file);
   if (is_mrc_name(name) && is_old_mrc(head)) return open_mrc(file);
   if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file, options);
   const std::string header = header_of_image(path);
   if (!header.empty()) {
+    check_external(options, path, header);
     const FilePtr described = unpacked(open_file(header));
     const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
     OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described);
@@ -105,8 +110,14 @@ OpenedVolume open_dicom(const FilePtr& file, const OpenOptions& options) {
   if (!file->jumps() || file->system_path() != file->path()) {
     bad_input(file->path(), "DICOM as a plain file or a folder of them", "DICOM in a pipe or in gzip");
   }
-  if (is_dicomdir(file->path())) return open_dicom_series(slices_of_export(file->path()), options);
-  return open_dicom_file(file->path(), options);
+  const std::string& path = file->path();
+  if (is_dicomdir(path)) {
+    check_external(options, path, "the files of an export");
+    return open_dicom_series(slices_of_export(path), options);
+  }
+  // Without others beside it, a file is all of its series.
+  if (!options.external) return open_dicom_series({path, SliceKind::kDicom, {path}, {}}, options);
+  return open_dicom_file(path, options);
 }
 
 // What the file holds. Samples without a header may begin as gzip does by chance: then their number is right.
@@ -144,6 +155,9 @@ OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
     return open_zarr(path, options);
   }
   const SliceFiles slices = find_slices(path);
+  for (const std::string& file : slices.files) {
+    if (!options.external && is_folder(path)) check_within(file, path);
+  }
   if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options);
   refuse_series(path, options.series);
   return open_slice_series(slices, options);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volume/data_files.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
@@ -254,7 +255,7 @@ Headers piece_headers(const std::shared_ptr<const ImageHeader>& header, const Op
   if (header->form.type == "ImageData") return {header};
   Headers headers;
   for (const ImagePiece& piece : header->pieces) {
-    if (!options.external) bad_input(header->path, "a volume in one file", "one that names " + quoted(piece.source));
+    check_external(options, header->path, piece.source);
     if (piece.source.empty()) bad_input(header->path, "a file as Source of each piece", "none");
     const std::string path = listed_files(header->path, {piece.source}).name(0);
     auto source = std::make_shared<ImageHeader>(HeaderReader(open_file(path), options.dataset).read());

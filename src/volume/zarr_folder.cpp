@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "volume/array_places.hpp"
+#include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/header_text.hpp"
 #include "volume/ome_multiscale.hpp"
@@ -274,7 +275,9 @@ void check_places(const FoundArray& found, std::size_t axes) {
 
 OpenedVolume open_zarr(const std::string& path, const OpenOptions& options) {
   const FoundArray found = find_array(node_at(path, options.dataset, path), options);
+  if (!options.external) check_within(found.node.header, path);
   ChunkedArray array = array_of(found.node);
+  if (!options.external) array.root = path;
   if (found.axis_names) {
     if (found.axis_names->size() != array.axes.size()) {
       bad_input(found.node.header, "an array of the " + std::to_string(found.axis_names->size()) + " axes of its image",

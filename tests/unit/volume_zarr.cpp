@@ -239,5 +239,25 @@ TEST(Zarr3, WhatIsNotReadIsRefusedByName) {
   EXPECT_TRUE(contains(refused({{"codecs", turned}}), "an order of all axes"));
 }
 
+TEST(Zarr, LinksOutOfTheFolderAreRefusedWhereTheyAreNotTrusted) {
+  const TempFolder folder;
+  OpenOptions options;
+  options.external = false;
+  put_zarr2(folder / "a.zarr");
+  EXPECT_EQ(read_all(*open_volume(folder / "a.zarr", options)).size(), 120U);
+  std::filesystem::rename(folder / "a.zarr/0.0.0", folder / "chunk");
+  std::filesystem::create_symlink("../chunk", folder / "a.zarr/0.0.0");
+  EXPECT_EQ(read_all(*open_volume(folder / "a.zarr")).size(), 120U);
+  EXPECT_THROW(read_all(*open_volume(folder / "a.zarr", options)), BadInput);
+  std::filesystem::create_directory_symlink("a.zarr", folder / "link.zarr");
+  std::filesystem::remove(folder / "a.zarr/0.0.0");
+  std::filesystem::create_symlink("0.0.1", folder / "a.zarr/0.0.0");
+  EXPECT_EQ(read_all(*open_volume(folder / "link.zarr", options)).size(), 120U);
+  std::filesystem::rename(folder / "a.zarr/.zarray", folder / "metadata");
+  std::filesystem::create_symlink("../metadata", folder / "a.zarr/.zarray");
+  EXPECT_EQ(read_all(*open_volume(folder / "a.zarr")).size(), 120U);
+  EXPECT_THROW(open_volume(folder / "a.zarr", options), BadInput);
+}
+
 }  // namespace
 }  // namespace isoweave::testing
