@@ -80,25 +80,52 @@ StreamSource::StreamSource(OpenedVolume volume) : volume_(std::move(volume)) {}
 
 void StreamSource::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
   const VolumeInfo& info = volume_.info;
-  check_slice_range(info, next_, first, count, out.size());
-  if (count == 0) return;
   const std::uint64_t slice = info.slice_bytes();
-  const std::uint64_t before = static_cast<std::uint64_t>(next_) * slice;
-  const std::uint64_t behind = static_cast<std::uint64_t>(first - next_) * slice;
-  const std::span<std::byte> wanted = out.first(static_cast<std::size_t>(count) * info.slice_bytes());
+  const auto next = static_cast<std::int64_t>(place_ / slice + (place_ % slice > 0 ? 1 : 0));
+  check_slice_range(info, next, first, count, out.size());
+  if (count == 0) return;
+  read_from(static_cast<std::uint64_t>(first) * slice,
+            out.first(static_cast<std::size_t>(count) * static_cast<std::size_t>(slice)));
+}
+
+void StreamSource::read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+  const VolumeInfo& info = volume_.info;
+  const std::size_t row = static_cast<std::size_t>(info.dims[0]) * sample_bytes(info.type);
+  const bool inside = k >= 0 && k < info.dims[2] && first >= 0 && count >= 0 && count <= info.dims[1] - first;
+  if (!inside || out.size() / row < static_cast<std::size_t>(count)) {
+    throw std::invalid_argument(std::to_string(count) + " rows from " + std::to_string(first) + " of slice " +
+                                std::to_string(k) + " are not all in the volume, or not in the memory given");
+  }
+  const std::uint64_t place =
+      static_cast<std::uint64_t>(k) * info.slice_bytes() + static_cast<std::uint64_t>(first) * row;
+  if (place < place_) throw std::invalid_argument("row " + std::to_string(first) + " lies behind the next to be read");
+  read_from(place, out.first(static_cast<std::size_t>(count) * row));
+}
+
+void StreamSource::read_from(std::uint64_t place, std::span<std::byte> wanted) {
+  const VolumeInfo& info = volume_.info;
+  const std::uint64_t all = static_cast<std::uint64_t>(info.dims[2]) * info.slice_bytes();
+  const std::uint64_t before = place_;
+  const std::uint64_t behind = place - before;
   // After a failure nobody knows where the stream stands: nothing more is read from it.
-  next_ = info.dims[2];
+  place_ = all;
   std::uint64_t got = volume_.samples->skip(behind);
   if (got == behind) got += volume_.samples->read(wanted);
   if (got < behind + wanted.size()) {
-    bad_input(info.path, std::to_string(static_cast<std::uint64_t>(info.dims[2]) * slice) + " bytes of samples",
-              std::to_string(before + got));
+    bad_input(info.path, std::to_string(all) + " bytes of samples", std::to_string(before + got));
   }
-  next_ = first + count;
+  place_ = place + wanted.size();
   if (volume_.swap_bytes) swap_sample_bytes(wanted, sample_bytes(info.type));
   // One byte more makes a compressed stream check its sum.
   std::array<std::byte, 1> beyond;
-  if (next_ == info.dims[2]) volume_.samples->read(beyond);
+  if (place_ == all) volume_.samples->read(beyond);
+}
+
+std::optional<SampleBytes> StreamSource::constant() const {
+  std::optional<SampleBytes> sample = volume_.constant;
+  const std::size_t bytes = sample_bytes(volume_.info.type);
+  if (sample && volume_.swap_bytes) swap_sample_bytes(std::span(*sample).first(bytes), bytes);
+  return sample;
 }
 
 }  // namespace isoweave

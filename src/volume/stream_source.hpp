@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "isoweave/volume.hpp"
 #include "volume/byte_stream.hpp"
+#include "volume/row_source.hpp"
 
 namespace isoweave {
 
@@ -18,19 +20,26 @@ struct OpenedVolume {
   bool swap_bytes = false;    // the stored byte order is not the machine's
   std::string unit_conflict;  // units of the axes that cannot be made one: without --spacing no volume
   FilePtr input;  // what the user named, open as long as the volume: what came out of a pipe is kept with it
+  std::uint64_t held_bytes = 0;           // by `samples`, at most: what must be decoded as a whole
+  std::optional<SampleBytes> constant{};  // as stored: every sample is this one, and none is read
 };
 
-class StreamSource final : public SliceSource {
+class StreamSource final : public RowSource {
  public:
   explicit StreamSource(OpenedVolume volume);
 
   const VolumeInfo& info() const override { return volume_.info; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+  void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
   bool skips() const override { return volume_.samples->skips(); }
+  std::uint64_t held_bytes() const override { return volume_.held_bytes; }
+  std::optional<SampleBytes> constant() const override;
 
  private:
+  void read_from(std::uint64_t place, std::span<std::byte> wanted);
+
   OpenedVolume volume_;
-  std::int64_t next_ = 0;  // the slice the stream stands at
+  std::uint64_t place_ = 0;  // the byte of the samples that the stream stands at
 };
 
 // Throws std::invalid_argument unless [first, first + count) lies in the volume, not before `next`, and fits `out`.

@@ -1,0 +1,37 @@
+#include "volume/row_source.hpp"
+
+#include <algorithm>
+
+namespace isoweave {
+
+RowReader::RowReader(SliceSource& volume) : volume_(volume), rows_(dynamic_cast<RowSource*>(&volume)) {}
+
+void RowReader::read(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+  if (rows_ != nullptr) return rows_->read_rows(k, first, count, out);
+  const VolumeInfo& info = volume_.info();
+  if (held_ != k) {
+    slice_.resize(info.slice_bytes());
+    volume_.read(k, 1, slice_);
+    held_ = k;
+  }
+  const std::size_t row = static_cast<std::size_t>(info.dims[0]) * sample_bytes(info.type);
+  const auto from = slice_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(first) * row);
+  std::copy_n(from, static_cast<std::size_t>(count) * row, out.begin());
+}
+
+std::uint64_t held_by_rows(const SliceSource& volume) {
+  const auto* rows = dynamic_cast<const RowSource*>(&volume);
+  return rows != nullptr ? rows->held_bytes() : volume.held().empty() ? volume.info().slice_bytes() : 0;
+}
+
+std::uint64_t held_by_slices(const SliceSource& volume) {
+  const auto* rows = dynamic_cast<const RowSource*>(&volume);
+  return rows != nullptr ? rows->held_bytes() : 0;
+}
+
+std::optional<SampleBytes> constant_sample(const SliceSource& volume) {
+  const auto* rows = dynamic_cast<const RowSource*>(&volume);
+  return rows != nullptr ? rows->constant() : std::nullopt;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,55 @@
+// What sources can do beside handing out slices: a slice may be larger than the memory there is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "isoweave/volume.hpp"
+
+namespace isoweave {
+
+// One sample as it is in memory; those of fewer bytes leave the rest alone.
+using SampleBytes = std::array<std::byte, 8>;
+
+class RowSource : public SliceSource {
+ public:
+  // Reads `count` rows of slice k, from row `first` on, as read() does slices: forward only, and slices of which a row
+  // was read are behind.
+  virtual void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) = 0;
+
+  // The most bytes that reading holds beside the memory it is given: a band of slices, a strip, a decoded slice.
+  virtual std::uint64_t held_bytes() const { return 0; }
+
+  // What every sample is, where that is known without reading any.
+  virtual std::optional<SampleBytes> constant() const { return std::nullopt; }
+};
+
+// Rows of any source; one that has only slices is read by whole ones, and holds one.
+class RowReader {
+ public:
+  explicit RowReader(SliceSource& volume);
+
+  // As RowSource::read_rows.
+  void read(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out);
+
+ private:
+  SliceSource& volume_;
+  RowSource* rows_;  // the same, if it has rows
+  std::vector<std::byte> slice_;
+  std::int64_t held_ = -1;  // the slice that is held
+};
+
+// As RowSource::held_bytes, and what a RowReader adds.
+std::uint64_t held_by_rows(const SliceSource& volume);
+
+// As RowSource::held_bytes; 0 for other sources.
+std::uint64_t held_by_slices(const SliceSource& volume);
+
+// As RowSource::constant; nothing for other sources.
+std::optional<SampleBytes> constant_sample(const SliceSource& volume);
+
+}  // namespace isoweave
