@@ -34,7 +34,7 @@ TEST(Printable, KeepsTextAndReplacesWhatHidesOrDrives) {
       {"\xff\xfe", "??"}};
   for (const auto& [text, shown] : cases) {
     EXPECT_EQ(printable(text), shown);
-    EXPECT_EQ(quoted(text), "'" + shown + "'");
+    EXPECT_EQ(isoweave::quoted(text), "'" + shown + "'");
   }
 }
 
@@ -48,7 +48,7 @@ TEST(Printable, LongTextIsCutBetweenCharacters) {
   std::string text;
   for (int n = 0; n < 5000; ++n) text += "\xe2\x82\xac";
   EXPECT_EQ(printable(text), text.substr(0, 3 * 4096) + "...");
-  EXPECT_EQ(quoted(text), "'" + text.substr(0, 3 * 60) + "'");
+  EXPECT_EQ(isoweave::quoted(text), "'" + text.substr(0, 3 * 60) + "'");
 }
 
 }  // namespace
