@@ -62,14 +62,15 @@ bool is_close(const SlicePlane& a, const SlicePlane& b) {
   return close;
 }
 
-PlacedSlice placed(const DicomSlice& slice, const Vector3& normal) {
-  PlacedSlice result{slice};
+PlacedSlice placed(DicomSlice slice, const Vector3& normal) {
+  PlacedSlice result;
   const auto at = numbers_of(slice.position, "Image Position (Patient)", 3, slice.path);
   for (std::size_t n = 0; n < 3; ++n) result.position[n] = at[n] + slice.offset * normal[n];
   result.depth = dot(result.position, normal);
   if (!std::isfinite(result.depth)) bad_input(slice.path, "a finite position", quoted(slice.position));
   result.slope = number_or(slice.slope, 1, "Rescale Slope", slice.path);
   result.intercept = number_or(slice.intercept, 0, "Rescale Intercept", slice.path);
+  result.slice = std::move(slice);
   return result;
 }
 
@@ -98,11 +99,11 @@ void drop_copies(PlacedSeries& series) {
 
 PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   PlacedSeries result;
-  const std::vector<DicomSlice> slices = without_scouts(series, result.notes);
-  const DicomSlice& first = slices.front();
+  std::vector<DicomSlice> slices = without_scouts(series, result.notes);
+  const DicomSlice first = slices.front();
   result.facts = facts_of(first);
   result.plane = plane_of(first);
-  for (const DicomSlice& slice : slices) {
+  for (DicomSlice& slice : slices) {
     const SliceKindFacts found = facts_of(slice);
     if (found != result.facts) {
       bad_input(slice.path, text_of(result.facts) + " as in " + quoted(first.name()), text_of(found));
@@ -111,7 +112,7 @@ PlacedSeries place_series(const std::vector<DicomSlice>& series) {
       bad_input(slice.path, "the orientation and pixel spacing of " + quoted(first.name()),
                 quoted(slice.orientation + " " + slice.pixel_spacing));
     }
-    result.slices.push_back(placed(slice, result.plane.normal()));
+    result.slices.push_back(placed(std::move(slice), result.plane.normal()));
   }
   std::stable_sort(result.slices.begin(), result.slices.end(),
                    [](const PlacedSlice& a, const PlacedSlice& b) { return a.depth < b.depth; });

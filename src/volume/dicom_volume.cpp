@@ -141,17 +141,20 @@ std::vector<std::byte> decoded(const PlacedSlice& slice, SampleType stored, std:
                                       : values_of<double>(samples, stored, slice);
 }
 
-std::unique_ptr<ByteStream> samples_of(const VolumeInfo& info, const PlacedSeries& series, const EvenGrid& grid) {
-  const auto list = std::make_shared<const Slices>(series.slices);
-  const auto slice_of = [list](std::int64_t n) -> const PlacedSlice& { return list->at(static_cast<std::size_t>(n)); };
-  const SampleType stored = series.facts.type;
+std::unique_ptr<ByteStream> samples_of(const VolumeInfo& info, const std::shared_ptr<const PlacedSeries>& series,
+                                       const EvenGrid& grid) {
+  const auto slice_of = [series](std::int64_t n) -> const PlacedSlice& {
+    return series->slices.at(static_cast<std::size_t>(n));
+  };
+  const SampleType stored = series->facts.type;
   const std::size_t stored_bytes = static_cast<std::size_t>(info.slice_samples()) * sample_bytes(stored);
   const auto open = [slice_of, stored, stored_bytes, type = info.type](std::int64_t n) {
     return std::make_unique<DecodedStream>(
         [slice_of, n, stored, stored_bytes, type] { return decoded(slice_of(n), stored, stored_bytes, type); });
   };
   const auto name = [slice_of](std::int64_t n) { return slice_of(n).slice.path; };
-  auto slices = std::make_unique<FileSequence>(static_cast<std::int64_t>(list->size()), info.slice_bytes(), open, name);
+  auto slices =
+      std::make_unique<FileSequence>(static_cast<std::int64_t>(series->slices.size()), info.slice_bytes(), open, name);
   return even_slices(std::move(slices), grid, info.type, info.slice_bytes());
 }
 
@@ -209,7 +212,8 @@ void note_bits(VolumeInfo& info, const PlacedSeries& series) {
 
 OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std::string& path,
                                const OpenOptions& options) {
-  const PlacedSeries placed = place_series(series);
+  const auto shared = std::make_shared<const PlacedSeries>(place_series(series));
+  const PlacedSeries& placed = *shared;
   const Slices& slices = placed.slices;
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
@@ -227,7 +231,7 @@ OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std:
   checked_volume_bytes(info);
   note_header(info, slices.front().slice);
   note_bits(info, placed);
-  volume.samples = samples_of(info, placed, grid);
+  volume.samples = samples_of(info, shared, grid);
   return volume;
 }
 

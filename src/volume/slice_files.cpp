@@ -80,6 +80,7 @@ std::string left_out(const std::vector<std::string>& others) {
     names += (n == 0 ? "" : ", ") + printable(fs::path(others[n]).filename().string());
   }
   if (others.size() > kNamed) names += ", ...";
+  if (others.size() == 1) return "1 file of the folder is no slice and is left out: " + names;
   return std::to_string(others.size()) + " files of the folder are no slices and are left out: " + names;
 }
 
@@ -245,6 +246,10 @@ std::vector<std::string> dicom_files_beside(const std::string& path) {
     const bool empty = fs::file_size(name, error) == 0;
     if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);
   }
+  // One that is hidden is not listed.
+  const bool is_listed =
+      std::any_of(files.begin(), files.end(), [&](const std::string& name) { return is_same_file(name, path); });
+  if (!is_listed) files.push_back(path);
   return files;
 }
 

@@ -48,6 +48,15 @@ TEST(Dicom, ReadsASeriesByAFolderAPatternOrOneFile) {
   EXPECT_EQ(open_volume(folder / "other")->info().dims[2], 1);
 }
 
+TEST(Dicom, ReadsAHiddenFileThatIsNamed) {
+  const TempFolder folder;
+  put_series(folder);
+  folder.put(".a", dicom({}, slice(0)));
+  std::filesystem::remove(folder / "s9");
+  EXPECT_EQ(open_volume(folder / ".a")->info().dims[2], 5);
+  EXPECT_EQ(open_volume(folder / "s8")->info().dims[2], 4);
+}
+
 TEST(Dicom, ListsSeveralSeriesAndReadsTheChosenOne) {
   const TempFolder folder;
   put_series(folder);

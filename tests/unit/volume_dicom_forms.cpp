@@ -201,6 +201,11 @@ TEST(DicomBare, IsNotSeenInOtherFiles) {
   EXPECT_TRUE(contains(refusal(folder.put("a", second + swapped)), "found other content"));
   EXPECT_TRUE(contains(refusal(folder.put("a", std::string("\10\0\5\0\4\0\0\0\1\2\3\4", 12) + std::string(500, '\1'))),
                        "found other content"));
+  // Elements of group 8 in order, whose values are no texts.
+  std::string binary;
+  for (const char number : {'\5', '\10', '\26'})
+    binary += std::string("\10\0", 2) + number + std::string("\0\4\0\0\0\1\2\3\4", 9);
+  EXPECT_TRUE(contains(refusal(folder.put("a", binary + std::string(500, 'x'))), "found other content"));
 }
 
 TEST(DicomBare, IsNotPackedByGuess) {
@@ -233,7 +238,8 @@ void put_export(const TempFolder& folder) {
   }
   folder.put(".hidden/s1", "hello");
   // What the index lists is not looked at, and may be damaged.
-  folder.put("DICOMDIR", dicomdir().substr(0, 500));
+  const std::string index = dicomdir();
+  folder.put("DICOMDIR", index.substr(0, index.size() - 15));
   folder.put("logo.png", "\x89PNG\r\n\x1a\n and so on");
   folder.put("DICOM/IMG1/thumbnail.png", "no picture at all");
 }
