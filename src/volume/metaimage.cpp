@@ -222,7 +222,6 @@ void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaField
   const std::int64_t skip =
       local ? static_cast<std::int64_t>(fields.end) : integer_of(fields, {"headersize"}, info.path).value_or(0);
   if (skip < 0) return;
-  if (!local) file->check_external(fields.get({kDataFile}));
   const FilePtr data = local ? file : open_file(beside(info.path, std::string(fields.get({kDataFile}))));
   const auto found = static_cast<std::int64_t>(data->exact_size()) - skip;
   if (found == *said) return;
