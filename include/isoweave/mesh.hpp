@@ -30,9 +30,9 @@ struct TriangleMesh {
 };
 
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
-// vertex), OBJ (v and f), OFF, VTP (arrays appended raw and not compressed), and what open_mesh_file and
-// open_mesh_levels write as GLB (coordinates as stored, without the node's unit and axes; the finest of several levels;
-// not compressed) and 3MF; told by content, then by name.
+// vertex), OBJ (v and f), OFF, VTP and legacy VTK (polygons and strips), GLB and glTF (where the nodes place them; what
+// isoweave wrote as stored, without the node's unit and axes, and of several levels the finest; not compressed), and
+// 3MF (all that is to be built, at its place); told by content, then by name.
 // Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
 // kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always. Values are the property
 // `quality` of PLY.

@@ -203,6 +203,8 @@ void set_place(VolumeInfo& info, const LegacyHeader& header, const LegacyFile& f
 
 }  // namespace
 
+bool is_vtk_legacy(std::string_view head) { return head.starts_with("# vtk DataFile Version"); }
+
 OpenedVolume open_vtk_legacy(const FilePtr& input, const OpenOptions& options) {
   LegacyFile file(input);
   const LegacyHeader header = read_header(file, options.dataset);

@@ -9,7 +9,6 @@
 namespace isoweave {
 namespace {
 
-constexpr std::string_view kMagic = "# vtk DataFile Version";
 constexpr std::size_t kLongestLine = 1 << 16;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
@@ -45,8 +44,6 @@ std::size_t bits_of(std::string_view type) {
 }
 
 }  // namespace
-
-bool is_vtk_legacy(std::string_view head) { return head.starts_with(kMagic); }
 
 VtkArrayNames LegacyArrays::names() const {
   VtkArrayNames names;
@@ -155,7 +152,7 @@ std::string LegacyFile::type_here(std::string_view type, std::uint64_t numbers) 
   bad_input(path(), "a type of VTK", quoted(type));
 }
 
-LegacyArray LegacyFile::array_here(std::string name, std::string_view type, std::uint64_t components,
+LegacyArray LegacyFile::array_here(const std::string& name, std::string_view type, std::uint64_t components,
                                    std::uint64_t tuples) {
   constexpr std::uint64_t kMostComponents = 1 << 12;
   if (components == 0 || components > kMostComponents || tuples > kMost) {

@@ -36,8 +36,6 @@ struct LegacyArrays {
   VtkArrayNames names() const;
 };
 
-bool is_vtk_legacy(std::string_view head);
-
 // The first word in capitals: keywords may be written in small letters.
 std::string legacy_key(const std::vector<std::string>& words);
 
@@ -59,7 +57,8 @@ class LegacyFile {
   bool is_next(std::string_view text);
 
   // An array that begins here. `type` is VTK's name for it in this kind of file.
-  LegacyArray array_here(std::string name, std::string_view type, std::uint64_t components, std::uint64_t tuples);
+  LegacyArray array_here(const std::string& name, std::string_view type, std::uint64_t components,
+                         std::uint64_t tuples);
 
   // Moves behind it.
   void skip(const LegacyArray& array);

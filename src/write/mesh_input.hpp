@@ -167,6 +167,7 @@ void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 TriangleMesh read_ply(MeshInput& input);
 TriangleMesh read_off(MeshInput& input);
 TriangleMesh read_vtp(MeshInput& input);
+TriangleMesh read_vtk(MeshInput& input);
 TriangleMesh read_glb(MeshInput& input);
 TriangleMesh read_3mf(MeshInput& input);
 TriangleMesh read_stl_binary(MeshInput& input);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isoweave/mesh.hpp"
+#include "volume/formats.hpp"
 #include "write/mesh_input.hpp"
 #include "write/mesh_words.hpp"
 
@@ -76,7 +77,9 @@ std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string&
   if (!named_obj && mesh_io::is_binary_stl(input)) return mesh_io::read_stl_binary(input);
   if (head.find("<VTKFile") != std::string::npos) return mesh_io::read_vtp(input);
   if (is_wide_text(head)) input.fail("is text in UTF-16 or UTF-32, expected ASCII or UTF-8");
+  if (is_vtk_legacy(head)) return mesh_io::read_vtk(input);
   std::string_view rest = text_of(head);
+  if (rest.starts_with('{')) return mesh_io::read_glb(input);  // an object in JSON
   const std::string_view word = mesh_io::take_word(rest);
   const std::string keyword = mesh_io::lower_case(word.substr(0, kLongestKeyword));
   if (keyword == "ply") return mesh_io::read_ply(input);
@@ -91,11 +94,13 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   if (has_ending(path, ".off") && is_text) return mesh_io::read_off(input);
   if (has_ending(path, ".ply")) input.fail("does not begin with the line 'ply'");
   if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
+  if (has_ending(path, ".gltf")) input.fail("does not begin with '{'");
+  if (has_ending(path, ".vtk")) input.fail("does not begin with the line '# vtk DataFile Version'");
   if (has_ending(path, ".vtp")) input.fail("does not begin with a '<VTKFile' tag");
   if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
   if (has_ending(path, ".off")) input.fail("does not begin with a line such as 'OFF' or 'COFF'");
   if (named_obj || looks_like_obj(text_of(head))) return mesh_io::read_obj(input);
-  input.fail("is not a PLY, STL, OBJ, OFF, VTP, GLB or 3MF file");
+  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTK, GLB, glTF or 3MF file");
 }
 
 // Programs write 'nan' as the normal of a vertex that has none. Such normals are of no use, and others are made from

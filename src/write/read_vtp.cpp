@@ -1,41 +1,41 @@
-// VTP: one piece of polygons whose arrays are appended raw and not compressed.
+// VTP, VTK's XML polygons: tags up to the appended arrays, then the arrays of each piece in every encoding.
 #include <algorithm>
-#include <bit>
+#include <map>
 
+#include "volume/formats.hpp"
+#include "volume/vtk_xml.hpp"
 #include "volume/xml_tag.hpp"
 #include "write/mesh_input.hpp"
+#include "write/vtk_mesh.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
-constexpr std::size_t kLongestHead = std::size_t{1} << 20;
+using Arrays = std::vector<VtkArray>;
 
-struct VtpArray {
-  std::string type;
-  std::uint64_t offset = 0;
-};
-
-// An unsigned number of up to 8 bytes.
-std::uint64_t load(std::span<const std::byte> bytes, bool big_endian) {
-  std::uint64_t value = 0;
-  for (std::size_t n = 0; n < bytes.size(); ++n) {
-    value = value << 8 | std::to_integer<std::uint64_t>(bytes[big_endian ? n : bytes.size() - 1 - n]);
-  }
-  return value;
+const VtkArray* find(const Arrays& arrays, std::string_view name) {
+  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const VtkArray& a) { return a.name == name; });
+  return found == arrays.end() ? nullptr : &*found;
 }
+
+struct VtpPiece {
+  std::uint64_t points = 0, verts = 0, lines = 0, strips = 0, polys = 0;
+  std::string normals, scalars;          // names of the active arrays
+  std::map<std::string, Arrays> arrays;  // by the section that they stand in: "Points", "Polys", ...
+};
 
 class VtpReader {
  public:
-  explicit VtpReader(MeshInput& input) : input_(input), head_(input.head(kLongestHead)) {}
+  explicit VtpReader(MeshInput& input) : input_(input), file_(open_file(input.path())), tags_(file_), mesh_(input) {}
 
   TriangleMesh read() {
     check_end();
-    read_head();
-    mesh_.vertices = read_points(points_);
-    if (normals_) mesh_.normals = read_points(*normals_);
-    read_polygons();
-    check_mesh_numbers(input_, mesh_);
-    return std::move(mesh_);
+    for (std::string tag = tags_.next(); !tag.empty() && take_tag(tag); tag = tags_.next()) {
+    }
+    if (pieces_.empty()) input_.fail("expected a piece of PolyData, found none");
+    for (const VtkArray& text : field_texts_) place_.take(text.name, text_of(text));
+    for (const VtpPiece& piece : pieces_) read_piece(piece);
+    return mesh_.finish(place_);
   }
 
  private:
@@ -47,162 +47,167 @@ class VtpReader {
     if (tail.find("</VTKFile>") == std::string::npos) input_.fail("truncated: expected '</VTKFile>' at the end");
   }
 
-  void read_head() {
-    const std::size_t appended = head_.find("<AppendedData");
-    const std::size_t end = appended == std::string::npos ? appended : head_.find('>', appended);
-    const std::size_t mark = end == std::string::npos ? end : head_.find('_', end);
-    if (mark == std::string::npos) input_.fail("expected appended data, found none in the first megabyte");
-    data_ = mark + 1;
-    if (xml_attribute(head_.substr(appended, end - appended), "encoding") != "raw") {
-      input_.fail("expected appended data in encoding 'raw', found another");
-    }
-    std::string_view rest = std::string_view(head_).substr(0, appended);
-    std::string section;
-    for (;;) {
-      const std::size_t open = rest.find('<');
-      const std::size_t close = open == std::string_view::npos ? open : rest.find('>', open);
-      if (close == std::string_view::npos) break;
-      take_tag(rest.substr(open + 1, close - open - 1), section);
-      rest.remove_prefix(close + 1);
-    }
-    if (points_.type.empty() || connectivity_.type.empty() || offsets_.type.empty()) {
-      input_.fail("expected a piece of PolyData with Points and Polys, found none");
-    }
-  }
-
-  void take_tag(std::string_view tag, std::string& section) {
-    const std::string_view name = tag.substr(0, tag.find_first_of(" \t\r\n/"));
-    if (name == "VTKFile") take_file(tag);
+  // False when nothing but appended arrays follows.
+  bool take_tag(std::string_view tag) {
+    constexpr std::array<std::string_view, 8> kSections{"FieldData", "PointData", "CellData", "Points",
+                                                        "Verts",     "Lines",     "Strips",   "Polys"};
+    const std::string_view name = vtk_tag_name(tag);
+    if (name == "VTKFile") take_form(tag);
     if (name == "Piece") take_piece(tag);
-    if (name == "PointData") wanted_normals_ = xml_attribute(tag, "Normals");
-    if (name == "PointData" || name == "CellData" || name == "Points" || name == "Polys" || name == "FieldData") {
-      section = name;
+    if (std::find(kSections.begin(), kSections.end(), name) != kSections.end()) section_ = name;
+    if (name.starts_with('/') && name.substr(1) == section_) section_.clear();
+    if (name == "PointData" && !pieces_.empty()) take_active(tag);
+    if (name == "Array" && section_ == "FieldData") {
+      field_texts_.push_back(vtk_array(tag, tags_.position(), input_.path()));
     }
-    if (name == "DataArray") take_array(tag, section);
+    if (name == "DataArray" && section_ != "FieldData" && !pieces_.empty()) take_array(tag);
+    if (name != "AppendedData") return true;
+    appended_ = vtk_appended(tag, tags_.position(), *file_);
+    return false;
   }
 
-  void take_file(std::string_view tag) {
-    const std::string type = xml_attribute(tag, "type");
-    if (type != "PolyData") input_.fail("expected PolyData, found '" + type + "'");
-    if (!xml_attribute(tag, "compressor").empty()) input_.fail("expected arrays without compression, found some with");
-    big_endian_ = xml_attribute(tag, "byte_order") == "BigEndian";
-    word_ = xml_attribute(tag, "header_type") == "UInt64" ? 8 : 4;
+  void take_form(std::string_view tag) {
+    form_ = vtk_xml_form(tag, input_.path());
+    if (form_.type != "PolyData") input_.fail("expected VTK XML of type PolyData, found '" + form_.type + "'");
   }
 
   void take_piece(std::string_view tag) {
-    if (has_piece_) input_.fail("expected one piece, found more");
-    has_piece_ = true;
-    for (const char* other : {"NumberOfVerts", "NumberOfLines", "NumberOfStrips"}) {
-      const std::string count = xml_attribute(tag, other);
-      if (!count.empty() && count != "0") input_.fail(std::string("expected polygons only, found ") + other);
-    }
-    vertices_ = count_of(tag, "NumberOfPoints");
-    polygons_ = count_of(tag, "NumberOfPolys");
+    VtpPiece piece;
+    piece.points = count_of(tag, "NumberOfPoints");
+    piece.verts = count_of(tag, "NumberOfVerts");
+    piece.lines = count_of(tag, "NumberOfLines");
+    piece.strips = count_of(tag, "NumberOfStrips");
+    piece.polys = count_of(tag, "NumberOfPolys");
+    pieces_.push_back(std::move(piece));
   }
 
   std::uint64_t count_of(std::string_view tag, const char* name) const {
     const std::string text = xml_attribute(tag, name);
+    if (text.empty()) return 0;
     const std::optional<std::uint64_t> count = parse_integer<std::uint64_t>(text);
-    if (!count || *count > std::uint64_t{1} << 58) {
+    if (!count || *count > std::uint64_t{1} << 48) {
       input_.fail(std::string("expected a number as ") + name + ", found '" + text.substr(0, 40) + "'");
     }
     return *count;
   }
 
-  void take_array(std::string_view tag, const std::string& section) {
-    const std::string name = xml_attribute(tag, "Name");
-    VtpArray* array = nullptr;
-    if (section == "Points") array = &points_;
-    if (section == "Polys" && name == "connectivity") array = &connectivity_;
-    if (section == "Polys" && name == "offsets") array = &offsets_;
-    if (section == "PointData" && !wanted_normals_.empty() && name == wanted_normals_) array = &normals_.emplace();
-    if (array == nullptr) return;
-    if (xml_attribute(tag, "format") != "appended") input_.fail("expected appended arrays, found others");
-    array->type = xml_attribute(tag, "type");
-    array->offset = count_of(tag, "offset");
+  void take_active(std::string_view tag) {
+    pieces_.back().normals = xml_attribute(tag, "Normals");
+    pieces_.back().scalars = xml_attribute(tag, "Scalars");
   }
 
-  // Moves to the numbers of an array, after its length was compared with what it must be.
-  void open(const VtpArray& array, std::uint64_t bytes) {
-    if (array.offset > input_.size() - data_) input_.fail("truncated: an array lies behind the end of the file");
-    input_.move_to(data_ + array.offset);
-    const std::uint64_t said = next(word_);
-    if (said != bytes || bytes > input_.remaining()) {
-      input_.fail("expected " + std::to_string(bytes) + " bytes in an array, found " + std::to_string(said) +
-                  " said, " + std::to_string(input_.remaining()) + " there");
-    }
+  // With several times an array has a tag for each; the first one counts.
+  void take_array(std::string_view tag) {
+    Arrays& arrays = pieces_.back().arrays[section_];
+    const VtkArray array = vtk_array(tag, tags_.position(), input_.path());
+    if (find(arrays, array.name) == nullptr) arrays.push_back(array);
   }
 
-  std::uint64_t next(std::size_t bytes) {
-    std::array<std::byte, 8> buffer{};
-    const std::span<std::byte> used = std::span(buffer).first(bytes);
-    input_.read(used);
-    return load(used, big_endian_);
-  }
-
-  std::vector<Point> read_points(const VtpArray& array) {
-    const bool wide = array.type == "Float64";
-    if (!wide && array.type != "Float32")
-      input_.fail("expected points of Float32 or Float64, found '" + array.type + "'");
-    if (vertices_ > kMostVertices) input_.fail("has more than 4294967295 vertices");
-    open(array, vertices_ * (wide ? 24 : 12));
-    std::vector<Point> points(static_cast<std::size_t>(vertices_));
-    for (Point& point : points) {
-      for (float& coordinate : point) {
-        coordinate = wide ? static_cast<float>(std::bit_cast<double>(next(8)))
-                          : std::bit_cast<float>(static_cast<std::uint32_t>(next(4)));
+  // A string of the field data. As text it is the numbers of its characters; it ends with a 0.
+  std::string text_of(const VtkArray& array) {
+    constexpr std::uint64_t kLongest = 1024;
+    if (array.is_text()) {
+      TextStream words(std::make_unique<FileStream>(file_, array.at, file_->size()));
+      std::string text;
+      for (std::string word = words.next_word(); text.size() < kLongest; word = words.next_word()) {
+        const std::optional<std::uint8_t> c = parse_integer<std::uint8_t>(word);
+        if (!c || *c == 0) break;
+        text.push_back(static_cast<char>(*c));
       }
+      return text;
     }
-    return points;
+    std::string text(static_cast<std::size_t>(std::min(vtk_array_bytes(file_, form_, array, appended_), kLongest)), 0);
+    if (text.empty() || text.size() == kLongest) return {};
+    const auto stream = open_vtk_array(file_, form_, array, appended_, text.size());
+    text.resize(stream->read(std::as_writable_bytes(std::span(text))));
+    return text.substr(0, text.find('\0'));
   }
 
-  std::size_t index_bytes(const VtpArray& array) const {
-    if (array.type == "Int64" || array.type == "UInt64") return 8;
-    if (array.type != "Int32" && array.type != "UInt32") {
-      input_.fail("expected indices of 32 or 64 bits, found '" + array.type + "'");
+  // `count` numbers, which the file is compared with before anybody makes room for them.
+  VtkNumbers open(const VtkArray& array, std::uint64_t count) {
+    const std::optional<VtkNumberType> type = vtk_xml_number(array.type);
+    if (!type) input_.fail("expected an array of numbers, found '" + array.name + "' of type '" + array.type + "'");
+    if (!array.is_text()) {
+      return {open_vtk_array(file_, form_, array, appended_, count * type->bytes), *type, false, form_.big_endian,
+              input_.path()};
     }
-    return 4;
+    // A digit and a blank for each number.
+    check_plausible(input_.path(), 2 * count, file_->size() - array.at + 1, 1);
+    return {std::make_unique<FileStream>(file_, array.at, file_->size()), *type, true, false, input_.path()};
   }
 
-  // Where each polygon ends among the corners, then the corners.
-  void read_polygons() {
-    const std::size_t each = index_bytes(offsets_);
-    open(offsets_, polygons_ * each);
-    std::vector<std::uint64_t> ends(static_cast<std::size_t>(polygons_));
-    std::uint64_t last = 0;
-    for (std::uint64_t& end : ends) {
-      end = next(each);
-      if (end < last + 3 || end > input_.size())
-        input_.fail("expected polygons of three corners or more, found others");
-      last = end;
+  static const Arrays& arrays_of(const VtpPiece& piece, const char* section) {
+    static const Arrays kNone;
+    const auto found = piece.arrays.find(section);
+    return found == piece.arrays.end() ? kNone : found->second;
+  }
+
+  void read_piece(const VtpPiece& piece) {
+    if (piece.points == 0 && piece.polys == 0 && piece.strips == 0) return;
+    const Arrays& points = arrays_of(piece, "Points");
+    if (points.empty() || points.front().components != 3) input_.fail("expected Points of 3 components, found none");
+    VtkNumbers numbers = open(points.front(), 3 * piece.points);
+    mesh_.add_points(numbers, piece.points, points.front().type == "Float32");
+    read_cells(piece, "Polys", piece.polys, &VtkMesh::add_polygon);
+    read_cells(piece, "Strips", piece.strips, &VtkMesh::add_strip);
+    mesh_.leftovers.left_out(piece.verts, kPointCells);
+    mesh_.leftovers.left_out(piece.lines, kLineCells);
+    for (const VtkArray& array : arrays_of(piece, "PointData")) read_point_data(piece, array);
+    for (const VtkArray& array : arrays_of(piece, "CellData"))
+      mesh_.leftovers.not_kept("cell array '" + array.name + "'");
+  }
+
+  // Where each cell ends among the corners, then the corners.
+  void read_cells(const VtpPiece& piece, const char* section, std::uint64_t count,
+                  void (VtkMesh::*add)(std::span<const std::uint64_t>)) {
+    if (count == 0) return;
+    const VtkArray* const offsets = find(arrays_of(piece, section), "offsets");
+    const VtkArray* const connectivity = find(arrays_of(piece, section), "connectivity");
+    if (offsets == nullptr || connectivity == nullptr) {
+      input_.fail(std::string("expected connectivity and offsets in ") + section + ", found none");
     }
-    const std::size_t corner = index_bytes(connectivity_);
-    open(connectivity_, last * corner);
-    std::uint64_t at = 0;
+    VtkNumbers numbers = open(*offsets, count);
+    std::vector<std::uint64_t> ends;
+    for (std::uint64_t n = 0; n < count; ++n) {
+      const std::uint64_t end = numbers.index();
+      if ((n > 0 && end < ends.back()) || end > std::uint64_t{1} << 48) {
+        input_.fail(std::string("expected offsets that ascend in ") + section + ", found others");
+      }
+      ends.push_back(end);
+    }
+    if (ends.back() == 0) return mesh_.leftovers.left_out(count, kFewCorners);
+    VtkNumbers corners = open(*connectivity, ends.back());
+    std::vector<std::uint64_t> cell;
+    std::uint64_t begin = 0;
     for (const std::uint64_t end : ends) {
-      PolygonFan fan(mesh_.triangles);
-      for (; at < end; ++at) fan.add(next_index(corner));
+      cell.clear();
+      for (; begin < end; ++begin) cell.push_back(corners.index());
+      (mesh_.*add)(cell);
     }
   }
 
-  std::uint32_t next_index(std::size_t bytes) {
-    const std::uint64_t index = next(bytes);
-    if (index >= vertices_) {
-      input_.fail("a polygon refers to point " + std::to_string(index) + ", the file has " + std::to_string(vertices_));
+  void read_point_data(const VtpPiece& piece, const VtkArray& array) {
+    if (array.name == piece.normals && array.components == 3) {
+      VtkNumbers numbers = open(array, 3 * piece.points);
+      mesh_.add_normals(numbers);
+    } else if (array.name == piece.scalars && array.components == 1 && vtk_xml_number(array.type)) {
+      VtkNumbers numbers = open(array, piece.points);
+      mesh_.add_values(numbers);
+    } else {
+      mesh_.leftovers.not_kept("point array '" + array.name + "'");
     }
-    return static_cast<std::uint32_t>(index);
   }
 
   MeshInput& input_;
-  std::string head_;
-  std::uint64_t data_ = 0;  // where offsets count from
-  bool big_endian_ = false, has_piece_ = false;
-  std::size_t word_ = 4;
-  std::uint64_t vertices_ = 0, polygons_ = 0;
-  std::string wanted_normals_;
-  VtpArray points_, connectivity_, offsets_;
-  std::optional<VtpArray> normals_;
-  TriangleMesh mesh_;
+  FilePtr file_;
+  VtkTags tags_;
+  VtkXmlForm form_;
+  VtkAppended appended_;
+  std::string section_;
+  std::vector<VtkArray> field_texts_;
+  std::vector<VtpPiece> pieces_;
+  MeshPlace place_;
+  VtkMesh mesh_;
 };
 
 }  // namespace

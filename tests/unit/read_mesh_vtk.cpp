@@ -1,0 +1,189 @@
+// VTP and legacy VTK as VTK and others write them, by hand.
+#include "foreign_meshes.hpp"
+#include "meshes.hpp"
+
+namespace isoweave {
+namespace {
+
+using foreign::contains;
+using foreign::failure;
+using foreign::has_note;
+using foreign::parse;
+using meshes::Triangle;
+
+std::string array(const std::string& attributes, const std::string& numbers) {
+  return "<DataArray " + attributes + " format=\"ascii\" RangeMin=\"0\">\n  " + numbers +
+         "\n<InformationKey name=\"L2_NORM_RANGE\"> 7 </InformationKey></DataArray>\n";
+}
+
+std::string cells(const std::string& section, const std::string& corners, const std::string& ends) {
+  return "<" + section + ">" + array("type=\"Int64\" Name=\"connectivity\"", corners) +
+         array("type=\"Int64\" Name=\"offsets\"", ends) + "</" + section + ">\n";
+}
+
+// Four points of the unit square, around, in a piece with these cells and these data of the points.
+std::string piece(const std::string& counts, const std::string& cells, const std::string& point_data = "") {
+  return "<Piece NumberOfPoints=\"4\" " + counts + ">" + point_data + "<Points>" +
+         array("type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\"", "0 0 0 1 0 0 1 1 0 0 1 0") + "</Points>" +
+         cells + "</Piece>\n";
+}
+
+std::string vtp(const std::string& inside) {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\" "
+         "compressor=\"vtkZLibDataCompressor\">\n<PolyData>" +
+         inside + "</PolyData>\n</VTKFile>\n";
+}
+
+const std::string kNone = cells("Verts", "", "") + cells("Lines", "", "");
+const std::string kSquare = cells("Polys", "0 1 2 3", "4");
+
+// Arrays of other cells stand before and behind those of the polygons.
+TEST(ReadVtp, KeepsArraysOfOtherCellsApart) {
+  const TriangleMesh mesh =
+      parse("a.vtp", vtp(piece("NumberOfPolys=\"1\"", kNone + cells("Strips", "", "") + kSquare + kNone)));
+  EXPECT_EQ(mesh.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_TRUE(mesh.notes.empty());
+}
+
+TEST(ReadVtp, ReadsStripsAndLeavesLinesOut) {
+  const TriangleMesh mesh =
+      parse("a.vtp", vtp(piece("NumberOfVerts=\"1\" NumberOfLines=\"2\" NumberOfStrips=\"1\" NumberOfPolys=\"2\"",
+                               cells("Verts", "0", "1") + cells("Lines", "0 1 2 3", "2 4") +
+                                   cells("Strips", "0 1 3 3 2", "5") + cells("Polys", "0 1 0 1 2", "2 5"))));
+  // The strip turns at the corner that is repeated: 0 1 3, then 1 3 3 and 3 3 2, which are none.
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}}));
+  EXPECT_TRUE(has_note(mesh, "2 lines"));
+  EXPECT_TRUE(has_note(mesh, "1 cells that are points"));
+  EXPECT_TRUE(has_note(mesh, "1 faces of fewer than three corners"));
+}
+
+TEST(ReadVtp, TurnsEveryOtherTriangleOfAStrip) {
+  const TriangleMesh mesh = parse("a.vtp", vtp(piece("NumberOfStrips=\"1\"", cells("Strips", "0 1 3 2", "4"))));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 3}, {3, 1, 2}}));
+}
+
+TEST(ReadVtp, JoinsPieces) {
+  const std::string one = piece("NumberOfPolys=\"1\"", kSquare);
+  const TriangleMesh mesh = parse("a.vtp", vtp(one + "<Piece NumberOfPoints=\"0\"></Piece>" + one));
+  EXPECT_EQ(mesh.vertices.size(), 8U);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}));
+  EXPECT_TRUE(has_note(mesh, "2 pieces are joined"));
+}
+
+TEST(ReadVtp, KeepsActiveScalarsAndNormals) {
+  const std::string data = "<PointData Scalars=\"pressure\" Normals=\"up\">" +
+                           array("type=\"Float32\" Name=\"other\"", "1 2 3 4") +
+                           array("type=\"UInt8\" Name=\"pressure\"", "10 20 30 40") +
+                           array("type=\"Float32\" Name=\"up\" NumberOfComponents=\"3\"", "0 0 1 0 0 1 0 0 1 0 1 0") +
+                           "</PointData>" + "<CellData>" + array("type=\"Int8\" Name=\"kind\"", "1") + "</CellData>";
+  const TriangleMesh mesh = parse("a.vtp", vtp(piece("NumberOfPolys=\"1\"", kSquare, data)));
+  EXPECT_EQ(mesh.values, (std::vector<float>{10, 20, 30, 40}));
+  ASSERT_EQ(mesh.normals.size(), 4U);
+  EXPECT_EQ(mesh.normals[3], (Point{0, 1, 0}));
+  EXPECT_TRUE(has_note(mesh, "point array 'other'"));
+  EXPECT_TRUE(has_note(mesh, "cell array 'kind'"));
+  // A piece without them has no numbers for its points.
+  const TriangleMesh mixed =
+      parse("a.vtp", vtp(piece("NumberOfPolys=\"1\"", kSquare, data) + piece("NumberOfPolys=\"1\"", kSquare)));
+  EXPECT_TRUE(mixed.values.empty() && mixed.normals.empty());
+  EXPECT_TRUE(has_note(mixed, "scalars, which some pieces lack"));
+}
+
+// VTK's strings in text are the numbers of their characters.
+TEST(ReadVtp, TakesSpaceAndUnitFromFieldData) {
+  const std::string fields =
+      "<FieldData><Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\"> 82 65 83 0 </Array>"
+      "<Array type=\"String\" Name=\"UNIT\" NumberOfTuples=\"1\" format=\"ascii\">117 109 0</Array>"
+      "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0</DataArray></FieldData>";
+  const TriangleMesh mesh = parse("a.vtp", vtp(fields + piece("NumberOfPolys=\"1\"", kSquare)));
+  EXPECT_EQ(mesh.space, "RAS");
+  EXPECT_EQ(mesh.unit, "um");
+}
+
+TEST(ReadVtp, RefusesWhatIsWrong) {
+  const auto with = [](const std::string& cells) { return failure("a.vtp", vtp(piece("NumberOfPolys=\"1\"", cells))); };
+  EXPECT_EQ(with(cells("Polys", "0 1 4", "3")), "a cell refers to point 4, there are 4");
+  EXPECT_TRUE(contains(with(cells("Polys", "0 -1 2", "3")), "an index or a count, found '-1'"));
+  EXPECT_TRUE(contains(with(cells("Polys", "0 1", "3")), "the end of an array"));
+  EXPECT_TRUE(contains(with(kNone), "connectivity and offsets in Polys"));
+  EXPECT_TRUE(contains(with(cells("Polys", "0 1 2", "1000000")), "which cannot hold them"));
+  EXPECT_EQ(failure("a.vtp", "<VTKFile type=\"ImageData\"></VTKFile>"),
+            "expected VTK XML of type PolyData, found 'ImageData'");
+  EXPECT_TRUE(contains(failure("a.vtp", vtp("")), "a piece of PolyData"));
+  std::string infinite = vtp(piece("NumberOfPolys=\"1\"", kSquare));
+  infinite.replace(infinite.find("0 0 0 1 0 0"), 11, "0 0 0 1 0 inf");
+  EXPECT_TRUE(contains(failure("a.vtp", infinite), "vertex 1 has a coordinate that is not a finite number"));
+}
+
+std::string legacy(const std::string& rest, const std::string& version = "4.2") {
+  return "# vtk DataFile Version " + version + "\na title\nASCII\nDATASET POLYDATA\n" + rest;
+}
+
+const std::string kPoints = "POINTS 4 float\n0 0 0 1 0 0\n1 1 0 0 1 0\n\n";
+
+TEST(ReadLegacyVtk, ReadsBothFormsOfCells) {
+  const std::vector<Triangle> right{{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(parse("a.vtk", legacy(kPoints + "POLYGONS 1 5\n4 0 1 2 3\n")).triangles, right);
+  const std::string offsets =
+      "METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1.4\n\n"
+      "POLYGONS 2 4\nOFFSETS vtktypeint64\n0 4 \nCONNECTIVITY vtktypeint64\n0 1 2 3 \n";
+  EXPECT_EQ(parse("a.vtk", legacy(kPoints + offsets, "5.1")).triangles, right);
+  EXPECT_EQ(parse("no-ending", legacy(kPoints + "polygons 1 5\n4 0 1 2 3")).triangles, right);
+}
+
+TEST(ReadLegacyVtk, ReadsScalarsAndNormals) {
+  const TriangleMesh mesh =
+      parse("a.vtk", legacy(kPoints + "POLYGONS 1 5\n4 0 1 2 3\nCELL_DATA 1\nSCALARS c int 1\nLOOKUP_TABLE t\n7\n"
+                                      "LOOKUP_TABLE t 2\n0 0 0 1\n1 1 1 1\nPOINT_DATA 4\nSCALARS s double\n"
+                                      "LOOKUP_TABLE default\n1 2\n3 4\nNORMALS n float\n0 0 1 0 0 1 0 0 1 1 0 0\n"
+                                      "FIELD FieldData 2\nv 3 4 float\n1 2 3 4 5 6 7 8 9 10 11 12\nMETADATA\n"
+                                      "COMPONENT_NAMES\nx\n\nnames 1 4 string\na\nb%20c\n\nd\n"));
+  EXPECT_EQ(mesh.values, (std::vector<float>{1, 2, 3, 4}));
+  ASSERT_EQ(mesh.normals.size(), 4U);
+  EXPECT_EQ(mesh.normals[3], (Point{1, 0, 0}));
+  for (const char* other : {"cell array 'c'", "point array 'v'", "point array 'names'"}) {
+    EXPECT_TRUE(has_note(mesh, other)) << other;
+  }
+}
+
+TEST(ReadLegacyVtk, ReadsFlatCellsOfUnstructuredGrids) {
+  const std::string head = "# vtk DataFile Version 4.2\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n" + kPoints;
+  const std::string cells = "CELLS 4 17\n3 0 1 2\n4 0 1 3 2\n2 0 1\n4 0 1 2 3\nCELL_TYPES 4\n";
+  EXPECT_EQ(parse("a.vtk", head + cells + "5\n8\n3\n9\n").triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}}));
+  EXPECT_TRUE(contains(failure("a.vtk", head + cells + "5\n8\n3\n10\n"), "found type 10"));
+  EXPECT_TRUE(contains(failure("a.vtk", head + "CELLS 1 4\n3 0 1 2\n"), "a type for each cell"));
+}
+
+TEST(ReadLegacyVtk, RefusesWhatIsWrong) {
+  const auto with = [](const std::string& rest) { return failure("a.vtk", legacy(kPoints + rest)); };
+  EXPECT_EQ(with("POLYGONS 1 4\n3 0 1 4\n"), "a cell refers to point 4, there are 4");
+  EXPECT_TRUE(contains(with("POLYGONS 1 4\n4 0 1 2\n"), "expected 1 cells in 4 numbers"));
+  EXPECT_TRUE(contains(with("POLYGONS 1 4000000\n3 0 1 2\n"), "truncated: expected 4000000 numbers"));
+  EXPECT_TRUE(contains(with("POLYGONS 3 3\nOFFSETS int\n0 3 2\nCONNECTIVITY int\n0 1 2\n"), "OFFSETS that ascend"));
+  EXPECT_TRUE(contains(with("RUBBISH 1 2\n"), "a part of PolyData, found 'RUBBISH'"));
+  EXPECT_TRUE(contains(failure("a.vtk", legacy("")), "POINTS of PolyData"));
+  EXPECT_TRUE(contains(failure("a.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\n"),
+                       "DATASET POLYDATA or UNSTRUCTURED_GRID of a mesh, found 'STRUCTURED_POINTS'"));
+  EXPECT_TRUE(contains(failure("a.vtk", "hello"), "# vtk DataFile Version"));
+}
+
+TEST(ReadVtp, SurvivesDamage) {
+  const std::string data = "<PointData Scalars=\"s\">" + array("type=\"UInt8\" Name=\"s\"", "1 2 3 4") + "</PointData>";
+  foreign::expect_damage_is_safe(
+      "a.vtp", vtp(piece("NumberOfLines=\"1\" NumberOfStrips=\"1\" NumberOfPolys=\"1\"",
+                         cells("Lines", "0 1", "2") + cells("Strips", "0 1 3 2", "4") + kSquare, data)));
+}
+
+TEST(ReadLegacyVtk, SurvivesDamage) {
+  const std::string rest = kPoints +
+                           "POLYGONS 2 9\n4 0 1 2 3\n3 0 1 2\nPOINT_DATA 4\nSCALARS s double\nLOOKUP_TABLE default\n"
+                           "1 2 3 4\nFIELD f 1\nn 1 4 string\na\nb\nc\nd\n";
+  foreign::expect_damage_is_safe("a.vtk", legacy(rest));
+  foreign::expect_damage_is_safe(
+      "a.vtk", legacy(kPoints + "POLYGONS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n"));
+}
+
+}  // namespace
+}  // namespace isoweave
