@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 
 #include "write/zip_archive.hpp"
@@ -13,6 +14,100 @@ namespace {
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 constexpr std::uint64_t kMost32 = 0xffffffffU;
 constexpr std::uint64_t kEndBytes = 22, kLocatorBytes = 20;
+
+constexpr std::uint64_t kMost16 = 0xffffU;
+constexpr std::uint32_t kEndMark = 0x06054b50;
+
+std::uint64_t next_number(MeshInput& input, std::size_t bytes) {
+  std::array<std::byte, 8> buffer{};
+  input.read(std::span(buffer).first(bytes));
+  std::uint64_t value = 0;
+  for (std::size_t n = buffer.size(); n-- > 0;) value = value << 8 | std::to_integer<std::uint64_t>(buffer[n]);
+  return value;
+}
+
+// Moves behind the mark of the last record, which a comment of up to 65,535 bytes may follow.
+void move_to_end_record(MeshInput& input) {
+  const std::uint64_t size = input.size();
+  const std::uint64_t tail = std::min(size, kEndBytes + kMost16);
+  input.move_to(size - tail);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(tail));
+  input.read(bytes);
+  for (std::uint64_t at = tail < kEndBytes ? 0 : tail - kEndBytes + 1; at-- > 0;) {
+    const auto byte = [&](std::uint64_t n) { return std::to_integer<std::uint32_t>(bytes[at + n]); };
+    const std::uint32_t mark = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
+    const std::uint64_t comment = byte(kEndBytes - 2) | byte(kEndBytes - 1) << 8;
+    if (mark != kEndMark || at + kEndBytes + comment != tail) continue;
+    return input.move_to(size - tail + at + 4);
+  }
+  input.fail("truncated: expected the end of a zip archive, found other data");
+}
+
+struct ZipDirectory {
+  std::uint64_t offset = 0, entries = 0;
+};
+
+// From the last record, or the one of 64 bits that it stands for.
+ZipDirectory find_directory(MeshInput& input) {
+  move_to_end_record(input);
+  const std::uint64_t end = input.size() - input.remaining() - 4;
+  ZipDirectory directory;
+  input.skip(6);
+  directory.entries = next_number(input, 2);
+  input.skip(4);
+  directory.offset = next_number(input, 4);
+  if (directory.offset != kMost32 && directory.entries != kMost16) return directory;
+  if (end < kLocatorBytes) input.fail("truncated: expected a ZIP64 record");
+  input.move_to(end - kLocatorBytes);
+  if (next_number(input, 4) != 0x07064b50) input.fail("expected a ZIP64 record, found other data");
+  input.skip(4);
+  input.move_to(next_number(input, 8));
+  if (next_number(input, 4) != 0x06064b50) input.fail("expected a ZIP64 record, found other data");
+  input.skip(28);
+  directory.entries = next_number(input, 8);
+  input.skip(8);
+  directory.offset = next_number(input, 8);
+  return directory;
+}
+
+void take_wide_sizes(MeshInput& input, ZipRecord& record, std::uint64_t extra_bytes) {
+  while (extra_bytes >= 4) {
+    const std::uint64_t kind = next_number(input, 2);
+    std::uint64_t size = next_number(input, 2);
+    extra_bytes -= 4;
+    if (size > extra_bytes) input.fail("expected extra fields of a zip entry, found other data");
+    extra_bytes -= size;
+    for (std::uint64_t* wide : {&record.bytes, &record.packed, &record.offset}) {
+      if (kind != 1 || *wide != kMost32 || size < 8) continue;
+      *wide = next_number(input, 8);
+      size -= 8;
+    }
+    input.skip(size);
+  }
+  input.skip(extra_bytes);
+}
+
+ZipRecord read_record(MeshInput& input) {
+  if (next_number(input, 4) != 0x02014b50) input.fail("expected an entry of a zip directory, found other data");
+  ZipRecord record;
+  input.skip(4);
+  record.flags = next_number(input, 2);
+  record.method = next_number(input, 2);
+  input.skip(4);
+  record.crc = next_number(input, 4);
+  record.packed = next_number(input, 4);
+  record.bytes = next_number(input, 4);
+  const std::uint64_t name_bytes = next_number(input, 2);
+  const std::uint64_t extra_bytes = next_number(input, 2);
+  const std::uint64_t comment_bytes = next_number(input, 2);
+  input.skip(8);
+  record.offset = next_number(input, 4);
+  record.name.resize(static_cast<std::size_t>(name_bytes));
+  input.read(std::as_writable_bytes(std::span(record.name)));
+  take_wide_sizes(input, record, extra_bytes);
+  input.skip(comment_bytes);
+  return record;
+}
 
 }  // namespace
 
@@ -29,120 +124,46 @@ struct ZipText::Inflater {
   bool ended = false;
 };
 
-ZipText::ZipText(MeshInput& input, std::string_view ending) : input_(input) {
-  find_entry(ending);
+std::vector<ZipRecord> read_zip_directory(MeshInput& input) {
+  const ZipDirectory directory = find_directory(input);
+  input.move_to(directory.offset);
+  std::vector<ZipRecord> records;
+  for (std::uint64_t n = 0; n < directory.entries; ++n) records.push_back(read_record(input));
+  return records;
+}
+
+ZipText::ZipText(MeshInput& input, const ZipRecord& record) : input_(input), record_(record) {
   open_entry();
   packed_text_.resize(kBufferBytes);
   text_.resize(kBufferBytes);
-  packed_left_ = packed_;
-  left_ = bytes_;
+  packed_left_ = record_.packed;
+  left_ = record_.bytes;
 }
 
 ZipText::~ZipText() = default;
 
-std::uint64_t ZipText::next_number(int bytes) {
-  std::array<std::byte, 8> buffer{};
-  input_.read(std::span(buffer).first(static_cast<std::size_t>(bytes)));
-  std::uint64_t value = 0;
-  for (std::size_t n = buffer.size(); n-- > 0;) value = value << 8 | std::to_integer<std::uint64_t>(buffer[n]);
-  return value;
-}
-
-void ZipText::find_entry(std::string_view ending) {
-  std::uint64_t offset = 0;
-  std::uint64_t entries = 0;
-  find_directory(offset, entries);
-  input_.move_to(offset);
-  for (std::uint64_t n = 0; n < entries; ++n) {
-    if (read_entry(ending)) return;
-  }
-  input_.fail("expected an entry '*" + std::string(ending) + "' in the archive, found none");
-}
-
-// From the last record, which has no comment behind it, or the one of 64 bits that it stands for.
-void ZipText::find_directory(std::uint64_t& offset, std::uint64_t& entries) {
-  if (input_.size() < kEndBytes) input_.fail("truncated: expected the end of a zip archive");
-  input_.move_to(input_.size() - kEndBytes);
-  if (next_number(4) != 0x06054b50) input_.fail("truncated: expected the end of a zip archive, found other data");
-  input_.skip(6);
-  entries = next_number(2);
-  input_.skip(4);
-  offset = next_number(4);
-  if (offset != kMost32) return;
-  if (input_.size() < kEndBytes + kLocatorBytes) input_.fail("truncated: expected a ZIP64 record");
-  input_.move_to(input_.size() - kEndBytes - kLocatorBytes);
-  if (next_number(4) != 0x07064b50) input_.fail("expected a ZIP64 record, found other data");
-  input_.skip(4);
-  input_.move_to(next_number(8));
-  if (next_number(4) != 0x06064b50) input_.fail("expected a ZIP64 record, found other data");
-  input_.skip(28);
-  entries = next_number(8);
-  input_.skip(8);
-  offset = next_number(8);
-}
-
-// One entry of the directory; whether it is the one.
-bool ZipText::read_entry(std::string_view ending) {
-  if (next_number(4) != 0x02014b50) input_.fail("expected an entry of a zip directory, found other data");
-  input_.skip(4);
-  const std::uint64_t flags = next_number(2);
-  method_ = next_number(2);
-  input_.skip(4);
-  crc_ = next_number(4);
-  packed_ = next_number(4);
-  bytes_ = next_number(4);
-  const std::uint64_t name_bytes = next_number(2);
-  const std::uint64_t extra_bytes = next_number(2);
-  const std::uint64_t comment_bytes = next_number(2);
-  input_.skip(8);
-  offset_ = next_number(4);
-  std::string name(static_cast<std::size_t>(name_bytes), '\0');
-  input_.read(std::as_writable_bytes(std::span(name)));
-  take_wide_sizes(extra_bytes);
-  input_.skip(comment_bytes);
-  if (!name.ends_with(ending)) return false;
-  if ((flags & 1U) != 0 || (method_ != 0 && method_ != 8)) {
-    input_.fail("expected '" + name + "' stored or deflated, found it packed otherwise");
-  }
-  return true;
-}
-
-void ZipText::take_wide_sizes(std::uint64_t extra_bytes) {
-  while (extra_bytes >= 4) {
-    const std::uint64_t kind = next_number(2);
-    std::uint64_t size = next_number(2);
-    extra_bytes -= 4;
-    if (size > extra_bytes) input_.fail("expected extra fields of a zip entry, found other data");
-    extra_bytes -= size;
-    for (std::uint64_t* wide : {&bytes_, &packed_, &offset_}) {
-      if (kind != 1 || *wide != kMost32 || size < 8) continue;
-      *wide = next_number(8);
-      size -= 8;
-    }
-    input_.skip(size);
-  }
-  input_.skip(extra_bytes);
-}
-
 void ZipText::open_entry() {
-  input_.move_to(offset_);
-  if (next_number(4) != 0x04034b50) input_.fail("expected an entry of a zip archive, found other data");
+  if ((record_.flags & 1U) != 0 || (record_.method != 0 && record_.method != 8)) {
+    input_.fail("expected '" + record_.name + "' stored or deflated, found it packed otherwise");
+  }
+  input_.move_to(record_.offset);
+  if (next_number(input_, 4) != 0x04034b50) input_.fail("expected an entry of a zip archive, found other data");
   input_.skip(22);
-  const std::uint64_t name_bytes = next_number(2);
-  const std::uint64_t extra_bytes = next_number(2);
+  const std::uint64_t name_bytes = next_number(input_, 2);
+  const std::uint64_t extra_bytes = next_number(input_, 2);
   input_.skip(name_bytes + extra_bytes);
-  if (packed_ > input_.remaining() || (method_ == 0 && packed_ != bytes_)) {
-    input_.fail("truncated: expected " + std::to_string(packed_) + " bytes of the model, found " +
+  if (record_.packed > input_.remaining() || (record_.method == 0 && record_.packed != record_.bytes)) {
+    input_.fail("truncated: expected " + std::to_string(record_.packed) + " bytes of the model, found " +
                 std::to_string(input_.remaining()));
   }
 }
 
 bool ZipText::refill() {
   if (left_ == 0) {
-    if (found_crc_ != crc_) input_.fail("is damaged: the checksum of the model is another");
+    if (found_crc_ != record_.crc) input_.fail("is damaged: the checksum of the model is another");
     return false;
   }
-  const std::size_t got = method_ == 0 ? copy_some() : inflate_some();
+  const std::size_t got = record_.method == 0 ? copy_some() : inflate_some();
   found_crc_ = zip_crc(static_cast<std::uint32_t>(found_crc_), std::string_view(text_).substr(0, got));
   left_ -= got;
   next_ = 0;

@@ -1,4 +1,4 @@
-// One entry of a zip archive, read forward.
+// Entries of a zip archive, read forward one at a time.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,20 @@
 
 namespace isoweave::mesh_io {
 
-// The text of the first entry whose name has this ending; stored or deflated. Never gives more than the directory says,
-// and checks length and CRC-32 at the end.
+// What the directory says of an entry.
+struct ZipRecord {
+  std::string name;
+  std::uint64_t flags = 0, method = 0, crc = 0, packed = 0, bytes = 0, offset = 0;
+};
+
+// The directory, which may have a comment behind it.
+std::vector<ZipRecord> read_zip_directory(MeshInput& input);
+
+// The text of an entry, stored or deflated. Never gives more than the directory says, and checks length and CRC-32 at
+// the end. The input moves with it, so one is read at a time.
 class ZipText {
  public:
-  ZipText(MeshInput& input, std::string_view ending);
+  ZipText(MeshInput& input, const ZipRecord& record);
   ~ZipText();
   ZipText(const ZipText&) = delete;
   ZipText& operator=(const ZipText&) = delete;
@@ -29,18 +38,13 @@ class ZipText {
  private:
   struct Inflater;
 
-  std::uint64_t next_number(int bytes);
-  void find_entry(std::string_view ending);
-  void find_directory(std::uint64_t& offset, std::uint64_t& entries);
-  bool read_entry(std::string_view ending);
-  void take_wide_sizes(std::uint64_t extra_bytes);
   void open_entry();
   bool refill();
   std::size_t copy_some();
   std::size_t inflate_some();
 
   MeshInput& input_;
-  std::uint64_t method_ = 0, crc_ = 0, packed_ = 0, bytes_ = 0, offset_ = 0;  // of the entry
+  ZipRecord record_;
   std::uint64_t packed_left_ = 0, left_ = 0;
   std::uint64_t found_crc_ = 0;
   std::vector<std::byte> packed_text_;

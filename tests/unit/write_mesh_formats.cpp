@@ -259,7 +259,7 @@ TEST(WriteMesh, ValuesNeedAFormatWithAPlaceForThem) {
 
 std::string model_of(const std::string& path) {
   mesh_io::MeshInput input(path);
-  mesh_io::ZipText text(input, ".model");
+  mesh_io::ZipText text(input, mesh_io::read_zip_directory(input).back());
   std::string model;
   for (int c = text.get(); c >= 0; c = text.get()) model.push_back(static_cast<char>(c));
   return model;
