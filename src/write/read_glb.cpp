@@ -1,119 +1,276 @@
-// GLB as isoweave writes it without packing: one mesh of float positions, perhaps normals, and 32-bit indices.
-#include <bit>
+// GLB and glTF. Of isoweave's own files the mesh is taken as stored, since they say in their extras what the nodes do
+// to it; of others all meshes of the scene where its nodes place them.
+#include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <set>
 
 #include "write/glb_scene.hpp"
+#include "write/gltf_file.hpp"
 #include "write/mesh_input.hpp"
+#include "write/mesh_leftovers.hpp"
+#include "write/placement.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
-using Json = nlohmann::json;
+enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
 
-constexpr std::uint64_t kLongestScene = std::uint64_t{16} << 20;
-constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+// Extensions that leave the shape as it is, or that are read.
+bool is_known_extension(const std::string& name) {
+  for (const char* known : {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                            "MSFT_lod", "MSFT_packing_", "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_"}) {
+    if (name.starts_with(known)) return true;
+  }
+  return false;
+}
 
-class GlbReader {
+std::vector<std::array<std::uint32_t, 3>> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& corners) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const auto corner = [&](std::size_t n) { return corners[n]; };
+  if (mode == kTriangles) {
+    for (std::size_t n = 0; n + 2 < corners.size(); n += 3)
+      triangles.push_back({corner(n), corner(n + 1), corner(n + 2)});
+    return triangles;
+  }
+  for (std::size_t n = 0; n + 2 < corners.size(); ++n) {
+    std::array<std::uint32_t, 3> triangle{corner(mode == kTriangleFan ? 0 : n), corner(n + 1), corner(n + 2)};
+    if (mode == kTriangleStrip && n % 2 == 1) std::swap(triangle[1], triangle[2]);
+    // A corner that is repeated joins two strips.
+    const bool joins = triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[0] == triangle[2];
+    if (!joins) triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+class SceneReader {
  public:
-  explicit GlbReader(MeshInput& input) : input_(input) {}
+  explicit SceneReader(MeshInput& input) : input_(input), file_(input), mesh_(input) {}
 
   TriangleMesh read() {
-    const std::string scene = read_container();
     try {
-      take_scene(Json::parse(scene));
-    } catch (const Json::exception& error) {
-      input_.fail(std::string("its scene is not as isoweave writes it: ") + error.what());
+      check_extensions();
+      return file_.scene().at("asset").value("generator", "") == kGltfGenerator ? read_own() : read_scene();
+    } catch (const GltfValue::exception& error) {
+      input_.fail(std::string("its scene is not as glTF has it: ") + error.what());
     }
-    check_mesh_numbers(input_, mesh_);
-    return std::move(mesh_);
   }
 
  private:
-  std::uint32_t next_u32() {
-    std::array<std::byte, 4> bytes{};
-    input_.read(bytes);
-    std::uint32_t value = 0;
-    for (std::size_t n = 4; n-- > 0;) value = value << 8 | std::to_integer<std::uint32_t>(bytes[n]);
-    return value;
-  }
-
-  // Checks the lengths, and gives the scene.
-  std::string read_container() {
-    next_u32();  // the magic, by which the file was told
-    const std::uint32_t version = next_u32();
-    if (version != 2) input_.fail("expected version 2 of glTF, found " + std::to_string(version));
-    const std::uint32_t total = next_u32();
-    if (total != input_.size()) {
-      input_.fail("expected " + std::to_string(total) + " bytes, found " + std::to_string(input_.size()));
-    }
-    const std::uint32_t length = next_u32();
-    if (next_u32() != kJsonChunk || length > input_.remaining() || length > kLongestScene) {
-      input_.fail("expected a scene of at most 16 MiB at the beginning, found none");
-    }
-    std::string scene(length, '\0');
-    input_.read(std::as_writable_bytes(std::span(scene)));
-    if (input_.remaining() == 0) return scene;
-    const std::uint32_t data = next_u32();
-    if (next_u32() != kBinChunk || data != input_.remaining()) {
-      input_.fail("expected one chunk of data up to the end, found another");
-    }
-    data_ = input_.size() - data;
-    return scene;
-  }
-
-  void take_scene(const Json& scene) {
-    if (scene.at("asset").at("generator") != kGltfGenerator) {
-      input_.fail("expected a GLB file that isoweave wrote, found another: its units and axes could be any");
-    }
-    if (scene.contains("extensionsRequired")) input_.fail("is compressed, which is not read");
-    if (!scene.contains("meshes")) return;
-    const Json& primitive = scene.at("meshes").at(0).at("primitives").at(0);
-    const Json& attributes = primitive.at("attributes");
-    mesh_.vertices = read_points(scene, attributes.at("POSITION"));
-    if (attributes.contains("NORMAL")) mesh_.normals = read_points(scene, attributes.at("NORMAL"));
-    if (mesh_.normals.size() != mesh_.vertices.size() && !mesh_.normals.empty()) {
-      input_.fail("expected one normal for each vertex");
-    }
-    if (!primitive.contains("indices")) return;
-    const std::uint64_t corners = open(scene, primitive.at("indices"), kGltfUint32, 4);
-    if (corners % 3 != 0) input_.fail("expected three indices for each triangle");
-    mesh_.triangles.resize(static_cast<std::size_t>(corners / 3));
-    for (auto& triangle : mesh_.triangles) {
-      for (std::uint32_t& index : triangle) index = next_u32();
+  void check_extensions() const {
+    for (const GltfValue& name : file_.scene().value("extensionsRequired", GltfValue::array())) {
+      const auto extension = name.get<std::string>();
+      if (!is_known_extension(extension)) {
+        input_.fail("expected a mesh without '" + extension.substr(0, 60) + "', found one that requires it");
+      }
     }
   }
 
-  std::vector<Point> read_points(const Json& scene, const Json& accessor) {
-    std::vector<Point> points(static_cast<std::size_t>(open(scene, accessor, kGltfFloat, 12)));
-    for (Point& point : points) {
-      for (float& coordinate : point) coordinate = std::bit_cast<float>(next_u32());
+  TriangleMesh read_own() {
+    const GltfValue extras = file_.scene().at("asset").value("extras", GltfValue::object());
+    MeshPlace place;
+    place.take("UNIT", extras.value("unit", ""));
+    place.take("SPACE", extras.value("space", ""));
+    if (file_.scene().contains("meshes")) {
+      add_primitive(file_.scene().at("meshes").at(0).at("primitives").at(0), Placement{}, nullptr);
     }
-    return points;
+    check_normals();
+    TriangleMesh mesh = mesh_.finish(place);
+    if (!extras.contains("offset")) return mesh;
+    mesh.offset = numbers<3>(extras, "offset");
+    for (const double coordinate : mesh.offset) {
+      if (std::abs(coordinate) <= double{std::numeric_limits<float>::max()}) continue;
+      input_.fail("expected an offset that is finite in 32 bits, found another");
+    }
+    return mesh;
   }
 
-  // Moves to the data of an accessor, after they were compared with the file; gives their number.
-  std::uint64_t open(const Json& scene, const Json& number, int type, std::uint64_t each) {
-    const Json& accessor = scene.at("accessors").at(number.get<std::size_t>());
-    const Json& view = scene.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
-    const auto count = accessor.at("count").get<std::uint64_t>();
-    const auto offset = view.at("byteOffset").get<std::uint64_t>();
-    const std::uint64_t left = data_ == 0 || offset > input_.size() - data_ ? 0 : input_.size() - data_ - offset;
-    if (accessor.at("componentType") != type || count > left / each) {
-      input_.fail("expected " + std::to_string(count) + " numbers of " + std::to_string(each) + " bytes, found " +
-                  std::to_string(left) + " bytes");
+  TriangleMesh read_scene() {
+    for (const GltfValue& node : root_nodes()) add_node(node, Placement{}, 0);
+    check_normals();
+    std::vector<std::string>& notes = mesh_.mesh().notes;
+    notes.emplace_back("glTF is in metres, with y up: axes are as stored");
+    if (meshes_ > 1) notes.push_back(std::to_string(meshes_) + " meshes are joined");
+    leftovers_.note(mesh_.mesh());
+    MeshPlace place;
+    place.take("UNIT", "m");
+    return mesh_.finish(place);
+  }
+
+  // The nodes of the scene that is shown or, where there is no scene, those that are no child of another.
+  std::vector<GltfValue> root_nodes() {
+    const GltfValue& scene = file_.scene();
+    if (scene.contains("scenes") && !scene.at("scenes").empty()) {
+      const std::size_t scenes = scene.at("scenes").size();
+      if (scenes > 1) leftovers_.left_out(scenes - 1, "other scenes");
+      return file_.element("scenes", scene.value("scene", GltfValue(0))).value("nodes", GltfValue::array());
     }
-    input_.move_to(data_ + offset);
-    return count;
+    std::set<std::uint64_t> children;
+    const GltfValue nodes = scene.value("nodes", GltfValue::array());
+    for (const GltfValue& node : nodes) {
+      for (const GltfValue& child : node.value("children", GltfValue::array())) {
+        children.insert(file_.whole(child, "a child"));
+      }
+    }
+    std::vector<GltfValue> roots;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (!children.contains(n)) roots.emplace_back(n);
+    }
+    return roots;
+  }
+
+  void add_node(const GltfValue& number, const Placement& outer, int depth) {
+    constexpr int kDeepest = 1000;
+    if (depth > kDeepest || !seen_.insert(file_.whole(number, "a node")).second) {
+      input_.fail("expected nodes that form trees of at most 1000 levels, found others");
+    }
+    const GltfValue& node = file_.element("nodes", number);
+    const Placement placement = both(placement_of(node), outer);
+    if (node.contains("extensions") && node.at("extensions").contains("EXT_mesh_gpu_instancing")) {
+      input_.fail("expected a mesh without 'EXT_mesh_gpu_instancing', found one with it");
+    }
+    if (node.contains("mesh")) add_mesh(node, placement);
+    for (const GltfValue& child : node.value("children", GltfValue::array())) add_node(child, placement, depth + 1);
+  }
+
+  template <std::size_t kCount>
+  std::array<double, kCount> numbers(const GltfValue& node, const char* name) const {
+    std::array<double, kCount> result{};
+    const GltfValue& list = node.at(name);
+    bool right = list.is_array() && list.size() == kCount;
+    for (std::size_t n = 0; right && n < kCount; ++n) {
+      right = list[n].is_number() && std::isfinite(list[n].get<double>());
+      if (right) result[n] = list[n].get<double>();
+    }
+    if (!right) input_.fail("expected " + std::to_string(kCount) + " numbers as " + name + ", found others");
+    return result;
+  }
+
+  // A matrix, column by column, or scale, then rotation, then translation.
+  Placement placement_of(const GltfValue& node) const {
+    Placement placement;
+    if (node.contains("matrix")) {
+      const auto matrix = numbers<16>(node, "matrix");
+      for (std::size_t n = 0; n < 9; ++n) placement.linear[n] = matrix[n % 3 * 4 + n / 3];
+      placement.shift = {matrix[12], matrix[13], matrix[14]};
+      return placement;
+    }
+    if (node.contains("scale")) {
+      const auto scale = numbers<3>(node, "scale");
+      for (std::size_t axis = 0; axis < 3; ++axis) placement.linear[4 * axis] = scale[axis];
+    }
+    if (node.contains("rotation")) placement = both(placement, rotation(numbers<4>(node, "rotation")));
+    if (node.contains("translation")) placement.shift = numbers<3>(node, "translation");
+    return placement;
+  }
+
+  Placement rotation(const std::array<double, 4>& quaternion) const {
+    auto [x, y, z, w] = quaternion;
+    const double length = std::sqrt(x * x + y * y + z * z + w * w);
+    if (!(length > 0) || !std::isfinite(length)) input_.fail("expected a quaternion as rotation, found none");
+    for (double* number : {&x, &y, &z, &w}) *number /= length;
+    return {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),  //
+             2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),  //
+             2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)},
+            {0, 0, 0}};
+  }
+
+  // Vertices of one mesh that several primitives share, by the numbers of their accessors.
+  using Shared = std::map<std::pair<std::string, std::string>, std::pair<std::uint32_t, std::uint64_t>>;
+
+  void add_mesh(const GltfValue& node, const Placement& placement) {
+    const GltfValue& mesh = file_.element("meshes", node.at("mesh"));
+    if (!placement.is_regular()) {
+      leftovers_.left_out(1, "meshes that a node makes flat");
+      return;
+    }
+    const bool skinned = node.contains("skin");
+    if (skinned) leftovers_.not_kept("what skins do to vertices");
+    ++meshes_;
+    Shared shared;
+    for (const GltfValue& primitive : mesh.at("primitives")) {
+      add_primitive(primitive, skinned ? Placement{} : placement, &shared);
+    }
+  }
+
+  void add_primitive(const GltfValue& primitive, const Placement& placement, Shared* shared) {
+    const std::uint64_t mode = primitive.contains("mode") ? file_.whole(primitive.at("mode"), "mode") : kTriangles;
+    if (mode > kTriangleFan) input_.fail("expected a mode of up to 6, found " + std::to_string(mode));
+    if (primitive.value("extensions", GltfValue::object()).contains("KHR_draco_mesh_compression")) {
+      input_.fail("expected data that are not compressed, found 'KHR_draco_mesh_compression'");
+    }
+    const GltfValue& attributes = primitive.at("attributes");
+    if (shared != nullptr && mode < kTriangles) {
+      leftovers_.left_out(1, mode == kPoints ? "sets of points" : "sets of lines");
+      return;
+    }
+    if (attributes.contains("COLOR_0")) leftovers_.not_kept("colours");
+    if (primitive.contains("targets")) leftovers_.not_kept("morph targets");
+    const auto [first, count] = add_vertices(attributes, placement, shared);
+    if (mode < kTriangles) return;
+    std::vector<std::uint32_t> corners;
+    if (primitive.contains("indices")) {
+      corners = file_.indices(primitive.at("indices"));
+    } else {
+      for (std::uint32_t n = 0; n < count; ++n) corners.push_back(n);
+    }
+    if (mode == kTriangles && corners.size() % 3 != 0) input_.fail("expected three indices for each triangle");
+    count_in(corners.size());
+    mesh_.add_triangles(triangles_of(mode, corners), first, count, placement.determinant() < 0);
+  }
+
+  // The number of the first vertex, and how many there are.
+  std::pair<std::uint32_t, std::uint64_t> add_vertices(const GltfValue& attributes, const Placement& placement,
+                                                       Shared* shared) {
+    const bool has_normals = attributes.contains("NORMAL");
+    const std::pair key(attributes.at("POSITION").dump(), has_normals ? attributes.at("NORMAL").dump() : "");
+    if (shared != nullptr && shared->contains(key)) return shared->at(key);
+    std::vector<WidePoint> vertices = file_.vectors(attributes.at("POSITION"));
+    const std::uint64_t count = vertices.size();
+    count_in(count);
+    if (has_normals) add_normals(file_.vectors(attributes.at("NORMAL")), placement);
+    vertices_ += count;
+    const std::pair<std::uint32_t, std::uint64_t> added(mesh_.add_vertices(std::move(vertices), placement), count);
+    if (shared != nullptr) shared->emplace(key, added);
+    return added;
+  }
+
+  void add_normals(const std::vector<WidePoint>& normals, const Placement& placement) {
+    for (WidePoint normal : normals) {
+      if (placement != Placement{}) {
+        normal = turned_normal(placement, normal);
+        const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        for (double& coordinate : normal) coordinate = length > 0 ? coordinate / length : 0;
+      }
+      mesh_.mesh().normals.push_back(
+          {static_cast<float>(normal[0]), static_cast<float>(normal[1]), static_cast<float>(normal[2])});
+    }
+  }
+
+  void check_normals() {
+    std::vector<Point>& normals = mesh_.mesh().normals;
+    if (normals.empty() || normals.size() == vertices_) return;
+    normals.clear();
+    leftovers_.not_kept("normals, which some vertices lack");
+  }
+
+  // A file of a few bytes can name the same numbers any number of times.
+  void count_in(std::uint64_t numbers) {
+    numbers_ += numbers;
+    if (numbers_ > kMostCopies * input_.size()) {
+      input_.fail("expected copies of meshes in proportion to the file, found more");
+    }
   }
 
   MeshInput& input_;
-  std::uint64_t data_ = 0;  // where the chunk of data begins; 0: there is none
-  TriangleMesh mesh_;
+  GltfFile file_;
+  PlacedMesh mesh_;
+  std::set<std::uint64_t> seen_;  // nodes
+  MeshLeftovers leftovers_;
+  std::uint64_t meshes_ = 0, vertices_ = 0, numbers_ = 0;
 };
 
 }  // namespace
 
-TriangleMesh read_glb(MeshInput& input) { return GlbReader(input).read(); }
+TriangleMesh read_glb(MeshInput& input) { return SceneReader(input).read(); }
 
 }  // namespace isoweave::mesh_io
