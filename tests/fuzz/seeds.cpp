@@ -426,6 +426,7 @@ int main(int argc, char** argv) {
   fuzz::put_arrays(seeds);
 #endif
   put_meshes(seeds);
+  fuzz::put_packages(seeds);
   put_options(seeds);
   put_state(seeds);
   return 0;

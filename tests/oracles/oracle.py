@@ -49,6 +49,9 @@ class Oracle:
     def mesh(self, path, mesh, *options):
         """Meshes a volume, and returns what isoweave checks of the mesh."""
         self.run("mesh", path, "-o", mesh, "--quiet", *options)
+        return self.check(mesh)
+
+    def check(self, mesh):
         return json.loads(self.run("check", mesh, "--json"))
 
     def expect(self, right, what):
