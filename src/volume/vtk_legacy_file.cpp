@@ -155,8 +155,8 @@ std::string LegacyFile::type_here(std::string_view type, std::uint64_t numbers) 
 LegacyArray LegacyFile::array_here(const std::string& name, std::string_view type, std::uint64_t components,
                                    std::uint64_t tuples) {
   constexpr std::uint64_t kMostComponents = 1 << 12;
-  if (components == 0 || components > kMostComponents || tuples > kMost) {
-    bad_input(path(), "1 to 4096 components in an array",
+  if (components == 0 || components > kMostComponents || tuples > kMost / components) {
+    bad_input(path(), "arrays of 1 to 4096 components and at most 2^48 numbers",
               std::to_string(components) + " of " + std::to_string(tuples) + " tuples");
   }
   LegacyArray array;

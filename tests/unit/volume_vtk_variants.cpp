@@ -237,6 +237,18 @@ TEST(VtkLegacyVariants, ReadsEveryTypeOfSmallLetters) {
                        "one component"));
 }
 
+TEST(VtkLegacyVariants, RefusesCountsThatCannotBe) {
+  const TempFolder folder;
+  const auto with = [&](const std::string& array) {
+    return refusal(folder.put("a.vtk", legacy("BINARY", "POINT_DATA 12\nFIELD f 1\n" + array + "\n")));
+  };
+  EXPECT_TRUE(contains(with("a 4096 281474976710656 double"), "at most 2^48 numbers"));
+  EXPECT_TRUE(contains(with("a 1 281474976710657 int"), "a whole number behind 'a'"));
+  EXPECT_TRUE(contains(with("a 1 12 int"), "expected 48 bytes of the array 'a', found 0"));
+  EXPECT_TRUE(contains(with("a -1 12 int"), "a whole number behind 'a'"));
+  EXPECT_TRUE(contains(with("a 1 12"), "name, components, tuples and type"));
+}
+
 std::string rectilinear(const std::string& x) {
   return "# vtk DataFile Version 4.2\nx\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 1\nX_COORDINATES 3 float\n" +
          x +
