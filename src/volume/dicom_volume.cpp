@@ -181,7 +181,12 @@ EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions
   for (const PlacedSlice& slice : slices) places.depths.push_back(slice.depth);
   places.rounding = rounding_of(series);
   // Distances that are given instead of the file's are those of the slices that there are.
-  EvenGrid grid = even_grid(places, options.spacing ? UnevenSlices::kMean : options.uneven_slices, info.notes);
+  std::vector<std::string> notes;
+  EvenGrid grid = even_grid(places, options.spacing ? UnevenSlices::kMean : options.uneven_slices, notes);
+  if (options.spacing && !notes.empty()) {
+    notes.back() = "the slices do not lie at an even distance: the one that is given is taken for all of them";
+  }
+  info.notes.insert(info.notes.end(), notes.begin(), notes.end());
   if (grid.is_resampled) info.part = "slices made at an even distance";
   return grid;
 }

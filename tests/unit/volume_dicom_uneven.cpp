@@ -235,6 +235,9 @@ TEST(DicomUneven, TakesDistancesThatAreGivenForThoseOfTheSlices) {
   const VolumeInfo info = open_volume(folder / "", options)->info();
   EXPECT_EQ(info.dims[2], 4);
   EXPECT_EQ(info.geometry.spacing[2], 3);
+  EXPECT_FALSE(contains(all_notes(info), "the mean of"));
+  EXPECT_TRUE(contains(all_notes(info), "1 slice seems to be missing"));
+  EXPECT_TRUE(contains(all_notes(info), "the one that is given is taken for all of them"));
 }
 
 TEST(DicomUneven, RefusesDistancesThatDoNotGoTogether) {
