@@ -111,7 +111,7 @@ struct OpenOptions {
   std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
-  std::string series;                            // Series Instance UID: which one, where there are several (DICOM)
+  std::string series;                            // UID of a DICOM series, where there are several; "none": without UID
   std::string dataset;                           // path of an array inside the file or folder (HDF5, Zarr, N5)
   std::optional<std::int64_t> level;             // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
   std::optional<std::int64_t> channel;           // index along the axis of channels; none: the first
@@ -125,7 +125,7 @@ struct OpenOptions {
 // (.mha, .mhd), NIfTI-1/2 (.nii, .nii.gz), PVM (plain or DDS), TIFF stacks, VTK images, HDF5, raw. A folder of
 // Zarr, OME-Zarr or N5 is an array of chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of
 // one file per slice: TIFF or PNG in the order of the numbers in their names, DICOM by position. A DICOM file stands
-// for the series it belongs to. docs/formats.md says what is read
+// for the series it belongs to, a folder of DICOM for those below it too. docs/formats.md says what is read
 // of each. Only headers are read here, and their claims are compared with the sizes of the files where those are known.
 // Throws BadInput when the file is missing, a folder without slices, of no known format or of one that
 // this build leaves out, or its header is wrong.
