@@ -131,7 +131,7 @@ void put_minc(Writer& writer, const MincFields& fields) {
   const std::string image = "/minc-2.0/image/0/image";
   writer.put_int16(image, {2, 3, 4});
   writer.put_text(image, "dimorder", fields.order, true);
-  writer.put_numbers(image, "valid_range", {0, 200});
+  writer.put_numbers(image, "valid_range", {10, 210});
   writer.put_values("/minc-2.0/image/0/image-min", {fields.image_min.size()}, fields.image_min);
   writer.put_values("/minc-2.0/image/0/image-max", {fields.image_max.size()}, fields.image_max);
   const std::vector<std::vector<double>> cosines{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
@@ -161,7 +161,7 @@ TEST(Hdf5Places, MincStartsStepsDirectionsAndValues) {
   EXPECT_EQ(info.geometry.space, Space::kRas);
   EXPECT_EQ(info.geometry.unit, "mm");
   EXPECT_EQ(info.slope, 0.5);
-  EXPECT_EQ(info.intercept, -10);
+  EXPECT_EQ(info.intercept, -15);
   EXPECT_EQ(samples_of<std::int16_t>(*source), counting(24));
 }
 
@@ -193,7 +193,7 @@ TEST(Hdf5Places, MincScalingsOfSlicesGiveValues) {
   const auto values = samples_of<float>(*source, 1);
   for (std::size_t n = 0; n < values.size(); ++n) {
     const double sample = static_cast<double>(n + 1);
-    EXPECT_FLOAT_EQ(values[n], static_cast<float>(n < 12 ? 0.45 * sample : 0.445 * sample + 1)) << n;
+    EXPECT_FLOAT_EQ(values[n], static_cast<float>(n < 12 ? 0.45 * (sample - 10) : 0.445 * (sample - 10) + 1)) << n;
   }
   const auto skipped = open_volume(folder / "a.mnc");
   std::vector<float> last(12);
@@ -203,9 +203,9 @@ TEST(Hdf5Places, MincScalingsOfSlicesGiveValues) {
   const auto turned = open_volume(folder / "b.mnc");
   EXPECT_EQ(turned->info().dims, (std::array<std::int64_t, 3>{2, 3, 4}));
   const auto columns = samples_of<float>(*turned, 1);
-  EXPECT_FLOAT_EQ(columns[0], 0.45F);
-  EXPECT_FLOAT_EQ(columns[1], 0.445F * 13 + 1);
-  EXPECT_FLOAT_EQ(columns[2], 0.45F * 5);
+  EXPECT_FLOAT_EQ(columns[0], 0.45F * -9);
+  EXPECT_FLOAT_EQ(columns[1], 0.445F * 3 + 1);
+  EXPECT_FLOAT_EQ(columns[2], 0.45F * -5);
 }
 
 TEST(Hdf5Places, WrongMincHeadersAreRefused) {

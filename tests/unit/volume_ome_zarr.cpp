@@ -58,6 +58,21 @@ TEST(OmeZarr, ChannelAndTimeAreChosen) {
   EXPECT_TRUE(contains(refusal(folder / "a", options), "expected --channel below 3, found 3"));
 }
 
+TEST(OmeZarr, SlicesThatWereWrittenAsChannelsAreAsFarApartAsSlices) {
+  const TempFolder folder;
+  ArrayJson axes = {{{"name", "c"}, {"type", "channel"}}};
+  axes.insert(axes.end(), kAxes.begin(), kAxes.end());
+  put_group(folder / "a", image(axes, list({level("0", list({scale({1, 4, 2, 3})}))})));
+  put_array(folder / "a/0", {3, 1, 2, 2});
+  OpenOptions options;
+  options.slices_from = SliceAxis::kChannels;
+  const auto source = open_volume(folder / "a", options);
+  EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{2, 2, 3}));
+  expect_places(source->info().geometry, {3, 2, 4}, {0, 0, 0});
+  EXPECT_EQ(samples_of<std::int16_t>(*source).at(11), 12);
+  EXPECT_TRUE(contains(open_volume(folder / "a")->info().notes.at(0), "--slices-from channel takes them for slices"));
+}
+
 TEST(OmeZarr, AxesAreFoundByTheirNames) {
   const TempFolder folder;
   put_group(folder / "a",
