@@ -33,7 +33,9 @@ std::optional<std::size_t> chosen(const VtkArrayNames& names, std::string_view w
 
 bool would_choose(const VtkArrayNames& names, const VtkArrayName& array, std::string_view wanted) {
   if (!wanted.empty()) return array.name == wanted;
-  return names.active.empty() ? array.components == 1 : array.name == names.active;
+  if (!names.active.empty()) return array.name == names.active;
+  // "vtkGhostType" and the like say which points and cells are doubled, or were something else once.
+  return array.components == 1 && !array.name.starts_with("vtk");
 }
 
 VtkChoice choose_vtk_array(const VtkArrayNames& points, const VtkArrayNames& cells, std::string_view wanted,

@@ -29,7 +29,7 @@ struct VtkChoice {
 };
 
 // Whether an array is the one: of the name that is wanted or, where none is, active or, where none is active, of one
-// component.
+// component and none of VTK's own.
 bool would_choose(const VtkArrayNames& names, const VtkArrayName& array, std::string_view wanted);
 
 // The first array at points that would be chosen, or else the first in cells. Throws BadInput naming all that there are

@@ -72,6 +72,15 @@ TEST(VtiVariants, PrefersPointsAndTakesWhatIsNamed) {
   EXPECT_THROW(open_volume(path, named("d")), BadInput);
 }
 
+TEST(VtiVariants, PassesOverArraysOfVtkItself) {
+  const TempFolder folder;
+  const std::string data =
+      points(data_array("type=\"UInt8\" Name=\"vtkGhostType\"", "0 1") + data_array("type=\"Int8\" Name=\"a\"", "5 6"));
+  const std::string path = folder.put("a.vti", image("0 1 0 0 0 0", piece("0 1 0 0 0 0", data)));
+  EXPECT_EQ(read_file<std::int8_t>(path), (std::vector<std::int8_t>{5, 6}));
+  EXPECT_EQ(samples_of<std::uint8_t>(*open_volume(path, named("vtkGhostType"))), (std::vector<std::uint8_t>{0, 1}));
+}
+
 // 4 x 3 x 3 points, sample = 100 k + 10 j + i, in pieces that share their borders.
 std::string pieces_of(const std::vector<std::array<int, 6>>& extents) {
   std::string all;
