@@ -112,7 +112,7 @@ struct OpenOptions {
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
   std::string series;                            // UID of a DICOM series, where there are several; "none": without UID
-  std::string dataset;                           // path of an array inside the file or folder (HDF5, Zarr, N5)
+  std::string dataset;                           // path or name of an array in the file or folder (HDF5, Zarr, N5, VTK)
   std::optional<std::int64_t> level;             // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
   std::optional<std::int64_t> channel;           // index along the axis of channels; none: the first
   std::optional<std::int64_t> time;              // index along the axis of time; none: the first
