@@ -9,6 +9,7 @@
 #include "volume/geometry.hpp"
 #include "volume/header_fields.hpp"
 #include "volume/header_text.hpp"
+#include "volume/volumes_in_row.hpp"
 
 namespace isoweave {
 namespace {
@@ -73,7 +74,8 @@ SampleType sample_type_of(std::int64_t code, std::string_view path) {
   bad_input(path, "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", "Analyze type " + name);
 }
 
-void set_dims(const AnalyzeHeader& header, VolumeInfo& info) {
+// Returns how many volumes there are.
+std::int64_t set_dims(const AnalyzeHeader& header, VolumeInfo& info) {
   const std::int64_t rank = header.dim[0];
   if (rank < 2 || rank > 7) bad_input(info.path, "2 to 7 dimensions", std::to_string(rank));
   std::int64_t volumes = 1;
@@ -84,7 +86,7 @@ void set_dims(const AnalyzeHeader& header, VolumeInfo& info) {
     if (axis > 3) volumes *= side;
   }
   info.dims[2] = std::max<std::int64_t>(1, info.dims[2]);
-  if (volumes > 1) info.notes.push_back("the first of " + std::to_string(volumes) + " volumes is read");
+  return volumes;
 }
 
 // Where the samples lie but for what the format does not say: which side is left, and where the origin is.
@@ -132,7 +134,7 @@ bool is_analyze(std::string_view head) {
   return header && header->dim[0] >= 1 && header->dim[0] <= 7;
 }
 
-OpenedVolume open_analyze(const FilePtr& file) {
+OpenedVolume open_analyze(const FilePtr& file, const OpenOptions& options) {
   const std::optional<AnalyzeHeader> header = parse_header(file->head(kHeaderBytes));
   if (!header) bad_input(file->path(), "an Analyze header, whose first number is 348", "other content");
   OpenedVolume volume;
@@ -140,11 +142,12 @@ OpenedVolume open_analyze(const FilePtr& file) {
   info.path = file->path();
   info.format = "analyze";
   info.type = sample_type_of(header->type, info.path);
-  set_dims(*header, info);
-  const std::uint64_t bytes = checked_volume_bytes(info);
+  const std::int64_t volumes = set_dims(*header, info);
+  const std::uint64_t before = choose_in_row(info, volumes, options);
   set_axes(*header, info);
   set_scale(*header, info);
-  volume.samples = samples_in(image_of_header(info.path), data_offset(*header, info.path), bytes);
+  const std::uint64_t begin = data_offset(*header, info.path) + before;
+  volume.samples = samples_in(image_of_header(info.path), begin, checked_volume_bytes(info));
   volume.swap_bytes = header->swapped;
   return volume;
 }

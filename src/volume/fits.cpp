@@ -9,6 +9,7 @@
 #include "volume/formats.hpp"
 #include "volume/header_text.hpp"
 #include "volume/printable.hpp"
+#include "volume/volumes_in_row.hpp"
 
 namespace isoweave {
 namespace {
@@ -71,8 +72,8 @@ SampleType sample_type_of(std::int64_t bits, const std::string& path) {
   }
 }
 
-// Axes beyond the third, such as that of the polarization, have one sample.
-void set_dims(const FitsHeader& header, VolumeInfo& info) {
+// Returns how many volumes there are along the axes beyond the third.
+std::int64_t set_dims(const FitsHeader& header, VolumeInfo& info) {
   const std::int64_t axes = integer_of(header, "NAXIS", info.path);
   constexpr std::int64_t kMostAxes = 999;
   if (axes < 2 || axes > kMostAxes) {
@@ -80,28 +81,30 @@ void set_dims(const FitsHeader& header, VolumeInfo& info) {
               axes == 0 ? "none (extensions are not read)" : std::to_string(axes) + " axes");
   }
   info.dims = {1, 1, 1};
+  std::int64_t volumes = 1;
   for (std::int64_t n = 1; n <= axes; ++n) {
     const std::int64_t side = integer_of(header, "NAXIS" + std::to_string(n), info.path);
     if (n <= 3) info.dims[static_cast<std::size_t>(n - 1)] = side;
-    if (n > 3 && side != 1) {
-      bad_input(info.path, "3 axes", "axis " + std::to_string(n) + " with " + std::to_string(side) + " samples");
+    if (n > 3 && __builtin_mul_overflow(volumes, side, &volumes)) {
+      bad_input(info.path, "fewer than 2^63 volumes", "axes whose product is larger");
     }
   }
+  return volumes;
 }
 
 }  // namespace
 
 bool is_fits(std::string_view head) { return head.starts_with("SIMPLE  ="); }
 
-OpenedVolume open_fits(const FilePtr& file) {
+OpenedVolume open_fits(const FilePtr& file, const OpenOptions& options) {
   const FitsHeader header = read_header(file);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "fits";
   info.type = sample_type_of(integer_of(header, "BITPIX", info.path), info.path);
-  set_dims(header, info);
-  const std::uint64_t bytes = checked_volume_bytes(info);
+  const std::int64_t volumes = set_dims(header, info);
+  const std::uint64_t before = choose_in_row(info, volumes, options);
   info.slope = number_of(header, "BSCALE", 1, info.path);
   info.intercept = number_of(header, "BZERO", 0, info.path);
   if (info.slope == 0 || !std::isfinite(info.slope) || !std::isfinite(info.intercept)) {
@@ -111,7 +114,7 @@ OpenedVolume open_fits(const FilePtr& file) {
     info.notes.push_back("BLANK is not applied: samples of " + header.values.find("BLANK")->second + " are values");
   }
   info.notes.emplace_back("coordinates of the sky and of spectra are not applied: the spacing is taken as 1");
-  volume.samples = samples_in(file, header.data, bytes);
+  volume.samples = samples_in(file, header.data + before, checked_volume_bytes(info));
   volume.swap_bytes = std::endian::native == std::endian::little;
   return volume;
 }

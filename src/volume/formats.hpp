@@ -28,15 +28,15 @@ inline constexpr std::size_t kNiftiHeadBytes = 540;
 
 // Needs as many bytes as is_nifti.
 bool is_analyze(std::string_view head);
-OpenedVolume open_analyze(const FilePtr& file);
+OpenedVolume open_analyze(const FilePtr& file, const OpenOptions& options);
 
 bool is_mgh(std::string_view head);
-OpenedVolume open_mgh(const FilePtr& file);
+OpenedVolume open_mgh(const FilePtr& file, const OpenOptions& options);
 
 bool is_mrc(std::string_view head);
 // Whether the numbers are those of a header, as in files from before there was a magic.
 bool is_old_mrc(std::string_view head);
-OpenedVolume open_mrc(const FilePtr& file);
+OpenedVolume open_mrc(const FilePtr& file, const OpenOptions& options);
 // Bytes of a file that is_mrc and is_old_mrc need.
 inline constexpr std::size_t kMrcHeadBytes = 1024;
 
@@ -50,7 +50,7 @@ bool is_slc(std::string_view head);
 OpenedVolume open_slc(const FilePtr& file);
 
 bool is_fits(std::string_view head);
-OpenedVolume open_fits(const FilePtr& file);
+OpenedVolume open_fits(const FilePtr& file, const OpenOptions& options);
 
 OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options);
 

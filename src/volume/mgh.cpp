@@ -8,6 +8,7 @@
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_fields.hpp"
+#include "volume/volumes_in_row.hpp"
 
 namespace isoweave {
 namespace {
@@ -77,12 +78,6 @@ void set_axes(const MghHeader& header, VolumeInfo& info) {
   info.geometry.unit = "mm";
 }
 
-void set_dims(const MghHeader& header, VolumeInfo& info) {
-  for (std::size_t axis = 0; axis < 3; ++axis) info.dims[axis] = header.numbers[axis + 1];
-  const std::int32_t frames = header.numbers[4];
-  if (frames > 1) info.notes.push_back("the first of " + std::to_string(frames) + " frames is read");
-}
-
 }  // namespace
 
 // There is no magic: the numbers must be those of a header.
@@ -95,7 +90,7 @@ bool is_mgh(std::string_view head) {
   return sane;
 }
 
-OpenedVolume open_mgh(const FilePtr& file) {
+OpenedVolume open_mgh(const FilePtr& file, const OpenOptions& options) {
   const std::string head = file->head(kHeaderBytes);
   if (!is_mgh(head)) bad_input(file->path(), "an MGH header: version 1, dimensions of at least 1", "other content");
   MghHeader header = parse_header(head);
@@ -109,10 +104,11 @@ OpenedVolume open_mgh(const FilePtr& file) {
               std::to_string(header.numbers[5]));
   }
   info.type = *type;
-  set_dims(header, info);
+  for (std::size_t axis = 0; axis < 3; ++axis) info.dims[axis] = header.numbers[axis + 1];
+  const std::uint64_t before = choose_in_row(info, header.numbers[4], options);
   place_by_default(header, info);
   set_axes(header, info);
-  volume.samples = samples_in(file, kHeaderBytes, checked_volume_bytes(info));
+  volume.samples = samples_in(file, kHeaderBytes + before, checked_volume_bytes(info));
   volume.swap_bytes = kSwapped;
   return volume;
 }

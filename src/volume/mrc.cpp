@@ -13,6 +13,7 @@
 #include "volume/geometry.hpp"
 #include "volume/header_fields.hpp"
 #include "volume/header_text.hpp"
+#include "volume/volumes_in_row.hpp"
 
 namespace isoweave {
 namespace {
@@ -130,12 +131,13 @@ SampleType sample_type_of(const MrcHeader& header, VolumeInfo& info) {
             std::to_string(header.mode) + name);
 }
 
-void set_dims(const MrcHeader& header, VolumeInfo& info) {
+// Volumes in a stack: each is as deep as the cell.
+std::int64_t set_dims(const MrcHeader& header, VolumeInfo& info) {
   for (std::size_t axis = 0; axis < 3; ++axis) info.dims[axis] = header.dims[axis];
   const std::int32_t depth = header.grid[2];
-  if (header.group < kStackOfVolumes || depth < 1 || depth >= header.dims[2] || header.dims[2] % depth != 0) return;
+  if (header.group < kStackOfVolumes || depth < 1 || depth >= header.dims[2] || header.dims[2] % depth != 0) return 1;
   info.dims[2] = depth;
-  info.notes.push_back("the first of " + std::to_string(header.dims[2] / depth) + " volumes is read");
+  return header.dims[2] / depth;
 }
 
 constexpr double kNanometres = 0.1;  // of an angstrom
@@ -216,7 +218,7 @@ bool is_mrc(std::string_view head) {
 
 bool is_old_mrc(std::string_view head) { return find_header(head).has_value(); }
 
-OpenedVolume open_mrc(const FilePtr& file) {
+OpenedVolume open_mrc(const FilePtr& file, const OpenOptions& options) {
   const std::optional<MrcHeader> header = find_header(file->head(kMrcHeadBytes));
   if (!header)
     bad_input(file->path(), "an MRC header: dimensions of at least 1, a mode, axes 1, 2, 3", "other content");
@@ -225,13 +227,14 @@ OpenedVolume open_mrc(const FilePtr& file) {
   info.path = file->path();
   info.format = "mrc";
   info.type = sample_type_of(*header, info);
-  set_dims(*header, info);
-  const std::uint64_t bytes = checked_volume_bytes(info);
+  const std::int64_t volumes = set_dims(*header, info);
+  const std::uint64_t before = choose_in_row(info, volumes, options);
   set_axes(*header, info);
   if (header->extended < 0) {
     bad_input(info.path, "an extended header of at least 0 bytes", std::to_string(header->extended));
   }
-  volume.samples = samples_in(file, kMrcHeadBytes + static_cast<std::uint64_t>(header->extended), bytes);
+  const std::uint64_t begin = kMrcHeadBytes + static_cast<std::uint64_t>(header->extended);
+  volume.samples = samples_in(file, begin + before, checked_volume_bytes(info));
   volume.swap_bytes = header->swapped;
   return volume;
 }

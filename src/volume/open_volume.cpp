@@ -69,17 +69,17 @@ OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const Open
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   if (is_analyze(head)) {
     check_external(options, path, "its image");
-    return open_analyze(file);
+    return open_analyze(file, options);
   }
-  if (is_mgh(head)) return open_mgh(file);
-  if (is_mrc_name(name) && is_old_mrc(head)) return open_mrc(file);
+  if (is_mgh(head)) return open_mgh(file, options);
+  if (is_mrc_name(name) && is_old_mrc(head)) return open_mrc(file, options);
   if (name.ends_with(".mha") || name.ends_with(".mhd")) return open_metaimage(file, options);
   const std::string header = header_of_image(path);
   if (!header.empty()) {
     check_external(options, path, header);
     const FilePtr described = unpacked(open_file(header));
     const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
-    OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described);
+    OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described, options);
     volume.info.path = path;
     return volume;
   }
@@ -97,10 +97,10 @@ OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   if (is_metaimage(head)) return open_metaimage(file, options);
   if (is_nifti(head)) return open_nifti(file, options);
   if (is_npy(head)) return open_npy(file, options);
-  if (is_mrc(head)) return open_mrc(file);
+  if (is_mrc(head)) return open_mrc(file, options);
   if (is_amira(head)) return open_amira(file);
   if (is_slc(head)) return open_slc(file);
-  if (is_fits(head)) return open_fits(file);
+  if (is_fits(head)) return open_fits(file, options);
   if (is_hdf5(*file)) return open_hdf5(jumping_file(file), options);
   return open_by_name(file, head, options);
 }
@@ -142,9 +142,12 @@ void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   if ((!named && !options.dataset.empty()) || (!array && options.level)) {
     bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
   }
-  const bool axes = array || is_one_of(info.format, {"npy", "tiff", "nifti", "nrrd", "metaimage"});
+  const bool axes =
+      array || is_one_of(info.format, {"npy", "tiff", "nifti", "nrrd", "metaimage", "analyze", "mgh", "mrc", "fits"});
   if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {
-    bad_input(info.path, "NPY, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and --slices-from",
+    bad_input(info.path,
+              "NPY, Analyze, MGH, MRC, FITS, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and "
+              "--slices-from",
               info.format);
   }
 }

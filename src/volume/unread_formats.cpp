@@ -22,7 +22,7 @@ struct Unread {
   std::string_view way;
 };
 
-constexpr std::array<Unread, 47> kUnread{{
+constexpr std::array<Unread, 50> kUnread{{
     {0, "CDF\x01"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
     {0, "CDF\x02"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
     {0, "CDF\x05"sv, "netCDF", "nccopy -k nc4 writes HDF5, which is read"},
@@ -55,6 +55,9 @@ constexpr std::array<Unread, 47> kUnread{{
     {0, "\x1f\x9d"sv, "a file packed by compress", "gzip -dc FILE | isoweave ... - reads it"},
     {0, "# === DATA DESCRIPTION FILE"sv, "a Philips PAR header", "dcm2niix makes NIfTI of PAR and REC"},
     {0, "##TITLE="sv, "Bruker's parameters", "the samples are in 2dseq, which --raw reads"},
+    {0, "\ntype  ="sv, "a header of AFNI", "3dAFNItoNIFTI makes NIfTI of HEAD and BRIK"},
+    {0, "type  = "sv, "a header of AFNI", "3dAFNItoNIFTI makes NIfTI of HEAD and BRIK"},
+    {0, "mrtrix image"sv, "MRtrix", "mrconvert writes NIfTI"},
     {0, "!INTERFILE"sv, "an Interfile header", "--raw reads the file of samples that it names"},
     {0, "ENVI"sv, "an ENVI header", "--raw reads the file of samples beside it"},
     {0, "MATRIX7"sv, "ECAT 7", "write it as NIfTI"},

@@ -84,7 +84,14 @@ TEST(Analyze, ReadsTheFirstVolumeAndSingleSlices) {
   const TempFolder folder;
   AnalyzeFields fields;
   fields.dim = {4, 3, 2, 1, 5, 0, 0, 0};
-  EXPECT_TRUE(contains(open_volume(put_pair(folder, fields))->info().notes.at(0), "first of 5 volumes"));
+  EXPECT_TRUE(contains(open_volume(put_pair(folder, fields))->info().notes.at(0), "the first of 5 along time is read"));
+  OpenOptions options;
+  options.time = 4;
+  const auto last = read_file<std::int16_t>(folder / "a.hdr", options);
+  EXPECT_EQ(last, std::vector<std::int16_t>(kSamples.end() - 6, kSamples.end()));
+  options.time.reset();
+  options.slices_from = SliceAxis::kTimes;
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a.hdr", options), kSamples);
   fields.dim = {2, 3, 10, 0, 0, 0, 0, 0};
   EXPECT_EQ(open_volume(put_pair(folder, fields))->info().dims, (std::array<std::int64_t, 3>{3, 10, 1}));
 }

@@ -56,7 +56,13 @@ TEST(Fits, ScalesAndLeavesOutAxesOfOneSample) {
   EXPECT_EQ(info.intercept, 32768);
   EXPECT_TRUE(contains(info.notes.at(0), "BLANK"));
   all[6] = "NAXIS4  =                    2";
-  EXPECT_TRUE(contains(refusal(folder.put("a.fits", fits(all, ""))), "axis 4 with 2 samples"));
+  const std::vector<std::int16_t> both = ramp<std::int16_t>(60);
+  const std::string path = folder.put("a.fits", fits(all, stored(both, true)));
+  OpenOptions options;
+  options.time = 1;
+  EXPECT_EQ(read_file<std::int16_t>(path, options), std::vector<std::int16_t>(both.begin() + 30, both.end()));
+  options.time = 2;
+  EXPECT_TRUE(contains(refusal(path, options), "expected --time below 2, found 2"));
 }
 
 TEST(Fits, RefusesHeadersThatLie) {

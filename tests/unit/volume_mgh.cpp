@@ -64,7 +64,29 @@ TEST(Mgh, ReadsItsTypesAndTheFirstFrame) {
   EXPECT_TRUE(contains(refusal(folder.put("a.mgh", mgh_file(fields))), "found 7"));
   fields.numbers[5] = 4;
   fields.numbers[4] = 12;
-  EXPECT_TRUE(contains(info_of(folder, fields).notes.at(0), "first of 12 frames"));
+  EXPECT_TRUE(contains(info_of(folder, fields).notes.at(0), "the first of 12 along time is read"));
+}
+
+TEST(Mgh, ReadsTheFrameThatIsAskedFor) {
+  const TempFolder folder;
+  MghFields fields;
+  fields.numbers[4] = 2;
+  const std::vector<std::int16_t> both = ramp<std::int16_t>(60);
+  const std::string content = mgh_header(fields) + stored(both, true);
+  OpenOptions options;
+  for (const std::string& path : {folder.put("a.mgh", content), folder.put("a.mgz", gzipped(content))}) {
+    for (const int frame : {0, 1}) {
+      options.time = frame;
+      const auto first = both.begin() + 30 * frame;
+      EXPECT_EQ(read_file<std::int16_t>(path, options), std::vector<std::int16_t>(first, first + 30));
+      EXPECT_EQ(open_volume(path, options)->info().part, "time " + std::to_string(frame));
+    }
+    options.time = 2;
+    EXPECT_TRUE(contains(refusal(path, options), "expected --time below 2, found 2"));
+  }
+  options.time.reset();
+  options.channel = 0;
+  EXPECT_TRUE(contains(refusal(folder / "a.mgh", options), "an axis for --channel"));
 }
 
 TEST(Mgh, RefusesHeadersThatLie) {

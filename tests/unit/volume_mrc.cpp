@@ -149,7 +149,11 @@ TEST(Mrc, ReadsTheFirstOfAStackOfVolumes) {
   fields.group = 401;
   const VolumeInfo info = info_of(folder, fields);
   EXPECT_EQ(info.dims[2], 5);
-  EXPECT_TRUE(contains(info.notes.at(0), "first of 2 volumes"));
+  EXPECT_TRUE(contains(info.notes.at(0), "the first of 2 along time is read"));
+  OpenOptions options;
+  options.time = 1;
+  const auto second = read_file<std::int16_t>(folder / "a.mrc", options);
+  EXPECT_EQ(second, std::vector<std::int16_t>(kSamples.begin() + 15, kSamples.end()));
   fields.group = 1;
   EXPECT_EQ(info_of(folder, fields).dims[2], 10);
 }

@@ -222,6 +222,8 @@ TEST(Unread, AreToldWithTheWayRound) {
       {zip_of("read.me"), "a zip archive: unpack"},
       {"# === DATA DESCRIPTION FILE ===\n", "PAR"},
       {"##TITLE=Parameter List\n", "Bruker"},
+      {"\ntype  = string-attribute\n", "3dAFNItoNIFTI"},
+      {"mrtrix image\ndim: 3,2,5\n", "mrconvert"},
       {"!INTERFILE :=\n", "Interfile"},
       {"MATLAB 5.0 MAT-file", "-v7.3"},
       {"%PDF-1.4", "PDF"},
