@@ -124,11 +124,11 @@ struct OpenOptions {
 // Opens a volume; the format is told by its content, then by its name: NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, NPY,
 // PVM, TIFF, VTK, HDF5, raw and others, in gzip too, or out of a pipe. A folder of Zarr, OME-Zarr or N5 is an array of
 // chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of one file per slice: TIFF, PNG or, with
-// options.raw, samples alone, in the order of the numbers in their names; DICOM by position. A DICOM file stands for the
-// series it belongs to, a folder of DICOM for those below it too. docs/formats.md says what is read of each. Only headers
-// are read here, and their claims are compared with the sizes of files. Throws BadInput when the file is missing, a folder
-// without slices, of no known format or of one that this build leaves out, or its header is wrong; CannotWrite when there
-// is no room to keep what comes out of a pipe.
+// options.raw, samples alone, in the order of the numbers in their names; DICOM by position. A DICOM file stands for
+// the series it belongs to, a folder of DICOM for those below it too. docs/formats.md says what is read of each. Only
+// headers are read here, and their claims compared with the sizes of files. Throws BadInput when there is no file, no
+// slice, no known format or none of this build, or the header is wrong; CannotWrite when there is no room for a pipe's
+// content.
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
 
 // A box of samples: [first, end) along each axis.
