@@ -117,6 +117,7 @@ std::size_t take_slices_from(std::vector<ArrayAxis>& axes, SliceAxis from, std::
   if (slices != axes.end() && slices->size > 1) {
     bad_input(path, "one slice for --slices-from " + word, std::to_string(slices->size));
   }
+  if (holder->size == 1) bad_input(path, "several samples along " + word + " for --slices-from " + word, "one");
   holder->name = "z";
   if (slices == axes.end()) return kNoAxis;
   slices->name = word;

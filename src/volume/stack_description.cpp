@@ -141,11 +141,65 @@ StackDescription parse_ome(std::string_view text, std::string_view path) {
   return stack;
 }
 
+// The whole numbers of a list behind a key in JSON; nothing for anything else.
+std::optional<std::vector<std::int64_t>> json_numbers(std::string_view text, std::string_view key) {
+  const std::size_t begin = text.find("\"" + std::string(key) + "\": [");
+  const std::size_t open = begin == std::string_view::npos ? begin : text.find('[', begin);
+  const std::size_t close = open == std::string_view::npos ? open : text.find(']', open);
+  if (close == std::string_view::npos) return std::nullopt;
+  std::string list(text.substr(open + 1, close - open - 1));
+  std::replace(list.begin(), list.end(), ',', ' ');
+  std::vector<std::int64_t> numbers;
+  for (const std::string_view word : words_of(std::string_view(list))) {
+    const auto number = parse_integer(word);
+    if (!number || *number < 1) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+// Letters for the axes of a shape; where there are none, the last ones are those of most stacks.
+std::string shape_letters(std::string_view text, std::size_t axes) {
+  constexpr std::string_view kKey = "\"axes\": \"";
+  const std::size_t begin = text.find(kKey);
+  if (begin != std::string_view::npos) {
+    const std::string_view letters =
+        text.substr(begin + kKey.size(), text.find('"', begin + kKey.size()) - begin - kKey.size());
+    if (letters.size() == axes) return std::string(letters);
+  }
+  constexpr std::string_view kUsual = "TCZYX";
+  const std::string_view known = kUsual.substr(kUsual.size() - std::min(kUsual.size(), axes));
+  return std::string(axes - known.size(), '?') + std::string(known);
+}
+
+// What tifffile writes of an array that it is given: {"shape": [2, 20, 24, 28], "axes": "CZYX"}.
+StackDescription parse_tifffile(std::string_view text, std::string_view path) {
+  StackDescription stack;
+  const auto shape = json_numbers(text, "shape");
+  if (!shape || shape->size() < 3 || shape->size() > kMostAxes) return stack;
+  const std::string letters = shape_letters(text, shape->size());
+  if (!letters.ends_with("YX")) return stack;
+  stack.writer = StackDescription::Writer::kTifffile;
+  stack.images = 1;
+  const bool has_z = letters.find('Z') != std::string::npos;
+  for (std::size_t n = 0; n + 2 < letters.size(); ++n) {
+    ArrayAxis axis{(*shape)[n], std::string(1, letters[n])};
+    if (letters[n] == 'C') axis.name = "channel";
+    if (letters[n] == 'T') axis.name = "time";
+    // Of an axis that is only called a sequence the images are slices.
+    if (letters[n] == 'Z' || (!has_z && (letters[n] == 'I' || letters[n] == 'Q'))) axis.name = "z";
+    stack.images = product(stack.images, axis.size, path);
+    stack.axes.push_back(std::move(axis));
+  }
+  return stack;
+}
+
 }  // namespace
 
 StackDescription parse_stack_description(std::string_view text, std::string_view path) {
   if (text.starts_with("ImageJ=")) return parse_imagej(text, path);
   if (text.find("<OME") != std::string_view::npos) return parse_ome(text, path);
+  if (text.starts_with("{\"shape\"")) return parse_tifffile(text, path);
   return {};
 }
 

@@ -13,7 +13,7 @@
 namespace isoweave {
 
 struct StackDescription {
-  enum class Writer { kUnknown, kImageJ, kOme };
+  enum class Writer { kUnknown, kImageJ, kOme, kTifffile };
   Writer writer = Writer::kUnknown;
   std::int64_t images = 0;      // planes by the description: slices times channels times frames; 0: it says nothing
   std::vector<ArrayAxis> axes;  // of the planes, from the slowest to the fastest; empty: all images are slices

@@ -124,10 +124,15 @@ std::vector<std::uint64_t> pages_of(const TiffPages& pages, const PageNumbers& n
   return slices;
 }
 
-void check_images(const StackDescription& stack, std::int64_t found, const std::string& path) {
-  if (stack.images != 0 && stack.images != found) {
-    bad_input(path, std::to_string(stack.images) + " pages by its description", std::to_string(found));
+// A shape is a remark of the program that wrote the file, which others may keep with pages of their own.
+void check_images(StackDescription& stack, std::int64_t found, VolumeInfo& info) {
+  if (stack.images == 0 || stack.images == found) return;
+  if (stack.writer != StackDescription::Writer::kTifffile) {
+    bad_input(info.path, std::to_string(stack.images) + " pages by its description", std::to_string(found));
   }
+  info.notes.push_back("the shape in its description is of " + std::to_string(stack.images) + " pages; all " +
+                       std::to_string(found) + " that there are are read as slices");
+  stack.axes.clear();
 }
 
 // ImageJ writes stacks beyond 4 GB as one directory, with the samples of all images behind one another.
@@ -191,7 +196,7 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
   note_peculiarities(info, *tiff, pages);
   const bool contiguous = is_contiguous(*tiff, pages, stack);
   const auto found = static_cast<std::int64_t>(pages.offsets.size());
-  if (!contiguous) check_images(stack, found, info.path);
+  if (!contiguous) check_images(stack, found, info);
   const std::int64_t images = contiguous ? stack.images : found;
   const PageNumbers numbers = choose_slices(info, stack, images, options);
   info.dims[2] = numbers.count;

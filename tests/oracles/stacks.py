@@ -66,7 +66,13 @@ def check_tiff(oracle, folder):
         with oracle.file(path):
             check_choices(oracle, path, data, axes)
             check_spacing(oracle, path, SPACING, "nm")
-    # What tifffile writes without names of axes: slices as frames.
+    for axes, metadata in (("TCZYX", {"axes": "TCZYX"}), ("TCZYX", {}), ("ZCTYX", {"axes": "ZCTYX"})):
+        data = stack(axes)
+        path = os.path.join(folder, f"{axes}{len(metadata)}.tif")
+        tifffile.imwrite(path, data, photometric="minisblack", metadata=metadata)
+        with oracle.file(path):
+            check_choices(oracle, path, data, axes)
+    # What tifffile writes without names of axes: slices as channels or frames.
     path = os.path.join(folder, "frames.tif")
     tifffile.imwrite(path, stack("ZYX"), imagej=True)
     with oracle.file(path):

@@ -272,6 +272,35 @@ TEST(Tiff, AChoiceOutsideTheStackIsRefused) {
   EXPECT_EQ(samples_of<std::uint16_t>(*contiguous)[20], kSamples[100]);
 }
 
+TEST(Tiff, TheShapeThatTifffileWritesSaysWhatPagesAre) {
+  const TempFolder folder;
+  const auto read = [&](const std::string& text, const OpenOptions& options = {}) {
+    return open_volume(write_stack(folder / "a.tif", described(text), stored(kSamples)), options);
+  };
+  for (const std::string text :
+       {R"({"shape": [2, 3, 4, 5]})", R"({"shape": [2, 3, 4, 5], "axes": "CZYX"})", R"({"shape": [1, 2, 3, 4, 5]})"}) {
+    const auto first = read(text);
+    EXPECT_EQ(first->info().dims, (std::array<std::int64_t, 3>{5, 4, 3})) << text;
+    EXPECT_TRUE(contains(first->info().notes.at(0), "the first of 2 along channel")) << text;
+    OpenOptions options;
+    options.channel = 1;
+    EXPECT_EQ(samples_of<std::uint16_t>(*read(text, options)).at(0), kSamples.at(60)) << text;
+  }
+  OpenOptions options;
+  options.time = 1;
+  EXPECT_EQ(samples_of<std::uint16_t>(*read(R"({"shape": [3, 2, 4, 5], "axes": "ZTYX"})", options)).at(20),
+            kSamples.at(60));
+  for (const std::string text : {R"({"shape": [6, 4, 5]})", R"({"shape": [6, 4, 5], "axes": "QYX"})",
+                                 R"({"shape": [4, 5]})", R"({"shape": [6, 4, )", R"({"shape": [x]})", "{}"}) {
+    EXPECT_EQ(read(text)->info().dims[2], 6) << text;
+  }
+  const auto kept = read(R"({"shape": [2, 4, 4, 5]})");
+  EXPECT_EQ(kept->info().dims[2], 6);
+  EXPECT_TRUE(contains(kept->info().notes.at(0), "the shape in its description is of 8 pages; all 6"));
+  EXPECT_TRUE(contains(refusal_of(folder, described(R"({"shape": [2, 3, 4, 5], "axes": "RZYX"})"), stored(kSamples)),
+                       "expected axes x, y, z, channel and time, found 2 ('R')"));
+}
+
 TEST(Tiff, SlicesThatWereWrittenAsChannelsOrFrames) {
   const TempFolder folder;
   for (const auto& [key, word, from] :
@@ -295,6 +324,9 @@ TEST(Tiff, SlicesThatWereWrittenAsChannelsOrFrames) {
                        "expected one slice for --slices-from channel, found 3"));
   EXPECT_TRUE(contains(refusal(write_stack(folder / "a.tif", {}, stored(kSamples)), options),
                        "expected an axis for --slices-from channel"));
+  const std::string frames = "ImageJ=1.53q\nimages=6\nframes=6\n";
+  EXPECT_TRUE(contains(refusal(write_stack(folder / "a.tif", described(frames), stored(kSamples)), options),
+                       "expected several samples along channel for --slices-from channel, found one"));
 }
 
 TEST(Tiff, ReadsContiguousImageJStacks) {
