@@ -11,7 +11,8 @@ namespace isoweave {
 // The numbers of a text, all finite; those in front of the first part that is none.
 std::vector<double> leading_numbers(std::string_view text);
 
-// How many decimals the number at a place of a text is written with, without zeros behind; many where it has an exponent.
+// How many decimals the number at a place of a text is written with, without zeros behind; many where it has an
+// exponent.
 int decimals_of(std::string_view text, std::size_t place);
 
 // Throws BadInput that names `path` and `what` unless the text is `count` numbers.

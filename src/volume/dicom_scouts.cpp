@@ -70,6 +70,7 @@ std::size_t most_common(const std::vector<Look>& looks) {
 std::vector<DicomSlice> without_scouts(const std::vector<DicomSlice>& series, std::vector<std::string>& notes) {
   constexpr std::size_t kNamed = 3;
   std::vector<Look> looks;
+  looks.reserve(series.size());
   for (const DicomSlice& slice : series) looks.push_back(look_of(slice));
   const Look& usual = looks[most_common(looks)];
   std::vector<DicomSlice> slices;
