@@ -199,7 +199,7 @@ StackDescription parse_tifffile(std::string_view text, std::string_view path) {
 StackDescription parse_stack_description(std::string_view text, std::string_view path) {
   if (text.starts_with("ImageJ=")) return parse_imagej(text, path);
   if (text.find("<OME") != std::string_view::npos) return parse_ome(text, path);
-  if (text.starts_with("{\"shape\"")) return parse_tifffile(text, path);
+  if (text.starts_with("{\"")) return parse_tifffile(text, path);
   return {};
 }
 
