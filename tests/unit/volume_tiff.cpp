@@ -278,7 +278,7 @@ TEST(Tiff, TheShapeThatTifffileWritesSaysWhatPagesAre) {
     return open_volume(write_stack(folder / "a.tif", described(text), stored(kSamples)), options);
   };
   for (const std::string text :
-       {R"({"shape": [2, 3, 4, 5]})", R"({"shape": [2, 3, 4, 5], "axes": "CZYX"})", R"({"shape": [1, 2, 3, 4, 5]})"}) {
+       {R"({"shape": [2, 3, 4, 5]})", R"({"axes": "CZYX", "shape": [2, 3, 4, 5]})", R"({"shape": [1, 2, 3, 4, 5]})"}) {
     const auto first = read(text);
     EXPECT_EQ(first->info().dims, (std::array<std::int64_t, 3>{5, 4, 3})) << text;
     EXPECT_TRUE(contains(first->info().notes.at(0), "the first of 2 along channel")) << text;
