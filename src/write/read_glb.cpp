@@ -86,6 +86,7 @@ class SceneReader {
 
   TriangleMesh read_scene() {
     for (const GltfValue& node : root_nodes()) add_node(node, Placement{}, 0);
+    if (vertices_ == 0) input_.fail("expected triangles in the scene that is shown, found none");
     check_normals();
     std::vector<std::string>& notes = mesh_.mesh().notes;
     notes.emplace_back("glTF is in metres, with y up: axes are as stored");

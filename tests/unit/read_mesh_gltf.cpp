@@ -215,6 +215,9 @@ TEST(ReadGltf, RefusesWhatItDoesNotRead) {
   EXPECT_TRUE(contains(with([&](Gltf& g) { g.scene["nodes"][0]["children"] = {0}; }), "nodes that form trees"));
   EXPECT_TRUE(contains(with([&](Gltf& g) { g.scene["nodes"][0]["mesh"] = 7; }), "number 7 of 'meshes'"));
   EXPECT_TRUE(contains(with([&](Gltf& g) { g.scene["nodes"][0]["scale"] = {1, 1}; }), "3 numbers as scale"));
+  EXPECT_TRUE(
+      contains(with([&](Gltf& g) { g.scene["scenes"][0]["nodes"] = Json::array(); }), "triangles in the scene"));
+  EXPECT_TRUE(contains(with([&](Gltf& g) { primitive(g)["mode"] = 0; }), "triangles in the scene"));
   EXPECT_TRUE(contains(with([&](Gltf& g) { g.scene["asset"]["version"] = "1.0"; }), "glTF 2, found version '1.0'"));
   EXPECT_TRUE(contains(with([&](Gltf& g) { primitive(g)["indices"] = primitive(g)["attributes"]["POSITION"]; }),
                        "type SCALAR"));
