@@ -190,7 +190,8 @@ std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& ar
 // An array that was opened by its own folder, as the level of an image that it may be.
 FoundArray alone_or_level(const ZarrNode& array) {
   constexpr int kMostAbove = 16;
-  fs::path folder = fs::absolute(array.folder).lexically_normal();
+  std::error_code error;
+  fs::path folder = fs::absolute(array.folder, error).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   std::string name;
   for (int above = 0; above < kMostAbove && folder.has_relative_path(); ++above) {
