@@ -106,6 +106,12 @@ TEST(Packed, FindsDamageAndWrongSizesOfLongFiles) {
   refused("a_256x256x21_int16.raw.gz", gzipped(stored(samples)), "by its layout, found 2621440");
   packed[packed.size() - 6] ^= 1;  // its sum
   refused("a", packed, "corrupt");
+  // What follows the samples is read for the sake of the sum behind it.
+  const std::string header = mgh_header({.numbers = {1, 256, 256, 20, 1, 4, 0}});
+  packed = gzipped(header + stored(samples, true) + std::string(40, 't'));
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.mgz", packed)), samples);
+  packed[packed.size() - 6] ^= 1;
+  refused("a.mgz", packed, "corrupt");
 }
 
 TEST(Packed, ReadsAnywhereByBeginningAgain) {
