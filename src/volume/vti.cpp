@@ -296,6 +296,8 @@ void open_pieces(OpenedVolume& volume, std::vector<VolumePiece> pieces) {
     volume.swap_bytes = samples.swap_bytes;
     return;
   }
+  // A slice, and what a piece has of it.
+  volume.held_bytes = 2 * volume.info.slice_bytes();
   volume.samples = std::make_unique<PieceStream>(std::move(pieces), volume.info.dims, sample_bytes(volume.info.type),
                                                  volume.info.path);
 }
