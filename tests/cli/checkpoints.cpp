@@ -187,6 +187,26 @@ TEST(CliCheckpoint, AnArrayIsResumedByItsPart) {
   EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
 }
 
+// The slices of the volume as times of a NRRD.
+TEST(CliCheckpoint, SlicesThatWereWrittenAsTimesAreResumed) {
+  const files::Folder folder;
+  const std::string size = kSlice + "x" + std::to_string(kSlices);
+  ASSERT_EQ(run(folder.path(), {"generate", "gyroid", "--size", size, "--type", "uint8", "-o", "a.raw"}).code, 0);
+  const std::string side = std::to_string(kSide);
+  files::write_bytes(folder / "a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: " + side + " " + side + " 1 " +
+                                            std::to_string(kSlices) +
+                                            "\nkinds: domain domain domain time\nspacings: 1 1 1 nan\n"
+                                            "encoding: raw\n\n" +
+                                            files::read_bytes(folder / "a.raw"));
+  const Result result = run(folder.path(),
+                            {"mesh", "a.nrrd", "--slices-from", "time", "-o", "out.ply", "--iso", "127.5", "--report",
+                             "out.json", "--checkpoint", "run", "--slab", "2", "--threads", "1"},
+                            after(folder, SIGINT, std::chrono::milliseconds(0)));
+  ASSERT_EQ(result.code, 130) << result.err;
+  ASSERT_EQ(run(folder.path(), {"mesh", "--resume", "run", "--quiet"}).code, 0);
+  EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
+}
+
 void expect_refused(const files::Folder& folder, const std::vector<std::string>& arguments, int code,
                     const std::string& says) {
   const std::vector<std::string> before = listing(folder);
