@@ -10,6 +10,7 @@
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
 #include "volume/header_text.hpp"
+#include "volume/length_units.hpp"
 #include "volume/printable.hpp"
 #include "volume/run_lengths.hpp"
 #include "volume/text_streams.hpp"
@@ -21,6 +22,7 @@ struct AmiraHeader {
   std::string form;   // "ASCII", "BINARY" (big-endian) or "BINARY-LITTLE-ENDIAN"
   std::string sides;  // numbers of samples
   std::string box;    // first and last sample along x, y, z
+  std::string unit;   // in quotes, as the newer programs write it
   std::string coordinates = "uniform";
   std::string type;   // of the array over the lattice
   std::string label;  // "@1"
@@ -57,6 +59,12 @@ void take_array(AmiraHeader& header, std::string_view line) {
   if (inner.find(',') != std::string_view::npos) header.codec_bytes = trimmed(inner.substr(inner.find(',') + 1));
 }
 
+// The numbers of "define Lattice 3 2 5"; what was found before where something else is defined.
+std::string sides_of(std::string_view line, const std::string& before) {
+  const std::vector<std::string_view> words = words_of(line);
+  return words.size() > 1 && words[1] == "Lattice" ? std::string(behind(line, "Lattice")) : before;
+}
+
 AmiraHeader read_header(const FilePtr& file) {
   const std::string head = file->head(kLargestHeader);
   LineReader lines(head);
@@ -66,7 +74,8 @@ AmiraHeader read_header(const FilePtr& file) {
   }
   while (const auto next = lines.next()) {
     const std::string_view line = trimmed(*next);
-    if (line.starts_with("define Lattice")) header.sides = behind(line, "Lattice");
+    if (line.starts_with("define") && words_of(line)[0] == "define") header.sides = sides_of(line, header.sides);
+    if (line.starts_with("Coordinates")) header.unit = behind(line, "Coordinates");
     if (const auto box = behind(line, "BoundingBox"); !box.empty()) header.box = box;
     if (const auto kind = behind(line, "CoordType"); !kind.empty()) header.coordinates = kind;
     if (line.starts_with("Lattice")) take_array(header, line);
@@ -103,6 +112,20 @@ void set_dims(VolumeInfo& info, const AmiraHeader& header) {
   }
 }
 
+// How many of the unit that the volume is in one of the header is. Older files have none.
+double scale_of_unit(VolumeInfo& info, std::string_view text) {
+  while (text.starts_with('"')) text.remove_prefix(1);
+  while (text.ends_with('"')) text.remove_suffix(1);
+  if (text.empty()) return 1;
+  const std::optional<LengthUnit> unit = find_length_unit(text);
+  if (!unit) {
+    info.notes.push_back("the unit " + quoted(text) + " is no known length");
+    return 1;
+  }
+  info.geometry.unit = unit->name;
+  return unit->scale;
+}
+
 // The box ends at the first and the last sample, not at the sides of cells around them.
 void set_axes(VolumeInfo& info, const AmiraHeader& header) {
   if (header.coordinates.find("uniform") == std::string::npos) {
@@ -113,12 +136,13 @@ void set_axes(VolumeInfo& info, const AmiraHeader& header) {
     return;
   }
   const std::array<double, 6> box = numbers_of<6>(header.box, "BoundingBox", info.path);
+  const double scale = scale_of_unit(info, header.unit);
   Axes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = box[2 * axis + 1] - box[2 * axis];
     const double steps = static_cast<double>(info.dims[axis] - 1);
-    axes.origin[axis] = box[2 * axis];
-    axes.steps[axis][axis] = steps > 0 ? length / steps : 1;
+    axes.origin[axis] = scale * box[2 * axis];
+    axes.steps[axis][axis] = steps > 0 ? scale * length / steps : 1;
   }
   set_geometry(info.geometry, axes, info.path);
 }

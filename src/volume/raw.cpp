@@ -11,6 +11,7 @@
 #include "volume/packed_file.hpp"
 #include "volume/printable.hpp"
 #include "volume/slice_files.hpp"
+#include "volume/slice_numbers.hpp"
 
 namespace isoweave {
 namespace {
@@ -141,6 +142,7 @@ OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
   const auto open = [=](std::int64_t n) { return samples_to_end(unpacked(open_file(name(n))), layout, slice); };
   // A file that is missing or of another size is found now.
   for (std::int64_t n = 0; n < count; ++n) open(n);
+  volume.info.notes = notes_on_numbers(files);
   volume.samples = std::make_unique<FileSequence>(count, slice, open, name);
   volume.swap_bytes = is_swapped(layout);
   return volume;

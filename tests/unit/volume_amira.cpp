@@ -47,6 +47,22 @@ TEST(Amira, ReadsRunLengthsAndZlib) {
   }
 }
 
+TEST(Amira, AppliesTheUnitOfNewerFiles) {
+  const TempFolder folder;
+  const auto info = [&](const std::string& unit) {
+    std::string content = amira("BINARY-LITTLE-ENDIAN", "short Data", stored(kSamples));
+    content.insert(content.find("    Content"), "    Units {\n        Coordinates \"" + unit + "\"\n    }\n");
+    content.replace(content.find("define Lattice"), 14, "define  Lattice");
+    return open_volume(folder.put("a.am", content))->info();
+  };
+  EXPECT_EQ(info("\xc2\xb5m").geometry.unit, "um");
+  EXPECT_EQ(info("cm").geometry.unit, "mm");
+  EXPECT_EQ(info("cm").geometry.spacing, (std::array<double, 3>{5, 20, 50}));
+  EXPECT_EQ(info("cm").geometry.origin, (std::array<double, 3>{10, -40, 100}));
+  EXPECT_EQ(info("foo").geometry.unit, "");
+  EXPECT_TRUE(contains(info("foo").notes.at(0), "'foo' is no known length"));
+}
+
 TEST(Amira, SaysWhatItDoesNotRead) {
   const TempFolder folder;
   const std::string bytes = stored(kSamples);

@@ -204,6 +204,16 @@ TEST(RawSlices, AreReadInTheOrderOfTheirNumbers) {
   }
 }
 
+TEST(RawSlices, NoteNumbersThatAreNotThere) {
+  const TempFolder folder;
+  for (const char* name : {"z1", "z2", "z3", "z5", "z6", "z7"}) folder.put(name, std::string(6, 'x'));
+  OpenOptions options;
+  options.raw = parse_raw_layout("2x3x6:uint8");
+  const std::vector<std::string> notes = open_volume(folder / "z*", options)->info().notes;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(contains(notes[0], "between 'z3' and 'z5'")) << notes[0];
+}
+
 TEST(RawSlices, AreAsManyAndAsLongAsTheLayoutSays) {
   const TempFolder folder;
   for (const char* name : {"z9", "z10"}) folder.put(name, std::string(6, 'x'));
