@@ -87,13 +87,15 @@ TEST(Vti, TakesActiveScalarsOrTheFirstOfOneComponent) {
   form.scalars = "a";
   EXPECT_EQ(read_file<std::int16_t>(folder.put("a.vti", whole(form))), kSamples);
   form.scalars = "v";
-  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected one component per sample in 'v', found v (3 components)"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))),
+                       "expected one component per sample in 'v', found v (3 components)"));
   form.scalars = "b";
-  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))), "expected the active array 'b', found v (3 components), a"));
+  EXPECT_TRUE(
+      contains(refusal(folder.put("a.vti", whole(form))), "expected the active array 'b', found v (3 components), a"));
   form.scalars.clear();
   form.attributes += " NumberOfComponents=\"2\"";
-  EXPECT_TRUE(
-      contains(refusal(folder.put("a.vti", whole(form))), "expected an array of one component, found v (3 components), a (2 components)"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.vti", whole(form))),
+                       "expected an array of one component, found v (3 components), a (2 components)"));
 }
 
 TEST(Vti, TakesOriginSpacingDirectionAndExtent) {
@@ -204,7 +206,8 @@ TEST(VtkLegacy, RefusesWhatItDoesNotRead) {
   EXPECT_TRUE(contains(with(legacy("ASCII")), "expected numbers of type int16"));
   EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DATASET POLYDATA\n")), "DATASET STRUCTURED_POINTS"));
   EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3\n")), "3 whole numbers as DIMENSIONS"));
-  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3 6\n")), "expected 72 samples in the array 's', found 60"));
+  EXPECT_TRUE(contains(with(legacy("BINARY", "short", "DIMENSIONS 4 3 6\n")),
+                       "expected 72 samples in the array 's', found 60"));
   EXPECT_TRUE(contains(refusal(folder.put("b.vtk", "hello")), "# vtk DataFile Version"));
 }
 
