@@ -44,7 +44,8 @@ std::optional<Hdf5Place> find_hdf5_place(const Hdf5File& file, const std::string
   if (std::optional<Hdf5Place> place = imaris_place(file, named, options)) return place;
   if (std::optional<Hdf5Place> place = itk_place(file, named)) return place;
   if (std::optional<Hdf5Place> place = minc_place(file, named)) return place;
-  return dream3d_place(file, named);
+  if (std::optional<Hdf5Place> place = dream3d_place(file, named)) return place;
+  return vtkhdf_place(file, named);
 }
 
 }  // namespace isoweave

@@ -1,5 +1,5 @@
-// Formats that stand on HDF5 and say where samples lie: Imaris, ITK's images, MINC 2, DREAM.3D. To be used inside a
-// session.
+// Formats that stand on HDF5 and say where samples lie: Imaris, ITK's images, MINC 2, DREAM.3D, VTKHDF. To be used
+// inside a session.
 #pragma once
 
 #include <array>
@@ -44,8 +44,9 @@ struct Hdf5Place {
 std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& named, const OpenOptions& options);
 std::optional<Hdf5Place> itk_place(const Hdf5File& file, const std::string& named);
 std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& named);
-// DREAM.3D has no one dataset for volumes: it must be named, or be the only one.
+// DREAM.3D and VTKHDF have no one dataset for volumes: it must be named, or be the only one.
 std::optional<Hdf5Place> dream3d_place(const Hdf5File& file, const std::string& named);
+std::optional<Hdf5Place> vtkhdf_place(const Hdf5File& file, const std::string& named);
 
 // The first of the above that knows the dataset.
 std::optional<Hdf5Place> find_hdf5_place(const Hdf5File& file, const std::string& named, const OpenOptions& options);

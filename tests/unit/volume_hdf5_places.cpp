@@ -225,6 +225,28 @@ TEST(Hdf5Places, WrongMincHeadersAreRefused) {
   EXPECT_TRUE(contains(refused({"zspace,yspace,xspace", {0}, {std::nan("")}}), "expected values that fit in float32"));
 }
 
+TEST(Hdf5Places, VtkImagesBeginWhereTheirExtentDoes) {
+  const TempFolder folder;
+  for (const std::string type : {"ImageData", "UnstructuredGrid"}) {
+    Writer writer(folder / (type + ".vtkhdf"));
+    writer.put_int16("/VTKHDF/PointData/values", {2, 3, 4});
+    writer.put_text("/VTKHDF", "Type", type, true);
+    writer.put_numbers("/VTKHDF", "WholeExtent", {1, 4, 0, 2, -2, -1});
+    writer.put_numbers("/VTKHDF", "Origin", {10, 20, 30});
+    writer.put_numbers("/VTKHDF", "Spacing", {2, 3, 4});
+    writer.put_numbers("/VTKHDF", "Direction", {0, -1, 0, 1, 0, 0, 0, 0, 1});
+  }
+  const auto source = open_volume(folder / "ImageData.vtkhdf");
+  const Geometry& geometry = source->info().geometry;
+  EXPECT_EQ(source->info().dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  EXPECT_EQ(geometry.spacing, (Triple{2, 3, 4}));
+  EXPECT_EQ(geometry.direction, (std::array<double, 9>{0, -1, 0, 1, 0, 0, 0, 0, 1}));
+  // One step along i, which is y in the world, and two back along k.
+  EXPECT_EQ(geometry.origin, (Triple{10, 22, 22}));
+  EXPECT_EQ(samples_of<std::int16_t>(*source), counting(24));
+  EXPECT_EQ(open_volume(folder / "UnstructuredGrid.vtkhdf")->info().geometry.spacing, (Triple{1, 1, 1}));
+}
+
 TEST(Hdf5Places, Dream3dSamplesAreInTheMiddleOfCells) {
   const TempFolder folder;
   const std::string path = folder / "a.dream3d";
