@@ -183,13 +183,15 @@ void LegacyFile::skip_words(std::uint64_t count) {
 // In text each is a line. In binary its length stands before it, in 1, 2, 4 or 8 bytes as two bits of the first say.
 void LegacyFile::skip_strings(std::uint64_t count) {
   std::string line;
-  for (std::uint64_t n = 0; n < count && position_ < file_->size(); ++n) {
+  for (std::uint64_t n = 0; n < count; ++n) {
     if (is_text_) {
-      next_line(line);
+      if (!next_line(line)) return;
       continue;
     }
     constexpr std::uint64_t kLengthBits = 0x3f;
-    const auto first = static_cast<std::uint64_t>(take());
+    const int c = take();
+    if (c < 0) return;
+    const auto first = static_cast<std::uint64_t>(c);
     std::uint64_t length = first & kLengthBits;
     for (int more = (1 << (3 - (first >> 6))) - 1; more > 0; --more) {
       length = length << 8 | static_cast<std::uint64_t>(take() & 0xff);

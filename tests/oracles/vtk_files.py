@@ -52,7 +52,8 @@ def surface(kind):
         mesh.SetLines(lines)
         names = vtk.vtkStringArray()
         names.SetName("names")
-        names.InsertNextValue("a b\nc")
+        for text in ("a b\nc", "", "x" * 100, "y" * 20000):  # lengths of which VTK writes in 1, 2 and 4 bytes
+            names.InsertNextValue(text)
         mesh.GetFieldData().AddArray(names)
     values = numpy_to_vtk(np.arange(mesh.GetNumberOfPoints()) * 0.25, deep=True)
     values.SetName("my values")
@@ -270,7 +271,8 @@ class Volumes:
         half = 0.5 if cells else 0
         first = np.array(ORIGIN) + np.array(SPACING) * (np.array(extent) + half)
         path = os.path.join(self.folder, f"{kind}{cells}.vti")
-        for mode, compressor, bits in itertools.product(("Ascii", "Binary", "Appended"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64)):
+        for mode, compressor, bits in itertools.product(
+                ("Ascii", "Binary", "Appended"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64)):
             writer = vtk.vtkXMLImageDataWriter()
             writer.SetInputData(data)
             writer.SetFileName(path)
