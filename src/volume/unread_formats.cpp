@@ -22,7 +22,7 @@ struct Unread {
   std::string_view way;
 };
 
-constexpr std::array<Unread, 50> kUnread{{
+constexpr auto kUnread = std::to_array<Unread>({
     {0, "CDF\x01"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
     {0, "CDF\x02"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
     {0, "CDF\x05"sv, "netCDF", "nccopy -k nc4 writes HDF5, which is read"},
@@ -72,11 +72,13 @@ constexpr std::array<Unread, 50> kUnread{{
     {0, "ply\n"sv, "a mesh in PLY", kMesh},
     {0, "ply\r"sv, "a mesh in PLY", kMesh},
     {0, "solid "sv, "a mesh in STL", kMesh},
+    {0, "# HyperSurface"sv, "a surface of Amira", "write it as PLY or STL for isoweave simplify"},
+    {0, "\xff\xff\xfe"sv, "a surface of FreeSurfer", "mris_convert writes it as STL for isoweave simplify"},
     {0, "glTF"sv, "a mesh in GLB", kMesh},
     {0, "OFF\n"sv, "a mesh in OFF", kMesh},
     {0, "OFF "sv, "a mesh in OFF", kMesh},
     {0, "ncaa\n"sv, "VFF", "--raw ...:big reads the samples behind its header"},
-}};
+});
 
 std::string sentence(std::string_view what, std::string_view way) {
   return std::string(what) + (way.empty() ? "" : ": ") + std::string(way);

@@ -239,6 +239,10 @@ TEST(Unread, AreToldWithTheWayRound) {
       {"solid thing\n", "simplify"},
       {std::string("glTF\2\0\0\0", 8), "simplify"},
       {"OFF\n3 1 0\n", "simplify"},
+      {"# HyperSurface 0.1 ASCII\n", "PLY or STL"},
+      {"\xff\xff\xfe"
+       "created by",
+       "mris_convert"},
       {"some words\n", "found text"},
       {std::string("\1\2\3\4", 4), "found other content"}};
   for (const auto& [content, what] : files) {
