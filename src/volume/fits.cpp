@@ -111,7 +111,8 @@ OpenedVolume open_fits(const FilePtr& file, const OpenOptions& options) {
     bad_input(info.path, "a BSCALE other than 0", number_text(info.slope));
   }
   if (header.values.contains("BLANK")) {
-    info.notes.push_back("BLANK is not applied: samples of " + header.values.find("BLANK")->second + " are values");
+    info.notes.push_back("BLANK is not applied: samples of " + quoted(header.values.find("BLANK")->second) +
+                         " are values");
   }
   info.notes.emplace_back("coordinates of the sky and of spectra are not applied: the spacing is taken as 1");
   volume.samples = samples_in(file, header.data + before, checked_volume_bytes(info));
