@@ -31,10 +31,17 @@ std::string sharp_text(const TriangleAngles& angles) {
                      100 * static_cast<double>(angles.under_5_degrees) / static_cast<double>(angles.triangles));
 }
 
-std::string check_text(const MeshCheck& check, const std::string& path) {
+// Vertices that rounding has put into one place make a surface closed by its numbers which is none to look at.
+std::string coincident_text(const MeshCheck& check) {
+  if (check.coincident_triangles == 0) return "";
+  return fmt::format(", {} triangles with corners in one place", grouped(check.coincident_triangles));
+}
+
+std::string check_text(const MeshCheck& check, const TriangleMesh& mesh, const std::string& path) {
   std::string text = fmt::format(
-      "{}: {}{}\n", printable(path), state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),
-      check.misoriented_edges == 0 ? ", consistently oriented" : ", not consistently oriented");
+      "{}: {}{}{}\n", printable(path),
+      state_text(check.open_edges, check.nonmanifold_edges, check.nonmanifold_vertices),
+      check.misoriented_edges == 0 ? ", consistently oriented" : ", not consistently oriented", coincident_text(check));
   const auto line = [&](std::string_view name, const std::string& value) {
     text += fmt::format("{:<22}{:>18}\n", name, value);
   };
@@ -46,6 +53,8 @@ std::string check_text(const MeshCheck& check, const std::string& path) {
   line("non-manifold vertices", grouped(check.nonmanifold_vertices));
   line("misoriented edges", grouped(check.misoriented_edges));
   line("degenerate triangles", grouped(check.degenerate_triangles));
+  line("coincident corners", grouped(check.coincident_triangles));
+  line("triangles of area 0", grouped(check.zero_area_triangles));
   line("components", grouped(check.components));
   line("Euler number", std::to_string(check.euler));
   line("area", fmt::format("{:.9g}", check.area));
@@ -53,6 +62,11 @@ std::string check_text(const MeshCheck& check, const std::string& path) {
   line("smallest angle", degrees_text(check.angles.smallest));
   line("largest angle", degrees_text(check.angles.largest));
   line("angles under 5 degrees", sharp_text(check.angles));
+  line("unit", mesh.unit.empty() ? "not said" : mesh.unit);
+  line("space", mesh.space.empty() ? "not said" : mesh.space);
+  if (mesh.offset != std::array<double, 3>{0, 0, 0}) {
+    line("offset", fmt::format("{},{},{}", mesh.offset[0], mesh.offset[1], mesh.offset[2]));
+  }
   line("digest", digest_text(check.digest));
   return text;
 }
@@ -96,8 +110,9 @@ void run_check(const CheckArguments& arguments) {
   const TriangleMesh& mesh = input.mesh;
   const MeshCheck check = check_mesh(mesh);
   Json json = check_json(check, arguments.path);
+  json.update(place_json(mesh));
   tell_input(arguments, input, check, json);
-  std::string text = check_text(check, arguments.path);
+  std::string text = check_text(check, mesh, arguments.path);
   if (arguments.self_intersections) {
     const SelfIntersections found = count_self_intersections(mesh, kListedPairs, threads);
     json["self_intersections"] = self_intersections_json(found);

@@ -65,6 +65,17 @@ TriangleMesh read_surface(const std::string& path) {
   return mesh;
 }
 
+// Brings B to where A is, and says so.
+std::vector<std::string> match(TriangleMesh& b, const TriangleMesh& a, const CompareArguments& arguments) {
+  try {
+    std::vector<std::string> notes = match_place(b, a);
+    for (std::string& note : notes) print_note(note = arguments.b + ": " + note);
+    return notes;
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: cannot be compared with {}: {}", arguments.b, arguments.a, error.what()));
+  }
+}
+
 void run_compare(const CompareArguments& arguments) {
   DistanceOptions options;
   options.samples = static_cast<std::uint64_t>(parse_count("--samples", arguments.samples));
@@ -79,11 +90,12 @@ void run_compare(const CompareArguments& arguments) {
   check_different({arguments.b, arguments.distances});
   exit_on_signal();
   TriangleMesh a = read_surface(arguments.a);
-  const TriangleMesh b = read_surface(arguments.b);
+  TriangleMesh b = read_surface(arguments.b);
+  const std::vector<std::string> notes = match(b, a, arguments);
   const MeshDistance distance = compare_meshes(a, b, options);
   if (!arguments.distances.empty()) write_distances(arguments, a, b, options.threads);
   if (!arguments.json) {
-    std::string text = distances_text(distance, 1, "distance");
+    std::string text = distances_text(distance, 1, a.unit.empty() ? "distance" : "distance in " + a.unit);
     if (voxel > 0) text += distances_text(distance, voxel, "in voxels");
     if (options.bins > 0) {
       text += histogram_text(distance.a_to_b, distance.max, "A to B");
@@ -92,6 +104,8 @@ void run_compare(const CompareArguments& arguments) {
     return print_out(text);
   }
   Json json = {{"version", ISOWEAVE_VERSION}, {"a", arguments.a}, {"b", arguments.b}, {"samples", options.samples}};
+  json.update(place_json(a));
+  json["notes"] = notes;
   json.update(distances_json(distance, 1));
   if (voxel > 0) {
     json["voxel"] = voxel;

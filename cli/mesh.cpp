@@ -67,6 +67,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["space"] = space_text(info.geometry, options.space);
+  json["offset"] = file.offset;
   return json;
 }
 
@@ -87,8 +88,9 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
     full.levels.clear();
     full.normals = Normals::kAbsent;
     full.values = nullptr;
-    MeshInMemory surface;
-    mesh_volume(*open_input(arguments.input), surface, full, control);
+    const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
+    MeshInMemory surface(mesh_offset(volume->info(), options.space));
+    mesh_volume(*volume, surface, full, control);
     contents.full = surface.copy();
   }
   return contents;
@@ -118,7 +120,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, Sli
                   {},
                   {}};
   task.file = [&](std::int64_t label) {
-    MeshFileOptions file = file_options(arguments, arguments.stop, options, info.geometry);
+    MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
                      fmt::format("label {} {} {} quality {}{}", label, options.closed ? "closed" : "open",
                                  stop_text(arguments.stop, kUsualError, 0), arguments.quality, smooth_text(options))};
@@ -154,7 +156,7 @@ class MeshJob {
     Evidence evidence(arguments_.run, arguments_.page);
     if (arguments_.iso == "auto") find_iso();
     find_target();
-    file_ = file_options(arguments_, arguments_.stop, options_, info_.geometry);
+    file_ = file_options(arguments_, arguments_.stop, options_, info_);
     if (resume_ == nullptr) foresee();
     if (arguments_.dry_run) return tell_forecast(evidence);
     choose();
@@ -193,6 +195,9 @@ class MeshJob {
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
     if (std::isinf(options_.error.value)) options_.error = {most_shape_error(info_), false};
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
+    if (!quiet() && info_.geometry.unit.empty() && has_metric_length(arguments_.stop)) {
+      print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm");
+    }
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
     options_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     if (!arguments_.memory.empty()) control_.memory = parse_bytes("--memory", arguments_.memory);
@@ -248,7 +253,7 @@ class MeshJob {
 
   // How a level is to be written, with its unfinished parts in a folder if there is one.
   MeshFileOptions level_file(std::size_t level, const std::string& folder) const {
-    MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_.geometry);
+    MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_);
     file.parts = folder;
     if (resume_ != nullptr) {
       file.mark = resume_->marks[level];

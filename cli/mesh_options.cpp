@@ -79,13 +79,14 @@ std::string smooth_text(const MeshOptions& options) {
 }
 
 MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
-                             const Geometry& geometry) {
+                             const VolumeInfo& volume) {
   MeshFileOptions file;
   file.normals = options.normals != Normals::kAbsent;
   file.values = !arguments.color_by.empty();
   file.comments = comments(arguments, stop, options);
-  file.unit = geometry.unit;
-  file.space = space_text(geometry, options.space);
+  file.unit = volume.geometry.unit;
+  file.space = space_text(volume.geometry, options.space);
+  file.offset = mesh_offset(volume, options.space);
   return mesh_file_options(arguments.output, std::move(file));
 }
 

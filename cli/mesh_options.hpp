@@ -30,6 +30,6 @@ std::string smooth_text(const MeshOptions& options);
 
 // How the mesh of a level is to be written.
 MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
-                             const Geometry& geometry);
+                             const VolumeInfo& volume);
 
 }  // namespace isoweave::cli

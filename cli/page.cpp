@@ -93,10 +93,12 @@ void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageCon
                 const RunControl& control) {
   const auto most_triangles = static_cast<std::uint64_t>(parse_count("--page-triangles", page.triangles));
   const MeshCheck check = check_mesh(contents.mesh);
+  const Json place = place_json(contents.mesh);
   const std::string full_note = std::move(contents.full_note);
   PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
   Json& json = report["page"];
   json["check"] = check_json(check, report["output"]);
+  json["check"].update(place);
   json["surfaces"] = surfaces_json(shown.surfaces);
   json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
   json["notes"] = notes_json(shown, check, report, full_note);

@@ -81,9 +81,11 @@ Json packed_surface(PageSurface surface) {
   std::vector<std::uint32_t> numbers;
   const std::size_t used = reorder(surface.mesh, indices, numbers);
   surface.mesh.triangles = {};
+  std::array<double, 3> origin = grid.origin;
+  for (std::size_t axis = 0; axis < 3; ++axis) origin[axis] += surface.mesh.offset[axis];
   return {{"vertices", used},
           {"triangles", indices.size() / 3},
-          {"origin", grid.origin},
+          {"origin", origin},
           {"step", grid.step},
           {"distance", surface.distances.empty() ? Json(nullptr) : Json(largest(surface.distances))},
           {"vertex_data", packed_vertices(surface, grid, numbers, used)},

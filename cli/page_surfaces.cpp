@@ -42,7 +42,7 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const
   RunControl quiet = control;
   quiet.measure = false;
   quiet.progress = nullptr;
-  MeshInMemory result;
+  MeshInMemory result(mesh.offset);
   const SimplifyOptions options{{kMostError * size_of(mesh), false}, Quality::kNormal, triangles};
   simplify_mesh(mesh, result, options, quiet);
   return result.copy();
@@ -120,6 +120,13 @@ std::vector<PageSurface> shown_levels(std::vector<TriangleMesh> finer, std::uint
   return levels;
 }
 
+// Of two offsets one that is not 0 stays: coordinates near it lose nothing.
+void move_to_one_offset(TriangleMesh& a, TriangleMesh& b) {
+  const std::array<double, 3> offset = a.offset == std::array<double, 3>{0, 0, 0} ? b.offset : a.offset;
+  move_to_offset(a, offset);
+  move_to_offset(b, offset);
+}
+
 }  // namespace
 
 PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control) {
@@ -128,6 +135,7 @@ PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, 
   std::optional<TriangleMesh>& full = contents.full;
   if (mesh.triangles.empty()) return page;
   mesh.normals = {};
+  if (full) move_to_one_offset(mesh, *full);
   const bool comparable = full && !full->triangles.empty();
   const Executor executor(control.threads);
   std::optional<measure::TriangleTree> tree;
@@ -136,6 +144,7 @@ PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, 
     page.errors = measured_errors(mesh, *full, *tree, executor);
   }
   const std::size_t finer = contents.finer.size();
+  for (TriangleMesh& level : contents.finer) move_to_offset(level, mesh.offset);
   page.surfaces = shown_levels(std::move(contents.finer), most_triangles);
   page.lacks_finer = page.surfaces.size() < finer;
   page.surfaces.push_back(shown_mesh(std::move(mesh), most_triangles, control));

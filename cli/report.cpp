@@ -144,12 +144,18 @@ Json check_json(const MeshCheck& check, const std::string& path) {
           {"nonmanifold_vertices", check.nonmanifold_vertices},
           {"misoriented_edges", check.misoriented_edges},
           {"degenerate_triangles", check.degenerate_triangles},
+          {"coincident_triangles", check.coincident_triangles},
+          {"zero_area_triangles", check.zero_area_triangles},
           {"components", check.components},
           {"euler", check.euler},
           {"area", number_or_null(check.area)},
           {"volume", number_or_null(check.volume)},
           {"angles", angles_json(check.angles)},
           {"digest", digest_text(check.digest)}};
+}
+
+Json place_json(const TriangleMesh& mesh) {
+  return {{"unit", mesh.unit}, {"space", mesh.space}, {"offset", mesh.offset}};
 }
 
 Json self_intersections_json(const SelfIntersections& found) {

@@ -36,6 +36,9 @@ Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
 // What a mesh is, by its triangles alone.
 Json check_json(const MeshCheck& check, const std::string& path);
 
+// Where a mesh lies: its unit and space, empty where they are not said, and its offset.
+Json place_json(const TriangleMesh& mesh);
+
 Json self_intersections_json(const SelfIntersections& found);
 
 // Distances between two meshes A and B, in lengths of `unit`.

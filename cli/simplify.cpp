@@ -37,23 +37,32 @@ struct SimplifyArguments {
   bool weld = false;
 };
 
-Json report_json(const MeshReport& report, const SimplifyArguments& arguments) {
+Json report_json(const MeshReport& report, const SimplifyArguments& arguments, const Json& place) {
   std::string format = std::filesystem::path(arguments.input).extension().string();
   if (format.starts_with('.')) format.erase(0, 1);
-  Json json = run_json(report, {{"path", arguments.input},
-                                {"format", format},
-                                {"triangles", report.triangles_extracted},
-                                {"vertices", report.vertices_extracted}});
+  Json input = {{"path", arguments.input},
+                {"format", format},
+                {"triangles", report.triangles_extracted},
+                {"vertices", report.vertices_extracted}};
+  input.update(place);
+  Json json = run_json(report, std::move(input));
   json["quality"] = arguments.quality;
   json["output"] = level_outputs(arguments.output, arguments.stop).back().name();
   return json;
 }
 
+bool holds_values(const OutputOptions& output) {
+  return output.to_stdout.empty() ? isoweave::holds_values(mesh_format(output.path)) : output.to_stdout == "ply";
+}
+
 // How the mesh of a level is to be written.
-MeshFileOptions file_options(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles,
-                             bool values) {
+MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleMesh& mesh, std::size_t level,
+                             std::uint64_t triangles) {
   MeshFileOptions file;
-  file.values = values;
+  file.values = !mesh.values.empty() && holds_values(arguments.output);
+  file.unit = mesh.unit;
+  file.space = mesh.space;
+  file.offset = mesh.offset;
   file.comments = {"isoweave " ISOWEAVE_VERSION,
                    fmt::format("simplified, {} quality {}",
                                stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality) +
@@ -69,10 +78,6 @@ void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.vertices_extracted += dropped.vertices;
   if (dropped.components == 0 || report.triangles_dropped < report.triangles_extracted) return;
   report.warnings.push_back(fmt::format("nothing is left: each of {} components is dropped", dropped.components));
-}
-
-bool holds_values(const OutputOptions& output) {
-  return output.to_stdout.empty() ? isoweave::holds_values(mesh_format(output.path)) : output.to_stdout == "ply";
 }
 
 // What the input has and the output will not have.
@@ -104,16 +109,22 @@ PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMe
   return contents;
 }
 
+// Lengths in the unit of the mesh.
+SimplifyOptions simplify_options(const SimplifyArguments& arguments, std::string_view unit) {
+  SimplifyOptions options{stop_error(arguments.stop, "", unit), parse_quality(arguments.quality)};
+  options.max_distance = stop_distance(arguments.stop, unit);
+  options.levels = finer_levels(arguments.stop, unit);
+  options.drop_specks = drops_specks(arguments.stop);
+  return options;
+}
+
 void run_simplify(const SimplifyArguments& arguments) {
   if (!arguments.output.given()) throw CLI::RequiredError("--output");
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   if (!arguments.stop.given()) throw CLI::RequiredError("--error");
-  SimplifyOptions options{stop_error(arguments.stop, "", ""), parse_quality(arguments.quality)};
-  options.max_distance = stop_distance(arguments.stop, "");
-  options.levels = finer_levels(arguments.stop, "");
-  options.drop_specks = drops_specks(arguments.stop);
+  SimplifyOptions options = simplify_options(arguments, "");  // finds out now what is wrong with them
   const ComponentRule rule = component_rule(arguments.components);
   check_page(arguments.page, arguments.output);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
@@ -125,15 +136,20 @@ void run_simplify(const SimplifyArguments& arguments) {
   InputMesh input = read_input_mesh(arguments.input, arguments.weld);
   TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
+  const Json place = place_json(mesh);
+  const std::string unit = mesh.unit;
+  options = simplify_options(arguments, unit);
+  if (!run.quiet && unit.empty() && has_metric_length(arguments.stop)) {
+    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
+  }
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value)) options.error = {most_shape_error(mesh), false};
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = &stop_on_signal();
   Evidence evidence(run, arguments.page);
-  const bool values = !mesh.values.empty() && holds_values(arguments.output);
   const LevelSinks sinks(outputs,
-                         [&](std::size_t level) { return file_options(arguments, level, options.triangles, values); });
+                         [&](std::size_t level) { return file_options(arguments, mesh, level, options.triangles); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
@@ -141,7 +157,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   add_seams(arguments, mesh, report);
   add_dropped(dropped, report);
   printer.finish();
-  Json json = report_json(report, arguments);
+  Json json = report_json(report, arguments, place);
   if (arguments.weld) json["input"]["welded"] = input.welded;
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   json["notes"] = sinks.last().notes();
@@ -152,7 +168,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   print_notes(sinks.last());
   print_dropped(report);
   print_levels(report, outputs);
-  print_target(report, options.triangles, options.error, "");
+  print_target(report, options.triangles, options.error, unit);
   print_summary(report, outputs.back().name(), 0);
 }
 

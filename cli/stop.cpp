@@ -47,6 +47,13 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
   return levels;
 }
 
+bool has_metric_length(const StopOptions& stop) {
+  const auto is_metric = [](const std::string& text) { return text.ends_with('m'); };
+  const std::vector<StopOptions> levels = stop_levels(stop);
+  return is_metric(stop.max_distance) ||
+         std::ranges::any_of(levels, [&](const StopOptions& level) { return is_metric(level.error); });
+}
+
 bool drops_specks(const StopOptions& stop) {
   return parse_choice<bool>("--specks", stop.specks, {{"keep", false}, {"drop", true}});
 }

@@ -32,6 +32,9 @@ Length stop_error(const StopOptions& stop, const std::string& usual, std::string
 // The meshes that are asked for, one for each level of detail, finest first: how each would be asked for alone.
 std::vector<StopOptions> stop_levels(const StopOptions& stop);
 
+// Whether a length is given in a metric unit, and not in voxels or without a unit.
+bool has_metric_length(const StopOptions& stop);
+
 bool drops_specks(const StopOptions& stop);
 
 // 0: no guarantee is asked for.

@@ -87,6 +87,9 @@ void run_view(ViewArguments arguments) {
         "error to show (isoweave view --before MESH, or --html of the run itself).";
   } else {
     contents.full = read_mesh(arguments.before);
+    for (const std::string& note : match_place(*contents.full, contents.mesh)) {
+      if (!arguments.quiet) print_note(arguments.before + ": " + note);
+    }
     report["before"] = arguments.before;
   }
   if (!reported) report["version"] = ISOWEAVE_VERSION;

@@ -149,7 +149,7 @@ class SweepWatch final : public Watch {
 std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run) {
   if (!watch.given()) return nullptr;
   const int port = parse_port("--watch", watch.port);
-  const World world(run.volume.geometry, run.options.space);
+  const World world(run.volume.geometry, run.options.space, mesh_offset(run.volume, run.options.space));
   try {
     auto started = std::make_unique<SweepWatch>(run, world, port);
     print_note("watch at " + started->url());

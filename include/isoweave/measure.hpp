@@ -29,6 +29,8 @@ struct MeshCheck {
   std::uint64_t unused_vertices = 0;
   std::uint64_t triangles = 0;
   std::uint64_t degenerate_triangles = 0;  // with a repeated vertex
+  std::uint64_t coincident_triangles = 0;  // of the others, with two corners at the same coordinates
+  std::uint64_t zero_area_triangles = 0;   // of all, with an area of 0
   std::uint64_t open_edges = 0;            // with one triangle
   std::uint64_t nonmanifold_edges = 0;     // with three or more triangles
   std::uint64_t misoriented_edges = 0;     // with exactly two triangles, which run along it in the same direction
@@ -76,6 +78,10 @@ SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t
 // (but for chance) when a coordinate or an orientation differs. -0 counts as 0.
 std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c);
 
+// The same for corners relative to the offset of a mesh: of the bits of the float64 sums, or, where the offset is 0, of
+// the float32 coordinates as above.
+std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& offset);
+
 // 16 hexadecimal digits.
 std::string digest_text(std::uint64_t digest);
 
@@ -98,8 +104,9 @@ struct MeshDistance {
 };
 
 // Samples each mesh by area and finds exact point-to-triangle distances to the other through a bounding volume
-// hierarchy. Same result for any thread count; a mesh without area is sampled by triangle. Throws
-// std::invalid_argument when a mesh has no triangles, an index out of range or a coordinate that is not finite.
+// hierarchy. Same result for any thread count; a mesh without area is sampled by triangle. Offsets are heeded, units
+// and spaces are not (match_place, mesh.hpp). Throws std::invalid_argument when a mesh has no triangles, an index out
+// of range or a coordinate that is not finite.
 MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options = {});
 
 // The distance of every vertex of a mesh to the nearest point of another, in the meshes' unit. Throws as compare_meshes

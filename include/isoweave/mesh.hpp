@@ -35,8 +35,18 @@ struct TriangleMesh {
 // 3MF (all that is to be built, at its place); told by content, then by name.
 // Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
 // kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always. Values are the property
-// `quality` of PLY.
+// `quality` of PLY. Where a file has more than 32 bits, and rounding to 32 would move a vertex by more than a
+// thousandth of the root of twice the mean triangle area, the mesh gets an offset: the one that the file names, or one
+// near its middle.
 TriangleMesh read_mesh(const std::string& path);
+
+// Makes the coordinates relative to another offset, rounded to 32 bits anew.
+void move_to_offset(TriangleMesh& mesh, const std::array<double, 3>& offset);
+
+// Brings a mesh into the unit of another one, and from LPS to RAS or back, as far as both say what they are in. Returns
+// what was done, and what was assumed where one of them only says it, one line each. Throws std::invalid_argument where
+// one is in index space and the other one is not. The offset stays its own.
+std::vector<std::string> match_place(TriangleMesh& mesh, const TriangleMesh& other);
 
 // A piece of a mesh on its way to a sink.
 struct MeshPiece {
@@ -87,13 +97,18 @@ class MeshSink {
 
   // What a user should know of the finished mesh, one line each: how far coordinates were rounded, say.
   virtual std::vector<std::string> notes() const { return {}; }
+
+  // The coordinates that it wants are relative to this, as those of TriangleMesh are: mesh_volume and simplify_mesh
+  // subtract it in 64 bits before they round to 32. Must stay as it is.
+  virtual std::array<double, 3> offset() const { return {0, 0, 0}; }
 };
 
 // Keeps a mesh in memory: 12 bytes for each vertex, normal and triangle, 4 for each value; addresses, not memory, are
 // reserved for up to as much again. In a run all threads fill it. RunControl::memory does not count it.
 class MeshInMemory final : public MeshSink {
  public:
-  MeshInMemory();
+  // offset: of the mesh; mesh_offset (pipeline.hpp) tells one for a volume.
+  explicit MeshInMemory(const std::array<double, 3>& offset = {0, 0, 0});
   ~MeshInMemory() override;
   MeshInMemory(MeshInMemory&&) noexcept;
   MeshInMemory& operator=(MeshInMemory&&) noexcept;
@@ -104,6 +119,7 @@ class MeshInMemory final : public MeshSink {
 
   bool has_room() const override { return true; }
   void finish() override {}
+  std::array<double, 3> offset() const override { return offset_; }
 
   // What there is so far, until the next piece comes.
   std::span<const Point> vertices() const;
@@ -116,6 +132,7 @@ class MeshInMemory final : public MeshSink {
  private:
   struct Arrays;
   std::unique_ptr<Arrays> arrays_;
+  std::array<double, 3> offset_;
 };
 
 struct MeshFileOptions {
@@ -128,9 +145,13 @@ struct MeshFileOptions {
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 
   // What the coordinates are, as far as it is known; said in the file where the format has a place for it.
-  std::string unit{};                     // "mm", "um", "nm" or "m"
-  std::string space{};                    // "LPS", "RAS" or "index"
-  std::array<double, 3> offset{0, 0, 0};  // of all coordinates, as that of TriangleMesh
+  std::string unit{};   // "mm", "um", "nm" or "m"
+  std::string space{};  // "LPS", "RAS" or "index"
+
+  // Of all coordinates, as that of TriangleMesh: pieces are relative to it. PLY, OBJ, OFF and VTP hold the sums in 64
+  // bits then, GLB, 3MF and packed .precomputed a translation; STL and plain .precomputed round the sums to 32 bits,
+  // and a note says how far that moves vertices.
+  std::array<double, 3> offset{0, 0, 0};
 
   // .glb: positions rounded to 16 bits of the longest side of their box (KHR_mesh_quantization), packed by
   // meshoptimizer (EXT_meshopt_compression). .precomputed: neuroglancer's multi-resolution format, one level of detail,
@@ -167,8 +188,8 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
 std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
                                                         std::span<const MeshFileOptions> levels);
 
-// Writes a mesh that is there as a whole, through open_mesh_file, with its normals and values if the options ask for
-// them.
+// Writes a mesh that is there as a whole, through open_mesh_file, with its offset, and with its normals and values if
+// the options ask for them. Its unit and space are those of the mesh where the options do not name others.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options = {});
 
 // Writes a mesh to an open descriptor, a pipe say, when it is finished; until then it is in files without names in

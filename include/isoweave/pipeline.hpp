@@ -36,6 +36,11 @@ Length parse_length(std::string_view text, std::string_view unit);
 // index * spacing without origin and direction.
 enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
 
+// The offset with which to open a sink for a mesh of this volume (MeshFileOptions::offset, MeshInMemory). All 0 unless
+// the volume lies so far from the origin that rounding to 32 bits would move vertices by more than a thousandth of the
+// smallest spacing: then the place of its first sample, so that coordinates are those of the same volume at the origin.
+std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space);
+
 // Normals of the vertices: none; gradients of the samples, which merge as vertices do; or gradients that the
 // simplification keeps as well: an edge collapses where the error of position and normal is least, and only as long as
 // that is within the error (Hoppe, 1999), where a normal of unit length that is off by 1 counts as half a mean voxel.

@@ -144,7 +144,8 @@ std::unique_ptr<SliceSource> crop_volume(std::unique_ptr<SliceSource> volume, co
 // A smaller volume: every sample is the mean of a block of step x step x step samples, of as many as there are at the
 // upper ends, and lies in the middle of the block. NaN does not count, and is what a block of nothing else gives. Means
 // of 8- and 16-bit integers and of float32 are float32, others float64: they are not rounded. For values, not for
-// labels. Holds one slice of sums and one of the volume. Throws std::invalid_argument for a step below 1.
+// labels. Holds one slice of sums, of float64 two, and one of the volume. Throws std::invalid_argument for a step
+// below 1.
 std::unique_ptr<SliceSource> downsample_volume(std::unique_ptr<SliceSource> volume, std::int64_t step);
 
 inline constexpr int kUsualSmoothing = 4;  // passes; docs/labels.md has the measurements

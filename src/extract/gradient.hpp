@@ -26,18 +26,19 @@ struct SampleRow {
   }
 };
 
-// Central difference per unit length, one-sided where a neighbour is missing or NaN, 0 where both are.
+// Central difference per unit length, one-sided where a neighbour is missing or NaN, 0 where both are; of the samples
+// times `scale`.
 template <class Samples>
 ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std::int64_t, 3>& at,
-                                    const std::array<double, 3>& spacing) {
-  const double here = samples.row(at[1], at[2])[at[0]];
+                                    const std::array<double, 3>& spacing, double scale) {
+  const double here = scale * samples.row(at[1], at[2])[at[0]];
   double slope[3] = {0, 0, 0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::array<std::int64_t, 3> left = at, right = at;
     --left[axis];
     ++right[axis];
-    const double low = samples.row(left[1], left[2])[left[0]];
-    const double high = samples.row(right[1], right[2])[right[0]];
+    const double low = scale * samples.row(left[1], left[2])[left[0]];
+    const double high = scale * samples.row(right[1], right[2])[right[0]];
     const bool has_low = low == low, has_high = high == high;
     const int steps = has_low + has_high;
     if (steps > 0) slope[axis] = ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing[axis]);
@@ -64,6 +65,18 @@ struct Crossing {
   bool low_inside;
 };
 
+// The gradient at a crossing, of the samples times `scale`.
+template <class Samples>
+ISOWEAVE_HD inline Vec3 crossing_gradient(const Samples& samples, const Crossing& crossing,
+                                          const std::array<double, 3>& spacing, double scale) {
+  std::array<std::int64_t, 3> high = crossing.low;
+  ++high[crossing.axis];
+  const Vec3 g0 = gradient_at(samples, crossing.low, spacing, scale);
+  return g0 + crossing.t * (gradient_at(samples, high, spacing, scale) - g0);
+}
+
+ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
+
 // Its normal, outwards.
 template <class Samples>
 ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& crossing,
@@ -73,10 +86,12 @@ ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& cross
     cap[crossing.axis] = crossing.low_inside ? 1.0F : -1.0F;
     return cap;
   }
-  std::array<std::int64_t, 3> high = crossing.low;
-  ++high[crossing.axis];
-  const Vec3 g0 = gradient_at(samples, crossing.low, spacing);
-  const Vec3 g = g0 + crossing.t * (gradient_at(samples, high, spacing) - g0);
+  Vec3 g = crossing_gradient(samples, crossing, spacing, 1);
+  if (!is_finite(g)) {  // a difference is beyond the largest number: directions are those of smaller samples
+    constexpr double kSmall = 1.0 / (std::uint64_t{1} << 62) / (std::uint64_t{1} << 62);
+    const Vec3 small = crossing_gradient(samples, crossing, spacing, kSmall);
+    if (is_finite(small)) g = small;
+  }
   return unit_point(above ? -g : g);
 }
 

@@ -18,10 +18,18 @@ struct IsoRule {
 // Crossings keep this distance, in samples, from the lattice points: no degenerate triangles, no snapping.
 inline constexpr double kCrossingMargin = 1.0 / 256;
 
+// The part of the way from f0 to f1 at which iso lies. Differences beyond the largest number are taken of the halves;
+// the quotient is 0 or no number then, which it hardly ever is otherwise.
+ISOWEAVE_HD inline double part_between(double f0, double f1, double iso) {
+  const double part = (iso - f0) / (f1 - f0);
+  if (part < 0 || part > 0) return part;
+  return (iso / 2 - f0 / 2) / (f1 / 2 - f0 / 2);
+}
+
 // Where along a lattice edge from f0 to f1 the surface crosses, in [1/256, 255/256]. A sample outside the volume is
 // given as NaN; it and a NaN sample let the surface hug the inside sample.
 ISOWEAVE_HD inline double crossing_parameter(double f0, double f1, double iso, bool inside0) {
-  const double t = (iso - f0) / (f1 - f0);
+  const double t = part_between(f0, f1, iso);
   if (t != t) return inside0 ? kCrossingMargin : 1 - kCrossingMargin;
   if (t < kCrossingMargin) return kCrossingMargin;
   if (t > 1 - kCrossingMargin) return 1 - kCrossingMargin;

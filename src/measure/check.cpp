@@ -183,8 +183,16 @@ class Checker {
 
  private:
   void count_degenerate() {
-    const auto count = std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), is_degenerate);
-    result_.degenerate_triangles = static_cast<std::uint64_t>(count);
+    for (const Triangle& t : mesh_.triangles) {
+      const Point& a = mesh_.vertices[t[0]];
+      const Point& b = mesh_.vertices[t[1]];
+      const Point& c = mesh_.vertices[t[2]];
+      if (is_degenerate(t)) {
+        ++result_.degenerate_triangles;
+      } else if (a == b || b == c || c == a) {
+        ++result_.coincident_triangles;
+      }
+    }
   }
 
   void count_meetings() {
@@ -220,11 +228,13 @@ class Checker {
     measure::AngleSurvey angles;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const measure::TriangleCorners c = measure::corners_of(mesh_, t);
-      result_.area += measure::area_of(c);
+      const double area = measure::area_of(c);
+      result_.area += area;
+      if (area == 0) ++result_.zero_area_triangles;
       six_volumes += measure::dot(c[0] - apex, measure::cross(c[1] - apex, c[2] - apex));
       const Triangle& v = mesh_.triangles[t];
       if (!is_degenerate(v)) angles.add(c);
-      result_.digest += triangle_digest(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
+      result_.digest += triangle_digest(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]], mesh_.offset);
     }
     result_.volume = six_volumes / 6;
     result_.angles = angles.result();

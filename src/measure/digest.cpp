@@ -1,6 +1,7 @@
 // The digest of a triangle. The digest of a mesh is the sum over its triangles, modulo 2^64.
 #include <array>
 #include <bit>
+#include <compare>
 
 #include "isoweave/measure.hpp"
 #include "measure/splitmix64.hpp"
@@ -39,6 +40,30 @@ std::uint64_t mix_corners(const CornerBits& p, const CornerBits& q, const Corner
   return mix_corner(mix_corner(mix_corner(0, p), q), r);
 }
 
+// The same of 64 bits.
+struct WideCornerBits {
+  std::array<std::uint64_t, 3> bits{};
+
+  friend auto operator<=>(const WideCornerBits&, const WideCornerBits&) = default;
+};
+
+WideCornerBits bits_of(const Point& p, const std::array<double, 3>& offset) {
+  WideCornerBits corner;
+  // Adding 0 makes -0 to 0.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    corner.bits[axis] = std::bit_cast<std::uint64_t>(offset[axis] + double{p[axis]} + 0.0);
+  }
+  return corner;
+}
+
+std::uint64_t mix_corners(const std::array<WideCornerBits, 3>& corners, std::size_t first) {
+  std::uint64_t state = 0;
+  for (std::size_t n = first; n < first + 3; ++n) {
+    for (const std::uint64_t bits : corners[n % 3].bits) state = measure::splitmix64(state ^ bits);
+  }
+  return state;
+}
+
 }  // namespace
 
 // Of the three rotations counts the one that begins with the smallest corner; where two corners are equal and smallest,
@@ -51,6 +76,15 @@ std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c) {
   const std::size_t third = first > 0 ? first - 1 : 2;
   if (corners[third] == corners[first]) return mix_corners(corners[third], corners[first], corners[second]);
   return mix_corners(corners[first], corners[second], corners[third]);
+}
+
+std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& offset) {
+  if (offset == std::array<double, 3>{0, 0, 0}) return triangle_digest(a, b, c);
+  const std::array<WideCornerBits, 3> corners{bits_of(a, offset), bits_of(b, offset), bits_of(c, offset)};
+  std::size_t first = corners[1] < corners[0] ? 1 : 0;
+  if (corners[2] < corners[first]) first = 2;
+  const std::size_t before = (first + 2) % 3;
+  return mix_corners(corners, corners[before] == corners[first] ? before : first);
 }
 
 std::string digest_text(std::uint64_t digest) {

@@ -121,9 +121,23 @@ void check_arguments(const TriangleMesh& mesh) {
   measure::require_finite_mesh(mesh);
 }
 
+// One that there is: coordinates near it lose nothing by being made relative to it.
+std::array<double, 3> common_offset(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.offset == std::array<double, 3>{0, 0, 0} ? b.offset : a.offset;
+}
+
+TriangleMesh at_offset(TriangleMesh mesh, const std::array<double, 3>& offset) {
+  move_to_offset(mesh, offset);
+  return mesh;
+}
+
 }  // namespace
 
 MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options) {
+  if (a.offset != b.offset) {
+    const std::array<double, 3> offset = common_offset(a, b);
+    return compare_meshes(at_offset(a, offset), at_offset(b, offset), options);
+  }
   check_arguments(a);
   check_arguments(b);
   if (options.samples == 0) throw std::invalid_argument("expected at least one sample");
@@ -148,6 +162,10 @@ MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const 
 std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads) {
   check_arguments(mesh);
   check_arguments(to);
+  if (mesh.offset != to.offset) {
+    const std::array<double, 3> offset = common_offset(mesh, to);
+    return vertex_distances(at_offset(mesh, offset), at_offset(to, offset), threads);
+  }
   const Executor executor(threads);
   const measure::TriangleTree tree(to, executor);
   std::vector<float> distances(mesh.vertices.size());

@@ -19,7 +19,9 @@ struct RunIdentity {
 // What the surface that is extracted depends on.
 std::string surface_text(const VolumeInfo& volume, const MeshOptions& options);
 
-RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options);
+// offset: of the output.
+RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options,
+                        const std::array<double, 3>& offset = {0, 0, 0});
 
 // What was read of a file that somebody wrote meanwhile may be of two volumes: throws BadInput when the volume is not
 // as it was when the run began.

@@ -65,7 +65,7 @@ LabelSweep::LabelSweep(const SliceWindow& map, const Region& box, const LabelSin
       executor_(executor),
       box_(map, box, label.label),
       field_(box_, mask_options(options), executor_, false),
-      world_(map.info().geometry, options.space),
+      world_(map.info().geometry, options.space, label.sink->offset()),
       sink_(label.sink),
       engine_(field_.info(), label_options(map, box, field_.rule(), options, control), world_, std::span(&sink_, 1),
               executor_, control.stop),

@@ -139,6 +139,9 @@ class LabelsSweep {
     total.schedule = control_.schedule == Schedule::kAutomatic ? Schedule::kLocal : control_.schedule;
     total.error = length_in(volume_, options_.error);
     warn_of_space(volume_, options_, total);
+    std::vector<MeshSink*> sinks;
+    for (const Lane& lane : lanes_) sinks.push_back(lane.label->sink);
+    warn_of_rounding(volume_, options_, common_offset(sinks), total);
   }
 
   // Layers of the next slab: no more triangles of all labels than keep all threads busy, and no more slices of all

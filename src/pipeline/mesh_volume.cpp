@@ -35,10 +35,11 @@ class VolumeSweep {
       : volume_(checked_volume(source.info())),
         options_(options),
         control_(control),
+        offset_(common_offset(sinks)),
         executor_(control.threads),
         field_(source, options, executor_, control.measure),
         voxel_(mean_voxel(volume_.geometry)),
-        world_(volume_.geometry, options.space),
+        world_(volume_.geometry, options.space, offset_),
         simplifies_(simplifies(volume_, options)),
         level_errors_(level_errors(options.levels, error(), voxel_, options.triangles)),
         sinks_(sinks.begin(), sinks.end()),
@@ -148,6 +149,7 @@ class VolumeSweep {
     report_.levels.resize(level_errors_.size());
     for (std::size_t n = 0; n < level_errors_.size(); ++n) report_.levels[n].error = level_errors_[n];
     warn_of_space(volume_, options_, report_);
+    warn_of_rounding(volume_, options_, offset_, report_);
   }
 
   // What the next slab may be: layers, going by the one before and by the memory there is, slices to be read ahead, and
@@ -398,7 +400,9 @@ class VolumeSweep {
   const VolumeInfo volume_;
   const MeshOptions& options_;
   const RunControl& control_;
-  const RunIdentity identity_ = identity_of(volume_, options_);  // when the run begins: a file may change meanwhile
+  const std::array<double, 3> offset_;  // of the sinks
+  const RunIdentity identity_ =
+      identity_of(volume_, options_, offset_);  // when the run begins: a file may change meanwhile
   const std::uint64_t resident_ = control_.memory > 0 ? resident_process_bytes() : 0;
   const Executor executor_;
   SurfaceField field_;

@@ -77,6 +77,7 @@ class MeshRun {
         options_(options),
         executor_(control.threads),
         a0_(mean_face(mesh, executor_)),
+        world_(mesh.offset, common_offset(sinks)),
         error_(options.error.value * (options.error.voxels ? std::sqrt(a0_) : 1)),
         level_errors_(level_errors(options.levels, error_, std::sqrt(a0_), options.triangles)),
         simplifier_(simplifier_options(options, control, error_, a0_, level_errors_,
@@ -125,6 +126,10 @@ class MeshRun {
     report_.vertices_extracted = mesh_.vertices.size();
     report_.locked_vertices = simplifier_.zone().locked;
     report_simplifier(simplifier_, report_);
+    if (world_.offset() != mesh_.offset) {
+      report_.warnings.push_back(
+          "coordinates were rounded to 32 bits anew, as the sink was opened with another offset than the mesh has");
+    }
     if (surface_.dropped() > 0) {
       report_.warnings.push_back(std::to_string(surface_.dropped()) + " triangles that repeat a vertex are left out");
     }
@@ -153,9 +158,9 @@ class MeshRun {
   const SimplifyOptions& options_;
   const Executor executor_;
   const double a0_;
+  const World world_;
   const double error_;
   const std::vector<double> level_errors_;
-  const World world_;
   Simplifier simplifier_;
   std::optional<CountTarget> target_;
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level

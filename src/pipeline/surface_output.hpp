@@ -130,7 +130,7 @@ class SurfaceOutput {
       std::uint64_t joins = 0;
       for (std::size_t n = begin; n < end; ++n) {
         const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
-        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point);
+        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point, world_.offset());
         for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
       }
       digest_.fetch_add(digest, std::memory_order_relaxed);

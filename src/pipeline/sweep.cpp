@@ -8,10 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "isoweave/error.hpp"
+#include "pipeline/world.hpp"
 #include "slab/lattice.hpp"
 
 namespace isoweave {
@@ -157,6 +159,28 @@ void warn_of_space(const VolumeInfo& volume, const MeshOptions& options, MeshRep
   const bool turned = options.space == OutputSpace::kLps || options.space == OutputSpace::kRas;
   if (!turned || volume.geometry.space != Space::kUnknown) return;
   report.warnings.push_back(volume.path + ": the file does not say which space it is in; coordinates are kept");
+}
+
+void warn_of_rounding(const VolumeInfo& volume, const MeshOptions& options, const std::array<double, 3>& offset,
+                      MeshReport& report) {
+  const bool has_offset = offset != std::array<double, 3>{0, 0, 0};
+  const double moved = rounding_of_places(volume, options.space, has_offset);
+  if (!(has_offset || mesh_offset(volume, options.space) != offset) || !(moved > most_rounding(volume))) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << volume.path << ": lies so far from the origin that coordinates of " << (has_offset ? 64 : 32)
+       << " bits move vertices by up to " << moved;
+  if (!has_offset) text << ", as the sink was opened without the offset of the volume";
+  report.warnings.push_back(text.str());
+}
+
+std::array<double, 3> common_offset(std::span<MeshSink* const> sinks) {
+  for (const MeshSink* sink : sinks) {
+    if (sink->offset() != sinks.front()->offset()) {
+      throw std::invalid_argument("sinks: expected the same offset of all, found several");
+    }
+  }
+  return sinks.empty() ? std::array<double, 3>{0, 0, 0} : sinks.front()->offset();
 }
 
 VertexExtras vertex_extras(const MeshOptions& options) {

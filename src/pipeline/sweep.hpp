@@ -64,6 +64,13 @@ ZoneOptions zone_options(const VolumeInfo& volume, const MeshOptions& options);
 // A warning when coordinates cannot be turned into the space that is asked for.
 void warn_of_space(const VolumeInfo& volume, const MeshOptions& options, MeshReport& report);
 
+// Where rounding moves vertices by more than it should: the sinks have no offset, or 64 bits are too few.
+void warn_of_rounding(const VolumeInfo& volume, const MeshOptions& options, const std::array<double, 3>& offset,
+                      MeshReport& report);
+
+// That of all sinks. Throws std::invalid_argument where they have several.
+std::array<double, 3> common_offset(std::span<MeshSink* const> sinks);
+
 void check_stop(const RunControl& control);
 
 // Bytes that a run holds for a vertex beside its place.

@@ -11,7 +11,15 @@ namespace isoweave {
 class World {
  public:
   World() = default;  // leaves positions as they are
-  World(const Geometry& geometry, OutputSpace space);
+
+  // offset: that of the output, to which its coordinates are relative.
+  World(const Geometry& geometry, OutputSpace space, const std::array<double, 3>& offset = {0, 0, 0});
+
+  // A mesh that stays where it is and gets another offset.
+  World(const std::array<double, 3>& before, const std::array<double, 3>& offset)
+      : origin_{before[0] - offset[0], before[1] - offset[1], before[2] - offset[2]}, offset_(offset) {}
+
+  const std::array<double, 3>& offset() const { return offset_; }
 
   Point point(Vec3 p) const {
     return {static_cast<float>(dot(rows_[0], p) + origin_.x), static_cast<float>(dot(rows_[1], p) + origin_.y),
@@ -32,8 +40,15 @@ class World {
  private:
   std::array<Vec3, 3> rows_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   std::array<Vec3, 3> cofactors_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  Vec3 origin_;
+  Vec3 origin_;  // relative to the offset
+  std::array<double, 3> offset_{0, 0, 0};
   bool mirrors_ = false;
 };
+
+// The most by which rounding should move a vertex.
+double most_rounding(const VolumeInfo& volume);
+
+// By how much it does at the farthest corner of the volume: to 64 bits or to 32.
+double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_64_bits);
 
 }  // namespace isoweave

@@ -6,11 +6,15 @@
 
 namespace isoweave {
 
+ISOWEAVE_HD inline bool is_infinite(double x) { return x == x && x - x != 0; }
+
 // From a at 0 to b at 1, linearly. A NaN has no say.
 ISOWEAVE_HD inline double value_between(double a, double b, double t) {
   if (a != a) return b;
   if (b != b) return a;
-  return a + t * (b - a);
+  const double value = a + t * (b - a);
+  if (value - value == 0) return value;
+  return is_infinite(a) || is_infinite(b) ? value : (1 - t) * a + t * b;  // the difference is beyond the largest number
 }
 
 // Where along an edge, from 0 to 1, the place x lies; both are measured from the edge's beginning.

@@ -1,9 +1,12 @@
 // A box of a volume, and a volume made smaller.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "isoweave/volume.hpp"
@@ -88,6 +91,7 @@ class SmallerVolume final : public SliceSource {
     info_.type = means_are_float32(info_.type) ? SampleType::kFloat32 : SampleType::kFloat64;
     sums_.resize(static_cast<std::size_t>(info_.slice_samples()));
     counts_.resize(sums_.size());
+    if (whole_->info().type == SampleType::kFloat64) small_sums_.resize(sums_.size());
   }
 
   const VolumeInfo& info() const override { return info_; }
@@ -106,6 +110,7 @@ class SmallerVolume final : public SliceSource {
   void add_slices(std::int64_t first, std::int64_t end) {
     std::fill(sums_.begin(), sums_.end(), 0.0);
     std::fill(counts_.begin(), counts_.end(), 0U);
+    std::fill(small_sums_.begin(), small_sums_.end(), 0.0);
     for (std::int64_t k = first; k < end; ++k) {
       whole_->read(k, 1, slice_);
       visit_sample_type(whole_->info().type, [&]<class T>() { add_slice<T>(); });
@@ -122,25 +127,41 @@ class SmallerVolume final : public SliceSource {
         const auto value = static_cast<double>(*sample);
         if (value != value) continue;
         const std::size_t block = row + static_cast<std::size_t>(i / step_);
-        sums_[block] += value;
+        add_value<T>(block, value);
         ++counts_[block];
       }
     }
   }
 
+  // A sum of float64 may be beyond the largest number where the mean is not: a small part of it is summed up as well.
+  template <class T>
+  void add_value(std::size_t block, double value) {
+    sums_[block] += value;
+    if constexpr (std::is_same_v<T, double>) small_sums_[block] += kSmall * value;
+  }
+
+  double mean_of(std::size_t block) const {
+    const double mean = sums_[block] / counts_[block];
+    if (std::isfinite(mean) || small_sums_.empty()) return mean;
+    return small_sums_[block] / counts_[block] / kSmall;
+  }
+
   template <class T>
   void write_means(std::byte* out) const {
     for (std::size_t n = 0; n < sums_.size(); ++n) {
-      const T mean = counts_[n] > 0 ? static_cast<T>(sums_[n] / counts_[n]) : std::numeric_limits<T>::quiet_NaN();
+      const T mean = counts_[n] > 0 ? static_cast<T>(mean_of(n)) : std::numeric_limits<T>::quiet_NaN();
       std::memcpy(out + n * sizeof mean, &mean, sizeof mean);
     }
   }
 
+  static constexpr double kSmall = 1.0 / (std::uint64_t{1} << 62);
+
   std::unique_ptr<SliceSource> whole_;
   VolumeInfo info_;
   std::int64_t step_;
-  std::vector<std::byte> slice_;  // of the whole
-  std::vector<double> sums_;      // of the blocks of one slice
+  std::vector<std::byte> slice_;    // of the whole
+  std::vector<double> sums_;        // of the blocks of one slice
+  std::vector<double> small_sums_;  // the same of samples times kSmall, where samples are float64
   std::vector<std::uint32_t> counts_;
 };
 

@@ -154,6 +154,7 @@ class GlbLevels final : public LevelFile {
       level_options.push_back(level.options());
       nodes.push_back(GltfJson::object());
       if (level.vertices() > 0) nodes.back()["mesh"] = meshes++;
+      if (has_offset(level.options())) nodes.back()["translation"] = level.options().offset;
     }
     GltfJson json = gltf_levels(level_options, std::move(nodes));
     for (const LevelParts& level : levels()) {

@@ -155,8 +155,10 @@ class PackedScene {
 };
 
 // Where a mesh in whole steps lies.
-GltfJson placed_node(std::size_t mesh, const Grid16& grid) {
-  return {{"mesh", mesh}, {"translation", grid.origin}, {"scale", {grid.step, grid.step, grid.step}}};
+GltfJson placed_node(std::size_t mesh, const Grid16& grid, const std::array<double, 3>& offset) {
+  std::array<double, 3> place = grid.origin;
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += offset[axis];
+  return {{"mesh", mesh}, {"translation", place}, {"scale", {grid.step, grid.step, grid.step}}};
 }
 
 // What a viewer has to know to read it.
@@ -179,7 +181,7 @@ class PackedGlbSink final : public WholeMeshSink {
     const Grid16 grid = Grid16::around(mesh.vertices);
     note(rounding_note(path(), grid, options().unit));
     const std::size_t number = scene.add(std::move(mesh), grid);
-    GltfJson json = gltf_scene(options(), placed_node(number, grid));
+    GltfJson json = gltf_scene(options(), placed_node(number, grid, options().offset));
     add_requirements(json, grid.error());
     scene.write(path(), std::move(json), file());
   }
@@ -210,7 +212,7 @@ class PackedGlbLevels final : public LevelFile {
       TriangleMesh mesh = level.load();
       const Grid16 grid = Grid16::around(mesh.vertices);
       if (grid.step > coarsest.step) coarsest = grid;
-      nodes.back() = placed_node(scene.add(std::move(mesh), grid), grid);
+      nodes.back() = placed_node(scene.add(std::move(mesh), grid), grid, level.options().offset);
     }
     GltfJson json = gltf_empty_scene(options());
     if (coarsest.step > 0) {

@@ -53,12 +53,16 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   extras["comments"] = options.comments;
   extras["unit"] = options.unit;
   extras["space"] = options.space;
+  if (has_offset(options)) extras["offset"] = options.offset;
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   GltfJson root{{"rotation", turn_to_y_up(options.space)}};
   const double metres = unit_in(options.unit, "m").value_or(1);
   if (metres != 1) root["scale"] = {metres, metres, metres};
-  if (placed.is_null()) {
+  if (placed.is_null() && has_offset(options)) {
+    root["children"] = {1};
+    json["nodes"] = {root, {{"mesh", 0}, {"translation", options.offset}}};
+  } else if (placed.is_null()) {
     root["mesh"] = 0;
     json["nodes"] = GltfJson::array({root});  // {root} is root to some compilers
   } else {

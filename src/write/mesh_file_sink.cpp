@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "isoweave/error.hpp"
 #include "write/atomic_folder.hpp"
+#include "write/mesh_text.hpp"
 
 namespace isoweave {
 namespace {
@@ -38,6 +40,40 @@ std::deque<std::uint64_t> parse_mark(const MeshFileOptions& options) {
 }
 
 }  // namespace
+
+std::string offset_text(const std::array<double, 3>& offset) {
+  std::string text;
+  for (const double number : offset) {
+    if (!text.empty()) text += ',';
+    print(text, number);
+  }
+  return text;
+}
+
+RoundedPlaces::RoundedPlaces(std::string path, const MeshFileOptions& options, double scale)
+    : path_(std::move(path)), unit_(options.unit), offset_(options.offset), scale_(scale) {}
+
+Point RoundedPlaces::point(const Point& relative) {
+  Point result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = (offset_[axis] + double{relative[axis]}) * scale_;
+    if (!(std::abs(at) <= double{std::numeric_limits<float>::max()})) {
+      throw CannotWrite(path_ + ": the format holds coordinates of 32 bits, the mesh lies farther from the origin");
+    }
+    result[axis] = static_cast<float>(at);
+    farthest_ = std::max(farthest_, std::abs(double{result[axis]} - at) / scale_);
+  }
+  return result;
+}
+
+std::vector<std::string> RoundedPlaces::notes() const {
+  if (farthest_ == 0) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "warning: " << path_ << ": so far from the origin coordinates of 32 bits move vertices by up to " << farthest_
+       << (unit_.empty() ? "" : " ") << unit_ << "; .ply, .vtp, .obj, .off, .glb and .3mf keep them in place";
+  return {text.str()};
+}
 
 MeshFileSink::MeshFileSink(MeshTarget target, const MeshFileOptions& options)
     : target_(std::move(target)), options_(options), saved_(parse_mark(options)) {
@@ -202,6 +238,7 @@ std::vector<std::string> comment_lines(const MeshFileOptions& options) {
   for (const std::string& comment : options.comments) lines.push_back(one_line(comment));
   if (!options.space.empty()) lines.push_back("SPACE=" + one_line(options.space));
   if (!options.unit.empty()) lines.push_back("UNIT=" + one_line(options.unit));
+  if (has_offset(options)) lines.push_back("OFFSET=" + offset_text(options.offset));
   return lines;
 }
 

@@ -28,6 +28,40 @@ struct MeshTarget {
   int descriptor = -1;  // of a stream
 };
 
+// Whether coordinates come relative to an offset. The format holds their sums in 64 bits then, if it can.
+inline bool has_offset(const MeshFileOptions& options) { return options.offset != std::array<double, 3>{0, 0, 0}; }
+
+// Where a vertex lies.
+inline std::array<double, 3> placed(const Point& point, const std::array<double, 3>& offset) {
+  return {offset[0] + double{point[0]}, offset[1] + double{point[1]}, offset[2] + double{point[2]}};
+}
+
+// "x,y,z", with the fewest digits that read back as the same numbers.
+std::string offset_text(const std::array<double, 3>& offset);
+
+// Coordinates with their offset in 32 bits, for formats that have no more; and how far that moves them.
+class RoundedPlaces {
+ public:
+  // scale: of the numbers in the file.
+  RoundedPlaces(std::string path, const MeshFileOptions& options, double scale = 1);
+
+  // Throws CannotWrite where 32 bits hold no such number.
+  Point point(const Point& relative);
+
+  // One line about how far vertices were moved, or none.
+  std::vector<std::string> notes() const;
+
+  // As a number of a mark.
+  std::vector<std::uint64_t> state() const { return {std::bit_cast<std::uint64_t>(farthest_)}; }
+  void load(const std::vector<std::uint64_t>& state) { farthest_ = std::bit_cast<double>(state.front()); }
+
+ private:
+  std::string path_, unit_;
+  std::array<double, 3> offset_;
+  double scale_;
+  double farthest_ = 0;
+};
+
 class MeshFileSink : public MeshSink {
  public:
   // Throws std::invalid_argument for an index of no vertex, a coordinate that is not finite, or missing normals:
@@ -35,6 +69,7 @@ class MeshFileSink : public MeshSink {
   void append(const MeshPiece& piece) final;
   void finish() final;
   std::string mark() final;
+  std::array<double, 3> offset() const final { return options_.offset; }
 
  protected:
   MeshFileSink(MeshTarget target, const MeshFileOptions& options);
@@ -71,6 +106,10 @@ class MeshFileSink : public MeshSink {
 
   const std::string& path() const { return target_.path; }
   const MeshFileOptions& options() const { return options_; }
+  bool has_offset() const { return isoweave::has_offset(options_); }
+
+  // Where a vertex lies, with its offset.
+  std::array<double, 3> placed(const Point& point) const { return isoweave::placed(point, options_.offset); }
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t triangles() const { return triangles_; }
 
@@ -100,7 +139,8 @@ class MeshFileSink : public MeshSink {
 // Options as they are for a format without a place for normals.
 MeshFileOptions without_normals(MeshFileOptions options);
 
-// The comments, and one each for the space and the unit in the way that 3D Slicer reads: "SPACE=LPS", "UNIT=mm".
+// The comments, and one each for the space and the unit in the way that 3D Slicer reads: "SPACE=LPS", "UNIT=mm"; and
+// for the offset, if there is one.
 std::vector<std::string> comment_lines(const MeshFileOptions& options);
 
 // The text of a comment as one line: control characters, line ends above all, become blanks.
@@ -124,6 +164,14 @@ std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, cons
 // Little-endian stores that advance `out`.
 inline void store_u32(std::byte*& out, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) *out++ = static_cast<std::byte>(value >> shift & 0xffU);
+}
+
+inline void store_wide_point(std::byte*& out, const std::array<double, 3>& point) {
+  for (const double coordinate : point) {
+    const auto bits = std::bit_cast<std::uint64_t>(coordinate);
+    store_u32(out, static_cast<std::uint32_t>(bits));
+    store_u32(out, static_cast<std::uint32_t>(bits >> 32));
+  }
 }
 
 inline void store_point(std::byte*& out, const Point& point) {

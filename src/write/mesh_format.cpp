@@ -124,7 +124,11 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options) {
   constexpr std::size_t kAtOnce = std::size_t{1} << 16;
-  const std::unique_ptr<MeshSink> sink = open_mesh_file(path, options);
+  MeshFileOptions placed = options;
+  placed.offset = mesh.offset;
+  if (placed.unit.empty()) placed.unit = mesh.unit;
+  if (placed.space.empty()) placed.space = mesh.space;
+  const std::unique_ptr<MeshSink> sink = open_mesh_file(path, placed);
   sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .values = mesh.values});
   std::vector<Triangle64> block;
   for (std::size_t first = 0; first < mesh.triangles.size(); first += kAtOnce) {
@@ -155,10 +159,11 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
   const MeshFormat format = checked_mesh_format(path, options);
   if (options.compress) return packed_bytes(path, format, vertices, triangles, options.normals);
   const std::uint64_t raw_vertex = std::uint64_t{12} + (options.normals ? 12 : 0) + (options.values ? 4 : 0);
+  const std::uint64_t placed_vertex = raw_vertex + (has_offset(options) ? 12 : 0);
   switch (format) {
     case MeshFormat::kPly:
       check_count_fits(path, "vertices", 0, vertices);
-      return vertices * raw_vertex + triangles * 13;
+      return vertices * placed_vertex + triangles * 13;
     case MeshFormat::kStl:
       check_count_fits(path, "triangles", 0, triangles);
       return triangles * 50;
@@ -170,7 +175,7 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
       check_glb_fits(path, vertices, triangles, options.normals, 0);
       return vertices * raw_vertex + triangles * 12;
     case MeshFormat::kVtp:
-      return vertices * raw_vertex + triangles * 32;
+      return vertices * placed_vertex + triangles * 32;
     case MeshFormat::k3mf:
       check_count_fits(path, "vertices", 0, vertices, kMost3mfVertices);
       return vertices * k3mfVertex + triangles * k3mfTriangle;

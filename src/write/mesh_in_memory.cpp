@@ -38,7 +38,8 @@ struct MeshInMemory::Arrays {
   Array<std::array<std::uint32_t, 3>> triangles;
 };
 
-MeshInMemory::MeshInMemory() : arrays_(std::make_unique<Arrays>()) {}
+MeshInMemory::MeshInMemory(const std::array<double, 3>& offset)
+    : arrays_(std::make_unique<Arrays>()), offset_(offset) {}
 MeshInMemory::~MeshInMemory() = default;
 MeshInMemory::MeshInMemory(MeshInMemory&&) noexcept = default;
 MeshInMemory& MeshInMemory::operator=(MeshInMemory&&) noexcept = default;
@@ -70,7 +71,7 @@ std::span<const float> MeshInMemory::values() const { return all(arrays_->values
 std::span<const std::array<std::uint32_t, 3>> MeshInMemory::triangles() const { return all(arrays_->triangles); }
 
 TriangleMesh MeshInMemory::copy() const {
-  return {list(arrays_->vertices), list(arrays_->triangles), list(arrays_->normals), list(arrays_->values)};
+  return {list(arrays_->vertices), list(arrays_->triangles), list(arrays_->normals), list(arrays_->values), offset_};
 }
 
 }  // namespace isoweave

@@ -146,6 +146,17 @@ std::string MeshInput::head(std::size_t bytes) const {
   return text;
 }
 
+void check_indices(const MeshInput& input, std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::size_t vertices) {
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < vertices) continue;
+      input.fail("a triangle refers to vertex " + std::to_string(index) + ", the file has " + std::to_string(vertices) +
+                 ", counted from 0");
+    }
+  }
+}
+
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
   for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
     for (const float coordinate : mesh.vertices[n]) {
@@ -153,13 +164,7 @@ void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh) {
         input.fail("vertex " + std::to_string(n) + " has a coordinate that is not finite");
     }
   }
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t index : triangle) {
-      if (index < mesh.vertices.size()) continue;
-      input.fail("a triangle refers to vertex " + std::to_string(index) + ", the file has " +
-                 std::to_string(mesh.vertices.size()) + ", counted from 0");
-    }
-  }
+  check_indices(input, mesh.triangles, mesh.vertices.size());
 }
 
 void skip_byte_order_mark(MeshInput& input) {

@@ -161,7 +161,11 @@ class PolygonFan {
 
 inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
 
-// Fails when a coordinate is not finite, or when a triangle refers to a vertex that is not there.
+// Fails when a triangle refers to a vertex that is not there.
+void check_indices(const MeshInput& input, std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::size_t vertices);
+
+// The same, and when a coordinate is not finite.
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
 TriangleMesh read_ply(MeshInput& input);

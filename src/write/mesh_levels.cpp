@@ -20,6 +20,7 @@ class LevelSink final : public MeshSink {
   void append(const MeshPiece& piece) override { file_->level(level_).append(piece); }
   void finish() override { file_->finish(level_); }
   std::string mark() override { return file_->level(level_).mark(); }
+  std::array<double, 3> offset() const override { return file_->level(level_).offset(); }
   std::vector<std::string> notes() const override {
     return file_->is_last(level_) ? file_->notes() : std::vector<std::string>{};
   }
@@ -98,6 +99,9 @@ std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
   for (const MeshFileOptions& options : levels) {
     if (options.compress != levels.front().compress || options.normals != levels.front().normals) {
       throw std::invalid_argument(path + ": expected levels with the same options for normals and packing");
+    }
+    if (options.offset != levels.front().offset) {
+      throw std::invalid_argument(path + ": expected levels with the same offset");
     }
   }
   const std::shared_ptr<LevelFile> file = open_levels(path, levels);

@@ -1,6 +1,7 @@
 // Numbers and points as text, for the formats that are text.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <string>
 
@@ -19,8 +20,9 @@ void print(std::string& text, Number number) {
 }
 
 // Three numbers with a blank before each.
-inline void print_point(std::string& text, const Point& point) {
-  for (const float coordinate : point) {
+template <class Coordinate>
+void print_point(std::string& text, const std::array<Coordinate, 3>& point) {
+  for (const Coordinate coordinate : point) {
     text += ' ';
     print(text, coordinate);
   }

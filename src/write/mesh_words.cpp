@@ -1,17 +1,10 @@
 #include "write/mesh_words.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace isoweave::mesh_io {
 namespace {
-
-// The line before its comment, which begins a word: what Windows writes for infinity, 1.#INF, has none.
-std::string_view without_comment(std::string_view line) {
-  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
-    if (at == 0 || is_blank(line[at - 1])) return line.substr(0, at);
-  }
-  return line;
-}
 
 bool is_number(std::string_view word) {
   return !word.empty() && word.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
@@ -25,6 +18,11 @@ bool is_tiny_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
   const bool whole = end == word.data() + word.size() && error == std::errc::result_out_of_range;
   return whole && (word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos);
+}
+
+std::optional<double> parse_wide_number(std::string_view word) {
+  const std::optional<double> value = parse_wide(word);
+  return value ? value : parse_number<double>(word);
 }
 
 const char* expected_number(std::string_view found) {
@@ -59,15 +57,15 @@ std::string_view MeshWords::next() {
   }
 }
 
-float MeshWords::coordinate(std::string_view word) const {
-  const std::optional<float> value = parse_number<float>(word);
-  if (value && std::isfinite(*value)) return *value;
+double MeshWords::coordinate(std::string_view word) const {
+  const std::optional<double> value = parse_wide_number(word);
+  if (value && std::abs(*value) <= double{std::numeric_limits<float>::max()}) return *value;
   fail(value || is_number(word) ? "expected a finite number" : expected_number(word), word);
 }
 
 float MeshWords::component(std::string_view word) const {
   const std::optional<float> value = parse_number<float>(word);
-  return value ? *value : coordinate(word);
+  return value ? *value : static_cast<float>(coordinate(word));
 }
 
 void MeshWords::fail(const std::string& what) const { input_.fail("line " + std::to_string(number_) + ": " + what); }
@@ -76,6 +74,16 @@ void MeshWords::fail(const std::string& expected, std::string_view word) const {
   if (word.empty())
     fail(expected + ", found " + (input_.remaining() == 0 ? "the end of the file" : "the end of the line"));
   fail(expected + ", found '" + std::string(word.substr(0, 40)) + "'");
+}
+
+// The line before its comment, which begins a word: what Windows writes for infinity, 1.#INF, has none.
+std::string_view MeshWords::without_comment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at > 0 && !is_blank(line[at - 1])) continue;
+    place_.take_comment(line.substr(at + 1));
+    return line.substr(0, at);
+  }
+  return line;
 }
 
 // Ends of lines and comments are cut off.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "write/mesh_input.hpp"
+#include "write/mesh_place.hpp"
 
 namespace isoweave::mesh_io {
 
@@ -28,6 +29,9 @@ std::optional<Real> parse_number(std::string_view word) {
   return parse_real<Real>(text);
 }
 
+// The same as parse_wide reads it, where it is finite in 32 bits.
+std::optional<double> parse_wide_number(std::string_view word);
+
 // A byte order mark at the beginning of the file is passed over. Lines end as MeshInput::read_line says; a '#' that
 // begins a word begins a comment.
 class MeshWords {
@@ -45,11 +49,14 @@ class MeshWords {
   std::string_view next();
 
   // The next word of the file as a number that is finite in 32 bits.
-  float next_coordinate() { return coordinate(next()); }
-  Point next_point() { return {next_coordinate(), next_coordinate(), next_coordinate()}; }
+  double next_coordinate() { return coordinate(next()); }
+  WidePoint next_point() { return {next_coordinate(), next_coordinate(), next_coordinate()}; }
 
   // What a word says as a number that is finite in 32 bits.
-  float coordinate(std::string_view word) const;
+  double coordinate(std::string_view word) const;
+
+  // What comments say of the place of the mesh, as far as they have been read.
+  const MeshPlace& place() const { return place_; }
 
   // The same for a component of a normal, which need not be finite.
   float component(std::string_view word) const;
@@ -68,12 +75,14 @@ class MeshWords {
 
  private:
   bool read_line();
+  std::string_view without_comment(std::string_view line);
   void join_continued();
 
   MeshInput& input_;
   const bool continued_;
   std::string line_, more_;
   std::string_view rest_;
+  MeshPlace place_;
   std::uint64_t number_ = 0;
 };
 

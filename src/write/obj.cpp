@@ -1,4 +1,5 @@
-// Wavefront OBJ, text. Coordinates have the fewest digits that read back as the same float32.
+// Wavefront OBJ, text. Coordinates have the fewest digits that read back as the same float32, or float64 where there is
+// an offset.
 #include "write/mesh_file_sink.hpp"
 #include "write/mesh_text.hpp"
 
@@ -15,12 +16,13 @@ class ObjSink final : public MeshFileSink {
 
  private:
   void write_piece(const MeshPiece& piece) override {
-    for (const Point& vertex : piece.vertices) print_line("v", vertex);
+    for (const Point& vertex : piece.vertices) has_offset() ? print_line("v", placed(vertex)) : print_line("v", vertex);
     for (const Point& normal : piece.normals) print_line("vn", normal);
     for (const Triangle64& triangle : piece.triangles) print_face(triangle);
   }
 
-  void print_line(const char* keyword, const Point& point) {
+  template <class Coordinate>
+  void print_line(const char* keyword, const std::array<Coordinate, 3>& point) {
     text_ += keyword;
     print_point(text_, point);
     end_line();

@@ -26,7 +26,8 @@ class OffSink final : public MeshFileSink {
  private:
   void write_piece(const MeshPiece& piece) override {
     for (std::size_t n = 0; n < piece.vertices.size(); ++n) {
-      print_numbers(vertex_text_, piece.vertices[n]);
+      const Point& vertex = piece.vertices[n];
+      has_offset() ? print_numbers(vertex_text_, placed(vertex)) : print_numbers(vertex_text_, vertex);
       if (!piece.normals.empty()) print_point(vertex_text_, piece.normals[n]);
       end_line(vertex_text_, file());
     }
@@ -40,7 +41,8 @@ class OffSink final : public MeshFileSink {
     }
   }
 
-  static void print_numbers(std::string& text, const Point& point) {
+  template <class Coordinate>
+  static void print_numbers(std::string& text, const std::array<Coordinate, 3>& point) {
     print(text, point[0]);
     text += ' ';
     print(text, point[1]);

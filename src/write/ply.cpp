@@ -17,7 +17,10 @@ std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, 
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& comment : comment_lines(options)) text += "comment " + comment + "\n";
   text += "comment padding " + std::string(kDigits - vertex_count.size() - face_count.size(), '.') + "\n";
-  text += "element vertex " + vertex_count + "\nproperty float x\nproperty float y\nproperty float z\n";
+  text += "element vertex " + vertex_count + "\n";
+  for (const char* name : {"x", "y", "z"}) {
+    text += std::string("property ") + (has_offset(options) ? "double " : "float ") + name + "\n";
+  }
   if (options.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
   if (options.values) text += "property float quality\n";
   text += "element face " + face_count + "\nproperty list uchar uint vertex_indices\nend_header\n";
@@ -35,13 +38,13 @@ class PlySink final : public MeshFileSink {
 
  private:
   std::size_t vertex_bytes() const {
-    return std::size_t{12} + (options().normals ? 12 : 0) + (options().values ? 4 : 0);
+    return std::size_t{has_offset() ? 24U : 12U} + (options().normals ? 12 : 0) + (options().values ? 4 : 0);
   }
 
   void write_piece(const MeshPiece& piece) override {
     check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size());
     write_records(file(), records_, piece.vertices.size(), vertex_bytes(), [&](std::byte*& out, std::size_t n) {
-      store_point(out, piece.vertices[n]);
+      has_offset() ? store_wide_point(out, placed(piece.vertices[n])) : store_point(out, piece.vertices[n]);
       if (!piece.normals.empty()) store_point(out, piece.normals[n]);
       if (!piece.values.empty()) store_u32(out, std::bit_cast<std::uint32_t>(piece.values[n]));
     });

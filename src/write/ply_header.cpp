@@ -127,7 +127,9 @@ class HeaderReader {
       read_element(rest);
     } else if (keyword == "property") {
       read_property(rest);
-    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    } else if (keyword == "comment" || keyword == "obj_info") {
+      header_.place.take_comment(rest);
+    } else if (!keyword.empty()) {
       fail("expected element, property, comment or end_header, found '" + keyword.substr(0, 40) + "'");
     }
     return true;

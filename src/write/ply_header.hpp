@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "write/mesh_input.hpp"
+#include "write/mesh_place.hpp"
 
 namespace isoweave::mesh_io {
 
@@ -32,6 +33,7 @@ struct PlyHeader {
   std::uint64_t vertices = 0;
   bool has_normals = false;
   std::string values;  // the property of vertices that is their value; empty: none is
+  MeshPlace place;
 };
 
 std::size_t bytes_of(PlyType type);

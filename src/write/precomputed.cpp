@@ -15,15 +15,25 @@ class PrecomputedSink final : public MeshFileSink {
   PrecomputedSink(const MeshTarget& target, const MeshFileOptions& options)
       : MeshFileSink(target, without_normals(options)),
         nanometres_(unit_in(options.unit, "nm")),
+        places_(path(), options, nanometres_.value_or(1)),
         positions_(open_side("positions.part")),
-        faces_(open_side("faces.part")) {}
+        faces_(open_side("faces.part")) {
+    if (continued() && has_offset()) places_.load(saved_state(1));
+  }
 
   std::vector<std::string> notes() const override {
-    if (nanometres_) return {};
-    return {path() + ": the unit is not known, coordinates were written as if they were nanometres"};
+    std::vector<std::string> lines = places_.notes();
+    if (!nanometres_) {
+      lines.push_back(path() + ": the unit is not known, coordinates were written as if they were nanometres");
+    }
+    return lines;
   }
 
  private:
+  std::vector<std::uint64_t> state() const override {
+    return has_offset() ? places_.state() : std::vector<std::uint64_t>{};
+  }
+
   void write_piece(const MeshPiece& piece) override {
     check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size());
     write_records(positions_, records_, piece.vertices.size(), 12,
@@ -32,7 +42,8 @@ class PrecomputedSink final : public MeshFileSink {
                   [&](std::byte*& out, std::size_t n) { store_indices(out, piece.triangles[n]); });
   }
 
-  Point scaled(const Point& point) const {
+  Point scaled(const Point& point) {
+    if (has_offset()) return places_.point(point);
     Point result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       result[axis] = static_cast<float>(double{point[axis]} * nanometres_.value_or(1));
@@ -68,6 +79,7 @@ class PrecomputedSink final : public MeshFileSink {
   }
 
   std::optional<double> nanometres_;  // of a unit
+  RoundedPlaces places_;
   OutputDescriptor& positions_;
   OutputDescriptor& faces_;
   std::vector<std::byte> records_;

@@ -83,7 +83,9 @@ void write_folder(const std::string& path, const MeshFileOptions& options, const
   const double scale = unit_in(options.unit, "nm").value_or(1);
   const nlohmann::ordered_json info{{"@type", "neuroglancer_multilod_draco"},
                                     {"vertex_quantization_bits", 16},
-                                    {"transform", {scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0}},
+                                    {"transform",
+                                     {scale, 0, 0, scale * options.offset[0], 0, scale, 0, scale * options.offset[1], 0,
+                                      0, scale, scale * options.offset[2]}},
                                     {"lod_scale_multiplier", 1}};
   const std::string text = info.dump() + "\n";
   const std::string object = std::to_string(options.segment);

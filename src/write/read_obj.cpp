@@ -69,10 +69,12 @@ class ObjReader {
 
   TriangleMesh read() {
     while (words_.next_line()) read_statement();
-    if (mesh_.vertices.empty() && !unknown_.empty()) {
+    if (points_.empty() && !unknown_.empty()) {
       input_.fail("expected OBJ statements such as 'v' and 'f', found '" + unknown_.substr(0, 40) + "'");
     }
     check_indices();
+    words_.place().put_into(mesh_);
+    set_vertices(mesh_, points_, words_.place().offset());
     polygons_.finish();
     keep_normals();
     leftovers_.note(mesh_);
@@ -109,9 +111,9 @@ class ObjReader {
     if (unknown_.empty()) unknown_ = keyword;
   }
 
-  Point read_point() {
-    Point point{};
-    for (float& coordinate : point) coordinate = words_.coordinate(words_.next_on_line());
+  WidePoint read_point() {
+    WidePoint point{};
+    for (double& coordinate : point) coordinate = words_.coordinate(words_.next_on_line());
     return point;
   }
 
@@ -123,8 +125,8 @@ class ObjReader {
 
   // Of the numbers behind the coordinates one is a weight, which counts for free-form surfaces, three are a colour.
   void read_vertex() {
-    if (mesh_.vertices.size() == kMostVertices) words_.fail("more than 4294967295 vertices");
-    mesh_.vertices.push_back(read_point());
+    if (points_.size() == kMostVertices) words_.fail("more than 4294967295 vertices");
+    points_.push_back(read_point());
     const std::size_t more = count_numbers();
     if (more >= 3) leftovers_.not_kept("colours of vertices");
   }
@@ -153,7 +155,7 @@ class ObjReader {
     const std::string_view texture = take_field(word);
     const std::string_view normal = take_field(word);
     if (!word.empty()) words_.fail("expected a corner of at most three numbers");
-    const std::uint32_t index = read_index(vertex, mesh_.vertices.size());
+    const std::uint32_t index = read_index(vertex, points_.size());
     if (!texture.empty() && !parse_integer<std::int64_t>(texture)) {
       words_.fail("expected a number between slashes", texture);
     }
@@ -180,9 +182,9 @@ class ObjReader {
   void check_indices() const {
     for (const auto& triangle : mesh_.triangles) {
       for (const std::uint32_t index : triangle) {
-        if (index >= mesh_.vertices.size()) {
+        if (index >= points_.size()) {
           input_.fail("a face refers to vertex " + std::to_string(std::uint64_t{index} + 1) + ", the file has " +
-                      std::to_string(mesh_.vertices.size()));
+                      std::to_string(points_.size()));
         }
       }
     }
@@ -204,6 +206,7 @@ class ObjReader {
   TriangleMesh mesh_;
   Polygons polygons_{mesh_};
   MeshLeftovers leftovers_;
+  std::vector<WidePoint> points_;
   std::vector<Point> normals_;
   bool normals_follow_vertices_ = true;
 };

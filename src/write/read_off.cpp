@@ -48,14 +48,16 @@ class OffReader {
 
   TriangleMesh read() {
     read_header();
-    mesh_.vertices.reserve(vertices_);
+    points_.reserve(vertices_);
     mesh_.normals.reserve(has_normals_ ? vertices_ : 0);
     for (std::uint64_t n = 0; n < vertices_; ++n) read_vertex();
     for (std::uint64_t n = 0; n < faces_; ++n) read_face();
     if (words_.next_line()) {
       words_.fail("expected the end of the file after " + std::to_string(faces_) + " faces, found more");
     }
-    check_mesh_numbers(input_, mesh_);
+    check_indices(input_, mesh_.triangles, points_.size());
+    words_.place().put_into(mesh_);
+    set_vertices(mesh_, points_, words_.place().offset());
     polygons_.finish();
     leftovers_.note(mesh_);
     return std::move(mesh_);
@@ -107,7 +109,7 @@ class OffReader {
 
   void read_vertex() {
     expect_line("a vertex");
-    mesh_.vertices.push_back(words_.next_point());
+    points_.push_back(words_.next_point());
     if (has_normals_) mesh_.normals.push_back(words_.next_normal());
     if (!says_more_ && !words_.next_on_line().empty())
       leftovers_.not_kept("numbers behind the coordinates of vertices");
@@ -137,6 +139,7 @@ class OffReader {
   bool says_more_ = false;  // the keyword says what follows the coordinates
   TriangleMesh mesh_;
   Polygons polygons_{mesh_};
+  std::vector<WidePoint> points_;
   MeshLeftovers leftovers_;
 };
 

@@ -70,6 +70,8 @@ class PlyReader {
       }
     }
     check_end();
+    header_.place.put_into(mesh_);
+    if (is_wide_) set_vertices(mesh_, points_, header_.place.offset());
     polygons_.finish();
     note_leftovers();
     return std::move(mesh_);
@@ -100,16 +102,12 @@ class PlyReader {
     return number_from_bits(load_bits(used, header_.encoding == PlyEncoding::kBigEndian), type);
   }
 
-  // A float is parsed as one: by way of a double it would be rounded twice.
+  // A float may have more digits than it holds, which are the only ones for a place far from the origin.
   double next_in_text(PlyType type) {
     const std::string_view token = input_.read_token();
     if (token.empty()) input_.fail("truncated: expected a number, found the end of the file");
-    std::optional<double> value;
-    if (type == PlyType::kFloat32) {
-      if (const std::optional<float> narrow = parse_number<float>(token)) value = *narrow;
-    } else {
-      value = parse_number<double>(token);
-    }
+    const std::optional<double> value =
+        type == PlyType::kFloat32 ? parse_wide_number(token) : parse_number<double>(token);
     if (!value) {
       input_.fail(expected_number(token) + (", found '" + std::string(token.substr(0, 40)) + "'"));
     }
@@ -151,10 +149,11 @@ class PlyReader {
 
   void read_vertices(const PlyElement& element) {
     const std::vector<int> slots = coordinate_slots(element);
-    mesh_.vertices.reserve(element.count);
+    is_wide_ = has_wide_coordinates(element);
+    is_wide_ ? points_.reserve(element.count) : mesh_.vertices.reserve(element.count);
     if (header_.has_normals) mesh_.normals.reserve(element.count);
     for (std::uint64_t vertex = read_plain_vertices(element); vertex < element.count; ++vertex) {
-      std::array<float, 6> values{};
+      std::array<double, 6> values{};
       for (std::size_t i = 0; i < slots.size(); ++i) {
         if (slots[i] == kValueSlot) {
           mesh_.values.push_back(next_value(element.properties[i]));
@@ -166,9 +165,23 @@ class PlyReader {
               slots[i] < kNormalSlot ? next_coordinate(property, vertex) : next_value(property);
         }
       }
-      mesh_.vertices.push_back({values[0], values[1], values[2]});
-      if (header_.has_normals) mesh_.normals.push_back({values[3], values[4], values[5]});
+      add_vertex({values[0], values[1], values[2]});
+      if (header_.has_normals) mesh_.normals.push_back(relative_point({values[3], values[4], values[5]}, {0, 0, 0}));
     }
+  }
+
+  void add_vertex(const WidePoint& point) {
+    if (is_wide_) return points_.push_back(point);
+    mesh_.vertices.push_back(relative_point(point, {0, 0, 0}));
+  }
+
+  // Whether a coordinate may have more digits than a float32.
+  bool has_wide_coordinates(const PlyElement& element) const {
+    if (header_.encoding == PlyEncoding::kAscii) return true;
+    return std::any_of(element.properties.begin(), element.properties.end(), [](const PlyProperty& property) {
+      const bool is_coordinate = property.name == "x" || property.name == "y" || property.name == "z";
+      return is_coordinate && bytes_of(property.type) >= 4 && property.type != PlyType::kFloat32;
+    });
   }
 
   // Those before the first that is not finite, where a vertex is x y z in little-endian float32 and no more. They are
@@ -204,13 +217,13 @@ class PlyReader {
     return slots;
   }
 
-  float next_coordinate(const PlyProperty& property, std::uint64_t vertex) {
+  double next_coordinate(const PlyProperty& property, std::uint64_t vertex) {
     const double value = next(property.type);
     if (!(std::abs(value) <= double{std::numeric_limits<float>::max()})) {
       input_.fail("vertex " + std::to_string(vertex) + " has '" + property.name + "' = " + text_of(value) +
                   ", expected a finite float32");
     }
-    return static_cast<float>(value);
+    return value;
   }
 
   float next_value(const PlyProperty& property) {
@@ -340,6 +353,8 @@ class PlyReader {
   TriangleMesh mesh_;
   Polygons polygons_{mesh_};
   MeshLeftovers leftovers_;
+  bool is_wide_ = false;
+  std::vector<WidePoint> points_;  // the vertices, where they are wide
 };
 
 }  // namespace

@@ -5,12 +5,14 @@
 
 #include "write/mesh_input.hpp"
 #include "write/mesh_leftovers.hpp"
+#include "write/mesh_place.hpp"
 #include "write/welder.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
 constexpr std::uint64_t kHeaderBytes = 84;
+constexpr std::size_t kCountAt = 80;
 constexpr std::uint64_t kTriangleBytes = 50;
 constexpr std::uint64_t kUnfilledCount = 0xffffffff;
 
@@ -41,12 +43,22 @@ Point load_point(const std::byte* in) {
           std::bit_cast<float>(load_u32(in + 8))};
 }
 
+// The text of a header ends at the first 0, or is as long as there is room.
+void take_place(std::span<const std::byte> header, TriangleMesh& mesh) {
+  std::string text;
+  for (const std::byte c : header.first(kCountAt)) text.push_back(static_cast<char>(c));
+  MeshPlace place;
+  place.take_comment(text.substr(0, text.find('\0')));
+  place.put_into(mesh);
+}
+
 // The triangles to read, after the header was read. Some programs never fill in the count, and some add data of their
 // own behind the triangles.
 std::uint64_t read_count(MeshInput& input, TriangleMesh& mesh) {
   std::array<std::byte, kHeaderBytes> header{};
   input.read(header);
-  const std::uint64_t said = load_u32(header.data() + 80);
+  take_place(header, mesh);
+  const std::uint64_t said = load_u32(header.data() + kCountAt);
   const std::uint64_t there = input.remaining() / kTriangleBytes;
   const std::uint64_t behind = input.remaining() % kTriangleBytes;
   if (said == there && behind == 0) return said;
@@ -77,7 +89,7 @@ void note_attributes(std::uint64_t triangles, TriangleMesh& mesh) {
 bool is_binary_stl(const MeshInput& input) {
   const std::string head = input.head(kHeaderBytes);
   if (head.size() < kHeaderBytes) return false;
-  const std::uint64_t count = load_u32(std::as_bytes(std::span(head)).data() + 80);
+  const std::uint64_t count = load_u32(std::as_bytes(std::span(head)).data() + kCountAt);
   return input.size() == kHeaderBytes + count * kTriangleBytes;
 }
 

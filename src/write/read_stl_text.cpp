@@ -8,7 +8,7 @@ namespace {
 
 class StlText {
  public:
-  explicit StlText(MeshInput& input) : input_(input), words_(input), welder_(mesh_.vertices) {}
+  explicit StlText(MeshInput& input) : input_(input), words_(input) {}
 
   TriangleMesh read() {
     std::string keyword = next_keyword();
@@ -17,6 +17,8 @@ class StlText {
       read_solid();
       keyword = next_keyword();
     } while (!keyword.empty());
+    place_.put_into(mesh_);
+    weld_corners();
     return std::move(mesh_);
   }
 
@@ -39,13 +41,17 @@ class StlText {
 
   // A name ends with its line, or where the first facet begins, in files of one line.
   void skip_name() {
-    for (std::string_view look = words_.rest(); !look.empty();) {
+    const std::string_view line = words_.rest();
+    for (std::string_view look = line; !look.empty();) {
       const std::string_view from_here = look;
       std::string_view after = look;
       const bool facet = lower_case(take_word(after)) == "facet";
       look = after;
-      if (facet && lower_case(take_word(after)) == "normal") return words_.go_on_at(from_here);
+      if (!facet || lower_case(take_word(after)) != "normal") continue;
+      place_.take_comment(line.substr(0, line.size() - from_here.size()));
+      return words_.go_on_at(from_here);
     }
+    place_.take_comment(line);
     words_.skip_line();
   }
 
@@ -78,21 +84,31 @@ class StlText {
   void read_facet() {
     skip_normal();
     expect("loop");
-    std::array<std::uint32_t, 3> corners{};
-    for (std::uint32_t& corner : corners) {
+    if (corners_.size() > kMostVertices - 3) input_.fail("has more than 4294967295 corners, expected a binary file");
+    const auto first = static_cast<std::uint32_t>(corners_.size());
+    for (int corner = 0; corner < 3; ++corner) {
       expect("vertex");
-      corner = welder_.number(words_.next_point());
-      if (corner == Welder::kMostPoints) input_.fail("has more than 4294967295 different corners");
+      corners_.push_back(words_.next_point());
     }
     expect("endloop");
     expect("endfacet");
-    mesh_.triangles.push_back(corners);
+    mesh_.triangles.push_back({first, first + 1, first + 2});
+  }
+
+  // Equal are those that are when they have been rounded.
+  void weld_corners() {
+    mesh_.offset = offset_for(corners_, mesh_.triangles, place_.offset(), mesh_.notes);
+    Welder welder(mesh_.vertices);
+    for (auto& triangle : mesh_.triangles) {
+      for (std::uint32_t& corner : triangle) corner = welder.number(relative_point(corners_[corner], mesh_.offset));
+    }
   }
 
   MeshInput& input_;
   MeshWords words_;
+  MeshPlace place_;
+  std::vector<WidePoint> corners_;  // three for each triangle
   TriangleMesh mesh_;
-  Welder welder_;
 };
 
 }  // namespace

@@ -46,12 +46,20 @@ Point facet_normal(const Point& a, const Point& b, const Point& c) {
 
 class StlSink final : public MeshFileSink {
  public:
-  StlSink(const MeshTarget& target, const MeshFileOptions& options) : MeshFileSink(target, without_normals(options)) {
+  StlSink(const MeshTarget& target, const MeshFileOptions& options)
+      : MeshFileSink(target, without_normals(options)), places_(path(), options) {
     if (!options.parts.empty()) kept_positions_ = &open_side("positions.part");
     continued() ? read_positions_back() : file().write(header_bytes(options, 0));
+    if (continued() && has_offset()) places_.load(saved_state(1));
   }
 
+  std::vector<std::string> notes() const override { return places_.notes(); }
+
  private:
+  std::vector<std::uint64_t> state() const override {
+    return has_offset() ? places_.state() : std::vector<std::uint64_t>{};
+  }
+
   void write_piece(const MeshPiece& piece) override {
     check_count_fits(path(), "triangles", this->triangles(), piece.triangles.size());
     positions_.insert(positions_.end(), piece.vertices.begin(), piece.vertices.end());
@@ -60,11 +68,12 @@ class StlSink final : public MeshFileSink {
                   [&](std::byte*& out, std::size_t n) { store_triangle(out, piece.triangles[n]); });
   }
 
-  void store_triangle(std::byte*& out, const Triangle64& triangle) const {
+  void store_triangle(std::byte*& out, const Triangle64& triangle) {
     const Point& a = positions_[triangle[0]];
     const Point& b = positions_[triangle[1]];
     const Point& c = positions_[triangle[2]];
-    for (const Point& point : {facet_normal(a, b, c), a, b, c}) store_point(out, point);
+    store_point(out, facet_normal(a, b, c));
+    for (const Point& point : {a, b, c}) store_point(out, has_offset() ? places_.point(point) : point);
     *out++ = std::byte{0};  // the attribute count, unused
     *out++ = std::byte{0};
   }
@@ -80,6 +89,7 @@ class StlSink final : public MeshFileSink {
     kept_positions_->read_back(0, std::as_writable_bytes(std::span(positions_)));
   }
 
+  RoundedPlaces places_;
   std::vector<Point> positions_;
   OutputDescriptor* kept_positions_ = nullptr;
   std::vector<std::byte> records_;

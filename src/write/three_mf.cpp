@@ -129,7 +129,8 @@ class ThreeMfSink final : public MeshFileSink {
   void write_piece(const MeshPiece& piece) override {
     check_count_fits(path(), "vertices", this->vertices(), piece.vertices.size(), kMost3mfVertices);
     for (const Point& vertex : piece.vertices) {
-      print_element(vertex_text_.text, "<vertex x=\"", vertex, "\" y=\"", "\" z=\"");
+      has_offset() ? print_element(vertex_text_.text, "<vertex x=\"", placed(vertex), "\" y=\"", "\" z=\"")
+                   : print_element(vertex_text_.text, "<vertex x=\"", vertex, "\" y=\"", "\" z=\"");
       vertex_text_.end_line();
     }
     for (const Triangle64& triangle : piece.triangles) {

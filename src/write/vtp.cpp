@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint64_t kWord = 8;
 constexpr std::uint64_t kPointBytes = 12;
+constexpr std::uint64_t kWidePointBytes = 24;
 constexpr std::uint64_t kValueBytes = 4;
 constexpr std::uint64_t kTriangleBytes = 24;
 
@@ -24,16 +25,22 @@ std::string data_array(const std::string& type_and_name, int components, std::ui
          "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
 }
 
+// Of a vertex: with an offset in 64 bits.
+std::uint64_t vertex_bytes(const MeshFileOptions& options) {
+  return has_offset(options) ? kWidePointBytes : kPointBytes;
+}
+
 std::string head_text(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t triangles) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"";
   text += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   text += "\" header_type=\"UInt64\">\n";
   for (const std::string& comment : options.comments) text += "<!-- " + xml_comment(comment) + " -->\n";
   text += "<PolyData>\n<FieldData>\n" + string_array("SPACE", options.space) + string_array("UNIT", options.unit) +
+          (has_offset(options) ? string_array("OFFSET", offset_text(options.offset)) : "") +
           "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(vertices) +
           "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
           std::to_string(triangles) + "\">\n";
-  std::uint64_t at = kWord + vertices * kPointBytes;
+  std::uint64_t at = kWord + vertices * vertex_bytes(options);
   if (options.normals || options.values) {
     text += std::string("<PointData") + (options.normals ? " Normals=\"Normals\"" : "") +
             (options.values ? " Scalars=\"value\"" : "") + ">\n";
@@ -47,7 +54,8 @@ std::string head_text(const MeshFileOptions& options, std::uint64_t vertices, st
     }
     text += "</PointData>\n";
   }
-  text += "<Points>\n" + data_array("\"Float32\" Name=\"Points\"", 3, 0) + "</Points>\n<Polys>\n" +
+  const std::string type = has_offset(options) ? "\"Float64\"" : "\"Float32\"";
+  text += "<Points>\n" + data_array(type + " Name=\"Points\"", 3, 0) + "</Points>\n<Polys>\n" +
           data_array("\"Int64\" Name=\"connectivity\"", 1, at) +
           data_array("\"Int64\" Name=\"offsets\"", 1, at + kWord + triangles * kTriangleBytes) +
           "</Polys>\n</Piece>\n</PolyData>\n";
@@ -79,10 +87,22 @@ class VtpSink final : public MeshFileSink {
   void write_word(std::uint64_t word) { file().write(std::as_bytes(std::span(&word, 1))); }
 
   void write_piece(const MeshPiece& piece) override {
-    file().write(std::as_bytes(piece.vertices));
+    write_vertices(piece.vertices);
     if (normals_ != nullptr) normals_->write(std::as_bytes(piece.normals));
     if (values_ != nullptr) values_->write(std::as_bytes(piece.values));
     faces_.write(std::as_bytes(piece.triangles));
+  }
+
+  void write_vertices(std::span<const Point> vertices) {
+    if (!has_offset()) return file().write(std::as_bytes(vertices));
+    constexpr std::size_t kAtOnce = 4096;
+    std::vector<std::array<double, 3>> wide;
+    for (std::size_t first = 0; first < vertices.size(); first += kAtOnce) {
+      const std::span<const Point> block = vertices.subspan(first, std::min(kAtOnce, vertices.size() - first));
+      wide.clear();
+      for (const Point& vertex : block) wide.push_back(placed(vertex));
+      file().write(std::as_bytes(std::span(wide)));
+    }
   }
 
   void complete() override {
@@ -94,11 +114,11 @@ class VtpSink final : public MeshFileSink {
     file().write(std::as_bytes(std::span(kEnd)));
 
     const std::string head = padded_head(options(), vertices(), triangles());
-    const std::uint64_t points = vertices() * kPointBytes;
+    const std::uint64_t points = vertices() * vertex_bytes(options());
     file().overwrite(0, std::as_bytes(std::span(head)));
     file().overwrite(head.size(), std::as_bytes(std::span(&points, 1)));
     std::uint64_t data = 3 * kWord + points + triangles() * (kTriangleBytes + kWord);
-    if (normals_ != nullptr) data += kWord + points;
+    if (normals_ != nullptr) data += kWord + vertices() * kPointBytes;
     if (values_ != nullptr) data += kWord + vertices() * kValueBytes;
     check_written(head_bytes_ + data + kEnd.size(), std::as_bytes(std::span(head)));
   }

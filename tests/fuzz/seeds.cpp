@@ -339,6 +339,13 @@ void put_meshes(Seeds& seeds) {
     sink->finish();
     seeds.put(name, get(folder / ("a." + name)));
   }
+  mesh.offset = {500000.1, 4649776.7, 120.3};
+  mesh.unit = "m";
+  mesh.space = "RAS";
+  for (const std::string name : {"ply", "stl", "obj", "off", "vtp", "glb", "3mf"}) {
+    write_mesh(folder / ("far." + name), mesh);
+    seeds.put(name, get(folder / ("far." + name)));
+  }
   const std::string header =
       " 1.0\ncomment c\nobj_info o\nelement vertex 4\nproperty float x\nproperty double y\nproperty float z\n"
       "element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n";

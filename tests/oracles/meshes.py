@@ -58,19 +58,30 @@ def with_vtk(reader, path):
     return reader.GetOutput()
 
 
-def read_off(path):
+def read_wide_ply(path):
+    """PLY of doubles x y z and of triangles, and nothing else."""
+    header, data = open(path, "rb").read().split(b"end_header\n", 1)
+    assert b"property double x\nproperty double y\nproperty double z\nelement face" in header
+    vertices, faces = (int(n) for n in re.findall(rb"element (?:vertex|face) (\d+)", header))
+    points = np.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3)
+    cells = np.frombuffer(data[24 * vertices :], [("corners", "u1"), ("cell", "<u4", 3)])
+    assert len(cells) == faces and (cells["corners"] == 3).all()
+    return points[cells["cell"]]
+
+
+def read_off(path, kind=np.float32):
     lines = [line.split("#")[0].split() for line in open(path)]
     words = [word for line in lines for word in line]
     stride = 6 if words[0] == "NOFF" else 3
     vertices, faces = int(words[1]), int(words[2])
     numbers = np.array(words[4:], dtype=object)
-    points = numbers[: vertices * stride].reshape(-1, stride)[:, :3].astype(np.float32)
+    points = numbers[: vertices * stride].reshape(-1, stride)[:, :3].astype(kind)
     cells = numbers[vertices * stride :].reshape(faces, 4).astype(np.int64)
     assert (cells[:, 0] == 3).all()
     return points[cells[:, 1:]]
 
 
-def read_3mf(path):
+def read_3mf(path, kind=np.float32):
     with zipfile.ZipFile(path) as archive:
         assert archive.testzip() is None
         relations = xml.etree.ElementTree.fromstring(archive.read("_rels/.rels"))
@@ -78,7 +89,7 @@ def read_3mf(path):
     space = {"m": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"}
     points = [[v.get(axis) for axis in "xyz"] for v in model.iterfind(".//m:vertex", space)]
     cells = [[t.get(v) for v in ("v1", "v2", "v3")] for t in model.iterfind(".//m:triangle", space)]
-    return np.array(points).astype(np.float32)[np.array(cells).astype(np.int64)], model
+    return np.array(points).astype(kind)[np.array(cells).astype(np.int64)], model
 
 
 def read_glb(path, mesh=0):
@@ -260,6 +271,48 @@ class Checks:
         print(f"{'b.precomputed by Draco':28} {len(steps)} triangles, within {far:.3g} of {error:.3g} mm")
 
 
+    def far(self):
+        """A volume far from the origin gives the mesh of the same volume at the origin, moved by the offset in 64 bits."""
+        offset = np.array([500000.1, 4649776.7, 120.3])
+        samples = open(self.path("volume.nrrd"), "rb").read().split(b"\n\n", 1)[1]
+
+        def write(name, place):
+            header = (
+                "NRRD0004\ntype: uint8\ndimension: 3\nspace dimension: 3\nsizes: 40 36 32\nencoding: raw\n"
+                "space directions: (0.01,0,0) (0,0.01,0) (0,0,0.02)\nspace origin: (%s,%s,%s)\n\n" % tuple(place)
+            )
+            with open(self.path("far.nrrd"), "wb") as out:
+                out.write(header.encode() + samples)
+            command = [self.program, "mesh", self.path("far.nrrd"), "-o", self.path(name), "--iso", "127.5", "--quiet"]
+            subprocess.run(command + (["--compress"] if name == "far.precomputed" else []), check=True)
+
+        def same(name, corners, expected):
+            assert np.asarray(corners).dtype == np.float64
+            assert (canonical(corners) == canonical(expected)).all(), f"{name}: other coordinates"
+            print(f"{name:28} {len(corners)} triangles, equal in 64 bits")
+
+        write("near.ply", (0, 0, 0))
+        near = np.asarray(of_poly_data(with_vtk(vtkPLYReader(), self.path("near.ply"))), float)
+        assert len(near) > 1000
+        write("far.vtp", offset)
+        same("far.vtp by VTK", of_poly_data(with_vtk(vtkXMLPolyDataReader(), self.path("far.vtp"))), near + offset)
+        write("far.ply", offset)
+        same("far.ply by NumPy", read_wide_ply(self.path("far.ply")), near + offset)
+        write("far.off", offset)
+        same("far.off by NumPy", read_off(self.path("far.off"), np.float64), near + offset)
+        write("far.3mf", offset)
+        same("far.3mf by zipfile", read_3mf(self.path("far.3mf"), np.float64)[0], near + offset)
+        write("far.glb", offset)
+        corners, scene = read_glb(self.path("far.glb"))
+        assert scene["nodes"][0]["children"] == [1]
+        same("far.glb by NumPy", corners + np.array(scene["nodes"][1]["translation"]), near + offset)
+        if shutil.which("draco_decoder") is None or "--without-draco" in sys.argv:
+            return
+        write("far.precomputed", offset)
+        _, _, origin, transform = read_packed_precomputed(self.path("far.precomputed"), 1, self.folder)
+        assert np.allclose(transform[:, 3], offset, rtol=1e-15) and (np.abs(origin) < 1).all()
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         checks = Checks(os.path.abspath(sys.argv[1]), folder)
@@ -267,6 +320,7 @@ def main():
         checks.glb()
         checks.levels()
         checks.precomputed()
+        checks.far()
 
 
 if __name__ == "__main__":

@@ -291,7 +291,8 @@ TEST(ReadMesh, PlyDataThatAreWrong) {
   EXPECT_TRUE(failure("a.ply", header + points + "-3 0 1 2\n").starts_with("expected the length of list"));
   EXPECT_TRUE(failure("a.ply", header + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n").starts_with("vertex 0 has 'z' = nan"));
   EXPECT_TRUE(failure("a.ply", header + "0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n").starts_with("vertex 0 has 'z' = inf"));
-  EXPECT_EQ(failure("a.ply", header + "0 0 1e99\n1 0 0\n0 1 0\n3 0 1 2\n"), "expected a number, found '1e99'");
+  EXPECT_EQ(failure("a.ply", header + "0 0 1e99\n1 0 0\n0 1 0\n3 0 1 2\n"),
+            "vertex 0 has 'z' = 1e+99, expected a finite float32");
   EXPECT_EQ(failure("a.ply", header + points + "3 0 1 \x1b[2J\n"), "expected a number, found '?[2J'");
   EXPECT_EQ(failure("a.ply", header + points + "3 0 1 2\n7"), "expected the end of the file, found 1 more bytes");
   EXPECT_TRUE(failure("a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n").find("no number 'x'") !=

@@ -72,10 +72,11 @@ MeshFileOptions options_for(const files::Folder& parts, const std::string& name,
   return options;
 }
 
-void expect_same_file(const std::string& name, bool compress) {
+void expect_same_file(const std::string& name, bool compress, const std::array<double, 3>& offset = {0, 0, 0}) {
   const Pieces pieces;
   const files::Folder whole, cut, parts;
   MeshFileOptions options = options_for(parts, name, compress);
+  options.offset = offset;
   options.parts.clear();
   {
     const auto sink = open_mesh_file(whole / name, options);
@@ -84,6 +85,7 @@ void expect_same_file(const std::string& name, bool compress) {
     sink->finish();
   }
   options = options_for(parts, name, compress);
+  options.offset = offset;
   {
     const auto sink = open_mesh_file(cut / name, options);
     pieces.first(*sink);
@@ -108,6 +110,11 @@ void expect_same_file(const std::string& name, bool compress) {
 TEST(MeshMarks, EveryFormatGoesOnToTheSameFile) {
   for (const char* name : meshes::kFileNames) expect_same_file(name, false);
   expect_same_file("a.precomputed", false);
+}
+
+TEST(MeshMarks, SoItDoesFarFromTheOrigin) {
+  for (const char* name : meshes::kFileNames) expect_same_file(name, false, {5e6, 0.1, 0});
+  expect_same_file("a.precomputed", false, {5e6, 0.1, 0});
 }
 
 TEST(MeshMarks, PackedFormatsToo) {

@@ -12,5 +12,5 @@ export function valueAt(key) {
   return key.split('.').reduce((value, part) => value?.[part], report);
 }
 
-// The unit of lengths, or nothing where the volume does not say.
-export const unit = valueAt('input.unit') ?? '';
+// The unit of lengths, or nothing where neither the volume nor the mesh says.
+export const unit = valueAt('input.unit') || valueAt('page.check.unit') || '';
