@@ -89,7 +89,7 @@ class SceneReader {
     if (vertices_ == 0) input_.fail("expected triangles in the scene that is shown, found none");
     check_normals();
     std::vector<std::string>& notes = mesh_.mesh().notes;
-    notes.emplace_back("glTF is in metres, with y up: axes are as stored");
+    notes.emplace_back("glTF is in metres, with y up: axes are as stored, and a GLB written from them takes z for up");
     if (meshes_ > 1) notes.push_back(std::to_string(meshes_) + " meshes are joined");
     leftovers_.note(mesh_.mesh());
     MeshPlace place;
