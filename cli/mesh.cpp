@@ -21,6 +21,7 @@
 #include "mesh_state.hpp"
 #include "options.hpp"
 #include "output.hpp"
+#include "pipeline/forecast_reader.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "stop.hpp"
@@ -207,6 +208,7 @@ class MeshJob {
   void find_iso() {
     // Finds out now what would stop the run after the first pass.
     open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
+    check_reader(*volume_, options_, control_);
     options_.iso = automatic_iso(arguments_.input, *control_.stop);
     if (!quiet()) print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
   }
@@ -220,10 +222,21 @@ class MeshJob {
 
   // The number of triangles to stop at. A part of all takes their number first.
   void find_target() {
+    if (control_.memory > 0 && !arguments_.stop.ratio.empty()) foresee_share();
     options_.triangles = stop_triangles(arguments_.stop, [&] {
       choose();
       return components_ ? components_->triangles : count_triangles(*open_input(arguments_.input), options_, control_);
     });
+  }
+
+  // A cap that is too small for a part of all triangles is refused before they are counted.
+  void foresee_share() {
+    options_.triangles = stop_triangles(arguments_.stop, [&] {
+      return forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
+    });
+    const MeshFileOptions file = file_options(arguments_, arguments_.stop, options_, info_);
+    checked_forecast(arguments_, options_, file, control_);
+    options_.triangles = 0;
   }
 
   void foresee() {

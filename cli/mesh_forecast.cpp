@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "isoweave/error.hpp"
 #include "output.hpp"
+#include "pipeline/memory_cap.hpp"
+#include "pipeline/sweep.hpp"
 #include "report.hpp"
 
 namespace isoweave::cli {
@@ -24,8 +27,8 @@ std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::ui
       out_of_reach ? fmt::format(": small components and the error keep more than the {} asked for",
                                  short_count(static_cast<double>(asked)))
                    : "",
-      byte_text(bytes), byte_text(forecast.peak_bytes),
-      byte_text(forecast.least_bytes), forecast.seconds, threads, threads == 1 ? "" : "s");
+      byte_text(bytes), byte_text(forecast.peak_bytes), cap_text(whole_cap(forecast.least_bytes)), forecast.seconds,
+      threads, threads == 1 ? "" : "s");
 }
 
 Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
@@ -36,9 +39,10 @@ Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& opt
       output_memory(arguments.output, forecast.vertices, forecast.triangles, file) + watch_memory(arguments.watch);
   forecast.peak_bytes += beside;
   forecast.least_bytes += beside;
-  if (control.memory > 0 && forecast.least_bytes > control.memory) {
-    throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more, found {}", arguments.input.path,
-                                 std::ceil(static_cast<double>(forecast.least_bytes) * 1e-6), arguments.memory));
+  // A run with that cap looks at the volume, too.
+  forecast.least_bytes = std::max(forecast.least_bytes, with_slack(peak_process_bytes()));
+  if (control.memory > 0 && without_slack(forecast.least_bytes) > control.memory) {
+    refuse_cap(arguments.input.path, forecast.least_bytes, control.memory);
   }
   return forecast;
 }

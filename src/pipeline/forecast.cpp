@@ -7,7 +7,9 @@
 #include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
 #include "parallel/parallel.hpp"
+#include "pipeline/forecast_reader.hpp"
 #include "pipeline/forecast_tile.hpp"
+#include "pipeline/memory_cap.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/surface_field.hpp"
 #include "pipeline/sweep.hpp"
@@ -30,6 +32,8 @@ constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
 constexpr double kMostTile = 100000;
 constexpr double kTileBytes = 16e6;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
+constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever the cap: it must not be another forecast
+constexpr std::int64_t kThinnestBand = 8;  // rows
 
 // How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
 // flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
@@ -37,6 +41,7 @@ double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
 constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
 constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
+constexpr double kCountMargin = 2.3;  // the same, where what is held depends on a number of triangles
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;   // mean voxels
 constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
@@ -79,23 +84,28 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : volume_(volume), info_(volume.info()), options_(options) {
+      : volume_(volume), rows_(volume), info_(volume.info()), options_(options) {
     control_.threads = control.threads;
     control_.measure = true;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
     // Tiles tell how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
+    refuse_reader(control.memory);
+    band_rows_ = band_rows();
     plan_blocks();
   }
 
   Forecast run() {
+    if (constant_sample(volume_)) return conclude_constant();
     for (std::int64_t n = 0; n < blocks_; ++n) {
       const std::int64_t begin = slices_ * n / blocks_;
       const std::int64_t room = slices_ * (n + 1) / blocks_ - begin;
       const std::int64_t thick = n % every_ == every_ / 2 ? thick_ : 0;
       const std::int64_t thin = thick == 0 || room >= thick + kThin ? std::min(kThin, room) : 0;
       const std::int64_t first = begin + (room - thin - thick) / 2;
+      band_ = band_of(n);
+      if (n == 0 && first > 0 && options_.closed) look_at_first();
       BlockFacts facts;
       if (thin > 0) facts = look_at_thin(first, thin);
       if (thick > 0) facts = look_at_thick(first + thin, thick);
@@ -106,14 +116,41 @@ class Forecaster {
   }
 
  private:
+  // What meshing a block of slices holds, per sample of one: slices in the ring, and bits.
+  double block_bytes() const { return 9 * static_cast<double>(sample_bytes(info_.type)) + 4; }
+
+  // A source that decodes more at once than the cap leaves is not read from at all.
+  void refuse_reader(std::uint64_t cap) const {
+    const std::uint64_t held = held_by_rows(volume_);
+    const double least =
+        static_cast<double>(resident_ + held) + kThinnestBand * block_bytes() * static_cast<double>(info_.dims[0]);
+    if (cap == 0 || held == 0 || least <= static_cast<double>(cap)) return;
+    const Profiles none{Profile({0.0}, 1), Profile({0.0}, 1)};
+    refuse_cap(info_.path, with_slack(to_count(std::max(least, kCapMargin * peak(none, 1) / kUsedPart))), cap);
+  }
+
+  // Rows of the bands that are looked at: all, unless slices are so large that a block of them would not fit.
+  std::int64_t band_rows() const {
+    const double rows = kBandBytes / (block_bytes() * static_cast<double>(info_.dims[0]));
+    return std::clamp(static_cast<std::int64_t>(rows), std::min(kThinnestBand, info_.dims[1]), info_.dims[1]);
+  }
+
+  // Another band for each block, spread evenly however many there are (by the golden section), the first in the middle.
+  RowBand band_of(std::int64_t block) const {
+    const double place = 0.5 + 0.6180339887498949 * static_cast<double>(block);
+    const auto free = static_cast<double>(info_.dims[1] - band_rows_);
+    return {static_cast<std::int64_t>((place - std::floor(place)) * free), band_rows_};
+  }
+
   // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of
   // the volume.
   void plan_blocks() {
-    const auto slice = static_cast<double>(info_.slice_bytes());
+    const auto whole = static_cast<double>(info_.slice_bytes());
+    const double slice = whole * static_cast<double>(band_rows_) / static_cast<double>(info_.dims[1]);
     slices_ = info_.dims[2];
     if (!volume_.skips()) {
-      const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / slice);
-      slices_ = std::clamp<std::int64_t>(most, std::min(kThick, slices_), slices_);
+      const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / whole);
+      slices_ = std::clamp<std::int64_t>(most, std::min(band_rows_ < info_.dims[1] ? kThin : kThick, slices_), slices_);
     }
     const double budget =
         std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
@@ -125,8 +162,31 @@ class Forecaster {
     every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
+  // The first slice, where no block begins with it.
+  void look_at_first() {
+    const std::size_t row = info_.slice_bytes() / static_cast<std::size_t>(info_.dims[1]);
+    std::vector<std::byte> band(static_cast<std::size_t>(band_rows_) * row);
+    for (std::int64_t j = 0; j < info_.dims[1]; j += band_rows_) {
+      const std::int64_t rows = std::min(band_rows_, info_.dims[1] - j);
+      rows_.read(0, j, rows, band);
+      first_cap_ += 2 * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
+    }
+  }
+
+  double inside_in(std::span<const std::byte> bytes) const {
+    const IsoRule rule = stored_rule(info_, options_);
+    return visit_sample_type(info_.type, [&]<class T>() {
+      const std::span samples(reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
+      const auto is_inside = [&](T sample) {
+        const auto value = static_cast<double>(sample);
+        return rule.above ? value >= rule.iso : value <= rule.iso;
+      };
+      return static_cast<double>(std::ranges::count_if(samples, is_inside));
+    });
+  }
+
   BlockFacts look_at_thin(std::int64_t first, std::int64_t slices) {
-    map_ = TriangleMap(info_.dims);
+    map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});
     const auto look = [&](double i, double j, double /*k*/) { map_.add(i, j); };
     LocatingSink sink(info_.geometry.spacing, look);
     return look_at(first, slices, sink, nullptr);
@@ -135,32 +195,33 @@ class Forecaster {
   BlockFacts look_at_thick(std::int64_t first, std::int64_t slices) {
     CountingSink sink;
     if (error_ == 0) return look_at(first, slices, sink, nullptr);
-    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes());
+    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes()) / rows_in_bands();
     Tile tile(info_, map_.busy_part(std::min(1.0, kTileBytes / bytes)), slices);
     const BlockFacts facts = look_at(first, slices, sink, &tile);
-    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer);
+    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer / layers_in_bands());
     return facts;
   }
 
   // Counts the triangles of some slices, and fills a tile of them.
   template <class Sink>
   BlockFacts look_at(std::int64_t first, std::int64_t slices, Sink& sink, Tile* tile) {
-    std::uint64_t inside = 0;
-    Section section(volume_, first, slices, [&](std::int64_t n, std::span<const std::byte> slice) {
+    double inside = 0;
+    Section section(rows_, info_, first, slices, band_, [&](std::int64_t n, std::span<const std::byte> slice) {
       if (tile != nullptr) tile->take(n, slice);
       if (options_.closed) inside += inside_on_sides(slice);
+      if (options_.closed && first + n == 0) first_cap_ = 2 * inside_in(slice) * rows_in_bands();
     });
     Stopwatch watch;
     const MeshReport report = mesh(section, sink, 0, 0);
     watch.lap(seconds_extracting_);
-    slices_read_ += static_cast<double>(slices);
-    return {static_cast<double>(report.triangles) / layers(section),
-            2.0 * static_cast<double>(inside) / layers(section)};
+    slices_read_ += static_cast<double>(slices) / rows_in_bands();
+    return {static_cast<double>(report.triangles) / layers(section) * layers_in_bands(),
+            2.0 * inside / layers(section)};
   }
 
   // Simplifies as much of a tile as is a small part of the volume's surface.
   void simplify_part(const Tile& tile, double per_layer) {
-    const double expected = per_layer * static_cast<double>(info_.dims[2]);
+    const double expected = per_layer * layers_in_bands() * static_cast<double>(info_.dims[2]);
     const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
     Tile part = tile.cut(map_.busy_part(std::min(1.0, wanted / (per_layer * layers(tile)))));
     TileCount full = count(part, 0);
@@ -213,11 +274,19 @@ class Forecaster {
     return mesh_volume(block, sink, options, control_);
   }
 
-  // Samples on the sides of a slice.
-  std::uint64_t inside_on_sides(std::span<const std::byte> slice) const {
+  // Rows of a slice, and layers between them, for one in a band.
+  double rows_in_bands() const { return static_cast<double>(info_.dims[1]) / static_cast<double>(band_rows_); }
+  double layers_in_bands() const {
+    const auto between = [](std::int64_t rows) { return static_cast<double>(std::max<std::int64_t>(rows - 1, 1)); };
+    return between(info_.dims[1]) / between(band_rows_);
+  }
+
+  // Samples inside on the sides of a slice. Of a band two sides are cuts: the others stand for all four.
+  double inside_on_sides(std::span<const std::byte> slice) const {
     const IsoRule rule = stored_rule(info_, options_);
     const std::int64_t nx = info_.dims[0];
-    const std::int64_t ny = info_.dims[1];
+    const std::int64_t ny = band_.count;
+    const bool whole = ny == info_.dims[1];
     return visit_sample_type(info_.type, [&]<class T>() {
       const T* const samples = reinterpret_cast<const T*>(slice.data());
       std::uint64_t inside = 0;
@@ -225,9 +294,10 @@ class Forecaster {
         const auto value = static_cast<double>(samples[j * nx + i]);
         inside += (rule.above ? value >= rule.iso : value <= rule.iso) ? 1 : 0;
       };
-      for (std::int64_t i = 0; i < nx; ++i) add(i, 0), add(i, ny - 1);
+      for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, ny - 1);
       for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);
-      return inside;
+      const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
+      return static_cast<double>(inside) * (whole ? 1 : sides / static_cast<double>(ny));
     });
   }
 
@@ -248,7 +318,8 @@ class Forecaster {
     if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profiles, options_.slab));
-    forecast.least_bytes = to_count(kCapMargin * peak(profiles, 1) / kUsedPart);
+    forecast.least_bytes =
+        with_slack(to_count((options_.triangles > 0 ? kCountMargin : kCapMargin) * peak(profiles, 1) / kUsedPart));
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
@@ -259,6 +330,23 @@ class Forecaster {
     const std::uint64_t most =
         std::isinf(error_) ? options_.triangles : std::max(options_.triangles, forecast.triangles);
     return std::min(most, forecast.triangles_extracted);
+  }
+
+  // Nothing but the six sides of a closed volume that is inside as a whole.
+  Forecast conclude_constant() {
+    const SampleBytes sample = *constant_sample(volume_);
+    const IsoRule rule = stored_rule(info_, options_);
+    const double value = visit_sample_type(info_.type, [&]<class T>() {
+      T stored{};
+      std::memcpy(&stored, sample.data(), sizeof(T));
+      return static_cast<double>(stored);
+    });
+    const bool inside = rule.above ? value >= rule.iso : value <= rule.iso;
+    const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
+    facts_.push_back({0, inside && options_.closed ? 4 * sides : 0});
+    slices_read_ = 1;
+    blocks_ = 1;
+    return conclude();
   }
 
   // How many triangles lie below a height, in layers: between the middles of two blocks the facts go from those of the
@@ -319,7 +407,7 @@ class Forecaster {
   // Goes through the slabs of a run.
   double peak(const Profiles& profiles, std::int64_t asked) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
-    const MemoryModel model{resident_ + SurfaceField::memory(info_, options_),
+    const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
                             field.slice_bytes(),
                             static_cast<std::uint64_t>(info_.slice_samples()),
                             Executor(control_.threads).threads(),
@@ -348,7 +436,7 @@ class Forecaster {
       recent = planned;
       const auto extracted = [&] {
         const double end = at + static_cast<double>(recent);
-        return sum(profiles.open, at, end) + sum(profiles.caps, at, end);
+        return sum(profiles.open, at, end) + sum(profiles.caps, at, end) + (done == 0 ? first_cap_ : 0);
       };
       const double fullest = 2 * static_cast<double>(goal.most_vertices);
       while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
@@ -362,6 +450,7 @@ class Forecaster {
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
 
   SliceSource& volume_;
+  RowReader rows_;
   const VolumeInfo info_;
   const MeshOptions& options_;
   RunControl control_;
@@ -370,6 +459,8 @@ class Forecaster {
   double tile_error_ = 0;        // of tiles
   std::int64_t slices_ = 0;      // that are looked at
   std::int64_t thick_ = 0;       // slices of a thick block
+  std::int64_t band_rows_ = 1;   // of a slice, that are looked at
+  RowBand band_;                 // of the block
   TriangleMap map_{info_.dims};  // of the last thin block
   std::int64_t blocks_ = 0;
   std::int64_t every_ = 1;  // so many blocks one is thick
@@ -377,12 +468,17 @@ class Forecaster {
   double slices_read_ = 0;                // in all blocks
   double simplified_ = 0;                 // triangles of tiles
   std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
+  double first_cap_ = 0;                  // triangles below the first slice, two for each sample inside
   double left_ = 1;                       // share of the triangles that is left
   double depth_ = 0;                      // layers seen undecided
   double seconds_extracting_ = 0, seconds_simplifying_ = 0;
 };
 
 }  // namespace
+
+void check_reader(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  Forecaster(volume, options, control);
+}
 
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
   return Forecaster(volume, options, control).run();

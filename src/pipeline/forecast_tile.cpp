@@ -82,16 +82,19 @@ Tile Tile::cut(const Rectangle& part) const {
   return smaller;
 }
 
-Section::Section(SliceSource& volume, std::int64_t first, std::int64_t slices, Look look)
-    : volume_(volume), first_(first), info_(volume.info()), look_(std::move(look)) {
+Section::Section(RowReader& rows, const VolumeInfo& info, std::int64_t first, std::int64_t slices, RowBand band,
+                 Look look)
+    : rows_(rows), first_(first), band_(band), info_(info), look_(std::move(look)) {
+  info_.dims[1] = band.count;
   info_.dims[2] = slices;
 }
 
 void Section::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
-  volume_.read(first_ + first, count, out);
   const std::size_t bytes = info_.slice_bytes();
   for (std::int64_t n = 0; n < count; ++n) {
-    look_(first + n, std::span<const std::byte>(out).subspan(static_cast<std::size_t>(n) * bytes, bytes));
+    const std::span<std::byte> slice = out.subspan(static_cast<std::size_t>(n) * bytes, bytes);
+    rows_.read(first_ + first + n, band_.from, band_.count, slice);
+    look_(first + n, slice);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "isoweave/volume.hpp"
+#include "volume/row_source.hpp"
 
 namespace isoweave {
 
@@ -64,19 +65,26 @@ class Tile final : public SliceSource {
   std::vector<std::byte> samples_;
 };
 
-// Slices of a volume as a volume of their own. Every slice that is read is shown to `look`.
+// Some rows of slices.
+struct RowBand {
+  std::int64_t from = 0, count = 0;
+};
+
+// A band of rows of some slices of a volume as a volume of its own. Every slice of it that is read is shown to `look`.
 class Section final : public SliceSource {
  public:
   using Look = std::function<void(std::int64_t n, std::span<const std::byte> slice)>;
 
-  Section(SliceSource& volume, std::int64_t first, std::int64_t slices, Look look);
+  // `rows` reads the volume that `info` is of.
+  Section(RowReader& rows, const VolumeInfo& info, std::int64_t first, std::int64_t slices, RowBand band, Look look);
 
   const VolumeInfo& info() const override { return info_; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
 
  private:
-  SliceSource& volume_;
+  RowReader& rows_;
   std::int64_t first_;
+  RowBand band_;
   VolumeInfo info_;
   Look look_;
 };

@@ -12,10 +12,12 @@
 #include "pipeline/component_slabs.hpp"
 #include "pipeline/device_slabs.hpp"
 #include "pipeline/host_slabs.hpp"
+#include "pipeline/memory_cap.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/surface_field.hpp"
 #include "pipeline/sweep.hpp"
 #include "slab/memory_model.hpp"
+#include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -36,6 +38,7 @@ class VolumeSweep {
         options_(options),
         control_(control),
         offset_(common_offset(sinks)),
+        reader_(held_by_slices(source)),
         executor_(control.threads),
         field_(source, options, executor_, control.measure),
         voxel_(mean_voxel(volume_.geometry)),
@@ -177,7 +180,7 @@ class VolumeSweep {
 
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{resident_ + SurfaceField::memory(volume_, options_) + engine_->other_bytes(),
+    const MemoryModel model{resident_ + reader_ + SurfaceField::memory(volume_, options_) + engine_->other_bytes(),
                             field_.info().slice_bytes(),
                             static_cast<std::uint64_t>(volume_.slice_samples()),
                             executor_.threads(),
@@ -186,31 +189,36 @@ class VolumeSweep {
                             level_errors_.size(),
                             options_.max_distance.value > 0};
     const auto undecided = static_cast<double>(engine_->held_triangles());
-    const double usable = kUsedPart * static_cast<double>(control_.memory);
-    const auto room = [&] {
+    const auto cap = static_cast<double>(control_.memory);
+    const auto room = [&](double part) {
       const auto layers = static_cast<double>(plan.layers);
       const double ring = MemoryModel::ring_for(layers, static_cast<double>(plan.ahead), normals());
-      return model.triangles_within(usable, layers, std::max(ring, static_cast<double>(window_->room())), undecided);
+      return model.triangles_within(part * cap, layers, std::max(ring, static_cast<double>(window_->room())),
+                                    undecided);
     };
-    while (plan.layers > 1 && room() < per_layer * static_cast<double>(plan.layers)) {
+    // The ring never shrinks: what thick slabs of few triangles would make of it is missing where there are more.
+    const auto thick = [&] {
+      const auto more = static_cast<double>(plan.layers + plan.ahead - 2);  // slices
+      return more * static_cast<double>(field_.info().slice_bytes()) > kRingPart * cap;
+    };
+    while (plan.layers > 1 && (thick() || room(kUsedPart) < per_layer * static_cast<double>(plan.layers))) {
       plan.layers = (plan.layers + 1) / 2;
       plan.ahead = std::min(plan.ahead, plan.layers);
     }
-    if (room() < per_layer || room() <= 0) refuse_layer(model, per_layer, undecided);
-    plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(room() / 2));
+    // A single layer may take more of the cap than slabs are planned for, unless a number of triangles holds much.
+    const double left = room(plan.layers > 1 || options_.triangles > 0 ? kUsedPart : kLastPart);
+    if (left < per_layer || left <= 0) refuse_layer(model, per_layer, undecided);
+    plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(left / 2));
   }
 
   [[noreturn]] void refuse_layer(const MemoryModel& model, double per_layer, double undecided) {
     const auto needed = static_cast<std::uint64_t>(
-        model.peak(1, static_cast<double>(window_->room()), per_layer, undecided) / kUsedPart);
-    std::string message = volume_.path + ": layer " + std::to_string(layers_ - engine_->layers_left() + 1) + " of " +
-                          std::to_string(layers_) + " needs a memory cap of " + std::to_string(needed) +
-                          " bytes, found " + std::to_string(control_.memory);
-    if (saves()) {
-      save_state();
-      message += "; the run can be resumed from " + control_.checkpoint.folder;
-    }
-    throw OverMemory(message);
+        model.peak(1, static_cast<double>(window_->room()), per_layer, undecided) / kUsedPart * kNamedMargin);
+    const std::string where = volume_.path + ": layer " + std::to_string(layers_ - engine_->layers_left() + 1) +
+                              " of " + std::to_string(layers_);
+    if (!saves()) refuse_cap(where, needed, control_.memory);
+    save_state();
+    refuse_cap(where, needed, control_.memory, "; the run can be resumed from " + control_.checkpoint.folder);
   }
 
   void read_slab(const SlabPlan& plan) {
@@ -404,6 +412,7 @@ class VolumeSweep {
   const RunIdentity identity_ =
       identity_of(volume_, options_, offset_);  // when the run begins: a file may change meanwhile
   const std::uint64_t resident_ = control_.memory > 0 ? resident_process_bytes() : 0;
+  const std::uint64_t reader_;  // bytes that the source may hold
   const Executor executor_;
   SurfaceField field_;
   double voxel_;  // mean side of a voxel

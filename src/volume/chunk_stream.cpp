@@ -159,6 +159,13 @@ bool has_chunks(const ChunkedArray& array) {
   return false;
 }
 
+// Of one chunk, decoded.
+std::uint64_t chunk_bytes(const ChunkedArray& array) {
+  std::uint64_t bytes = sample_bytes(array.type);
+  for (const std::int64_t size : array.chunk) bytes *= static_cast<std::uint64_t>(size);
+  return bytes;
+}
+
 // Chunks may be left out, so that any size may be claimed; what is held must be in some proportion to what is stored.
 void check_band(const ChunkedArray& array, std::int64_t slices, std::size_t slice_bytes) {
   constexpr std::uint64_t kRatio = 1 << 20;
@@ -204,11 +211,15 @@ OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice) {
   info.part = choice.part;
   info.notes = array.notes;
   info.notes.insert(info.notes.end(), choice.notes.begin(), choice.notes.end());
-  if (!has_chunks(array)) info.notes.emplace_back("no chunk is stored: every sample is the fill value");
+  const bool stored = has_chunks(array);
+  if (!stored) info.notes.emplace_back("no chunk is stored: every sample is the fill value");
   checked_volume_bytes(info);
   const std::int64_t depth = choice.axis[2] == kNoAxis ? 1 : array.chunk[choice.axis[2]];
   check_band(array, std::min(depth, info.dims[2]), info.slice_bytes());
   volume.swap_bytes = array.big_endian != (std::endian::native == std::endian::big);
+  volume.held_bytes =
+      static_cast<std::uint64_t>(std::min(depth, info.dims[2])) * info.slice_bytes() + 2 * chunk_bytes(array);
+  if (!stored) volume.constant = array.fill;
   volume.samples = std::make_unique<ChunkStream>(array, info, choice, depth);
   return volume;
 }

@@ -236,6 +236,7 @@ OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std:
   checked_volume_bytes(info);
   note_header(info, slices.front().slice);
   note_bits(info, placed);
+  volume.held_bytes = 4 * info.slice_bytes();  // one decoded and as it is stored, two between which others are made
   volume.samples = samples_of(info, shared, grid);
   return volume;
 }

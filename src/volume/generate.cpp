@@ -78,7 +78,7 @@ void store_row_as(SampleType type, std::span<const double> row, const Mapping& m
   }
 }
 
-class GeneratedSource final : public SliceSource {
+class GeneratedSource final : public RowSource {
  public:
   GeneratedSource(VolumeInfo info, const FieldKind& kind, std::uint64_t seed)
       : info_(std::move(info)),
@@ -91,24 +91,36 @@ class GeneratedSource final : public SliceSource {
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     check_slice_range(info_, next_, first, count, out.size());
     if (count == 0) return;
-    std::byte* to = out.data();
     for (std::int64_t k = first; k < first + count; ++k) {
       field_->begin_slice(k);
-      for (std::int64_t j = 0; j < info_.dims[1]; ++j) {
-        field_->fill_row(j, k, row_);
-        store_row_as(info_.type, row_, mapping_, to);
-        to += row_.size() * sample_bytes(info_.type);
-      }
+      fill_rows(k, 0, info_.dims[1], out.subspan(static_cast<std::size_t>(k - first) * info_.slice_bytes()));
     }
     next_ = first + count;
   }
 
+  void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    if (k != begun_) field_->begin_slice(k);
+    begun_ = k;
+    fill_rows(k, first, count, out);
+    next_ = k + 1;
+  }
+
  private:
+  void fill_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+    std::byte* to = out.data();
+    for (std::int64_t j = first; j < first + count; ++j) {
+      field_->fill_row(j, k, row_);
+      store_row_as(info_.type, row_, mapping_, to);
+      to += row_.size() * sample_bytes(info_.type);
+    }
+  }
+
   VolumeInfo info_;
   std::unique_ptr<Field> field_;
   Mapping mapping_;
   std::vector<double> row_;
   std::int64_t next_ = 0;
+  std::int64_t begun_ = -1;  // the slice of which rows were read last
 };
 
 }  // namespace

@@ -369,6 +369,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const std::vector<std::int64_t> chunk = chunks_of(session, open.dataset.id(), axes.size(), path);
   const std::int64_t depth = band_depth(volume.info, choice, chunk);
   check_stored(volume.info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
+  volume.held_bytes = 2 * static_cast<std::uint64_t>(depth) * volume.info.slice_bytes();
   volume.samples = std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth);
   if (found.place && !found.place->slope.empty()) {
     scale_samples(volume, scaling_of(*found.place, axes, choice, path));

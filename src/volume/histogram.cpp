@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
 
 #include "isoweave/error.hpp"
+#include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -15,6 +17,7 @@ namespace {
 constexpr std::int64_t kFineBins = 65536;
 constexpr int kNarrowest = -1000;  // its inverse is still a number
 constexpr int kMantissaBits = 52;
+constexpr std::int64_t kBlockBytes = 4 << 20;  // read at a time
 
 bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
 
@@ -47,6 +50,24 @@ HistogramCounter::HistogramCounter(SampleType type)
 
 void HistogramCounter::add(const std::byte* samples, std::int64_t count) {
   visit_sample_type(type_, [&]<class T>() { add_typed(reinterpret_cast<const T*>(samples), count); });
+}
+
+void HistogramCounter::add_equal(const std::byte* sample, std::uint64_t count) {
+  if (count == 0) return;
+  const std::uint64_t nan = nan_, infinite = infinite_;
+  add(sample, 1);
+  if (nan_ > nan) {
+    nan_ += count - 1;
+  } else if (infinite_ > infinite) {
+    infinite_ += count - 1;
+  } else {
+    visit_sample_type(type_, [&]<class T>() {
+      T value{};
+      std::memcpy(&value, sample, sizeof(T));
+      const auto bin = static_cast<std::int64_t>(bin_of(static_cast<double>(value), exponent_));
+      counts_[static_cast<std::size_t>(bin - first_)] += count - 1;
+    });
+  }
 }
 
 template <class T>
@@ -139,11 +160,21 @@ Histogram HistogramCounter::histogram(double slope, double intercept) const {
 Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
   const VolumeInfo& info = volume.info();
   HistogramCounter counter(info.type);
-  std::vector<std::byte> slice(info.slice_bytes());
+  if (const std::optional<SampleBytes> sample = constant_sample(volume)) {
+    counter.add_equal(sample->data(), static_cast<std::uint64_t>(info.slice_samples() * info.dims[2]));
+    return counter.histogram(info.slope, info.intercept);
+  }
+  const std::int64_t row = info.dims[0] * static_cast<std::int64_t>(sample_bytes(info.type));
+  const std::int64_t rows = std::clamp<std::int64_t>(kBlockBytes / row, 1, info.dims[1]);
+  std::vector<std::byte> block(static_cast<std::size_t>(rows * row));
+  RowReader reader(volume);
   for (std::int64_t k = 0; k < info.dims[2]; ++k) {
-    if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
-    volume.read(k, 1, slice);
-    counter.add(slice.data(), info.slice_samples());
+    for (std::int64_t j = 0; j < info.dims[1]; j += rows) {
+      if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
+      const std::int64_t count = std::min(rows, info.dims[1] - j);
+      reader.read(k, j, count, block);
+      counter.add(block.data(), count * info.dims[0]);
+    }
   }
   return counter.histogram(info.slope, info.intercept);
 }

@@ -34,6 +34,9 @@ class HistogramCounter {
   // Samples in the machine's byte order.
   void add(const std::byte* samples, std::int64_t count);
 
+  // The same sample so many times.
+  void add_equal(const std::byte* sample, std::uint64_t count);
+
   // The histogram of slope * sample + intercept.
   Histogram histogram(double slope, double intercept) const;
 
@@ -51,7 +54,8 @@ class HistogramCounter {
   std::vector<std::uint64_t> counts_;
 };
 
-// Reads the whole volume once, slice by slice. Throws Interrupted when `stop` is set, and what the source throws.
+// Reads the whole volume once, some rows at a time, or not at all where all samples are known to be one. Throws
+// Interrupted when `stop` is set, and what the source throws.
 Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop = nullptr);
 
 // Otsu's threshold: the value that splits the histogram into the two classes with the largest variance between them;

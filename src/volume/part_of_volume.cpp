@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "isoweave/volume.hpp"
+#include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -31,10 +32,10 @@ void check_range(const VolumeInfo& info, std::int64_t first, std::int64_t count)
   }
 }
 
-class CroppedVolume final : public SliceSource {
+class CroppedVolume final : public RowSource {
  public:
   CroppedVolume(std::unique_ptr<SliceSource> whole, const Region& region)
-      : whole_(std::move(whole)), info_(whole_->info()), region_(region), slice_(info_.slice_bytes()) {
+      : whole_(std::move(whole)), reader_(*whole_), info_(whole_->info()), region_(region) {
     std::array<double, 3> first{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (region.first[axis] < 0 || region.first[axis] >= region.end[axis] || region.end[axis] > info_.dims[axis]) {
@@ -54,25 +55,37 @@ class CroppedVolume final : public SliceSource {
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     check_range(info_, first, count);
     for (std::int64_t k = first; k < first + count; ++k) {
-      whole_->read(region_.first[2] + k, 1, slice_);
-      copy_rows(out.data() + static_cast<std::size_t>(k - first) * info_.slice_bytes());
+      read_rows(k, 0, info_.dims[1], out.subspan(static_cast<std::size_t>(k - first) * info_.slice_bytes()));
     }
   }
 
- private:
-  void copy_rows(std::byte* out) const {
+  // Some rows of the whole at a time.
+  void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const std::size_t sample = sample_bytes(info_.type);
     const std::size_t row = static_cast<std::size_t>(info_.dims[0]) * sample;
     const std::size_t whole_row = static_cast<std::size_t>(whole_->info().dims[0]) * sample;
-    const std::byte* from = slice_.data() + static_cast<std::size_t>(region_.first[1]) * whole_row +
-                            static_cast<std::size_t>(region_.first[0]) * sample;
-    for (std::int64_t j = 0; j < info_.dims[1]; ++j, from += whole_row, out += row) std::memcpy(out, from, row);
+    const auto most = static_cast<std::int64_t>(std::max<std::size_t>(kBlockBytes / whole_row, 1));
+    std::byte* to = out.data();
+    for (std::int64_t j = first; j < first + count; j += most) {
+      const std::int64_t rows = std::min(most, first + count - j);
+      block_.resize(static_cast<std::size_t>(rows) * whole_row);
+      reader_.read(region_.first[2] + k, region_.first[1] + j, rows, block_);
+      const std::byte* from = block_.data() + static_cast<std::size_t>(region_.first[0]) * sample;
+      for (std::int64_t n = 0; n < rows; ++n, from += whole_row, to += row) std::memcpy(to, from, row);
+    }
   }
 
+  std::uint64_t held_bytes() const override { return held_by_rows(*whole_); }
+  std::optional<SampleBytes> constant() const override { return constant_sample(*whole_); }
+
+ private:
+  static constexpr std::size_t kBlockBytes = 1 << 20;
+
   std::unique_ptr<SliceSource> whole_;
+  RowReader reader_;
   VolumeInfo info_;
   Region region_;
-  std::vector<std::byte> slice_;  // of the whole
+  std::vector<std::byte> block_;  // rows of the whole
 };
 
 bool means_are_float32(SampleType type) { return sample_bytes(type) <= 2 || type == SampleType::kFloat32; }

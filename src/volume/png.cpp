@@ -130,6 +130,7 @@ OpenedVolume open_png(const FilePtr& file) {
   info.dims = {png->width(), png->height(), 1};
   info.notes.emplace_back("the spacing is not given and taken as 1");
   check_plausible(info.path, checked_volume_bytes(info), file->size(), kDeflateRatio);
+  volume.held_bytes = info.slice_bytes();
   volume.samples = std::make_unique<DecodedStream>([png, bytes = info.slice_bytes()] { return decoded(*png, bytes); });
   return volume;
 }

@@ -9,6 +9,7 @@ RowReader::RowReader(SliceSource& volume) : volume_(volume), rows_(dynamic_cast<
 void RowReader::read(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
   if (rows_ != nullptr) return rows_->read_rows(k, first, count, out);
   const VolumeInfo& info = volume_.info();
+  if (count == info.dims[1]) return volume_.read(k, 1, out);
   if (held_ != k) {
     slice_.resize(info.slice_bytes());
     volume_.read(k, 1, slice_);

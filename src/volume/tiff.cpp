@@ -209,7 +209,9 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
     volume.samples = contiguous_samples(*tiff, info, images, numbers);
     return volume;
   }
-  volume.samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
+  auto samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
+  volume.held_bytes = samples->held_bytes();
+  volume.samples = std::move(samples);
   return volume;
 }
 

@@ -38,6 +38,14 @@ std::uint64_t TiffPageStream::skip(std::uint64_t count) {
   return done;
 }
 
+std::uint64_t TiffPageStream::held_bytes() {
+  if (!at_band()) return 0;
+  const std::uint64_t stored = TIFFGetStrileByteCount(tiff_->handle(), 0);
+  const auto tile = static_cast<std::uint64_t>(static_cast<double>(tile_width_) * static_cast<double>(tile_rows_)) *
+                    (tiled_ ? sample_bytes_ : 0);
+  return band_bytes() + tile + std::min(stored, tiff_->file()->size());
+}
+
 // Whether there is a band to read from; enters the next page where one has ended.
 bool TiffPageStream::at_band() {
   if (page_ >= pages_.size()) return false;

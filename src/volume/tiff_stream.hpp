@@ -21,6 +21,9 @@ class TiffPageStream final : public ByteStream {
   std::size_t read(std::span<std::byte> out) override;
   std::uint64_t skip(std::uint64_t count) override;
 
+  // What a band of the first page takes to be decoded: its rows, a tile, and what is stored of either.
+  std::uint64_t held_bytes();
+
  private:
   bool at_band();
   void enter_page();

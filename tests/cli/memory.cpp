@@ -1,8 +1,11 @@
 // Forecasts and caps on the command line.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -82,6 +85,91 @@ TEST(CliMemory, AmountsThatAreNoneAreRefused) {
   for (const std::string amount : {"500M", "0.5G", "400Mi", "500000K", "500000000", "1GB"}) {
     EXPECT_EQ(run(folder.path(), mesh({"--dry-run", "--quiet", "--memory", amount})).code, 0) << amount;
   }
+}
+
+// Megabytes that a refusal names.
+std::uint64_t named_cap(const Result& result) {
+  EXPECT_EQ(result.code, 5) << result.err;
+  std::smatch match;
+  if (!std::regex_search(result.err, match, std::regex("expected --memory ([0-9]+)M or more, found"))) {
+    ADD_FAILURE() << result.err;
+    return 0;
+  }
+  return std::stoull(match[1]);
+}
+
+std::vector<std::string> joined(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  using Words = std::vector<std::string>;
+  const std::vector<std::pair<std::string, Words>> cases{
+      {"generate:gyroid:96x96x120:uint8", {}},
+      {"generate:gyroid:96x96x120:uint8", {"--error", "1vox", "--max-distance", "0.5vox"}},
+      {"generate:gyroid:96x96x120:uint8", {"--ratio", "0.15"}},
+      {"generate:gyroid:128x128x64:int16", {"--normals", "quadric"}},
+      {"generate:noise:128x128x128:uint8", {"--error", "0"}},
+      {"generate:smooth:160x160x200:uint8", {"--lods", "0.1vox,0.5vox"}},
+      {"generate:sphere:900x900x60:uint8", {"--error", "0.5vox"}},
+      {"generate:sphere:400x400x60:uint8", {"--inside", "below"}},
+      {"generate:white:64x64x64:uint8", {}}};
+  for (const auto& [volume, more] : cases) {
+    SCOPED_TRACE(volume + (more.empty() ? "" : " " + more[0]));
+    const files::Folder folder;
+    const Words arguments = joined({"mesh", volume, "-o", "out.ply", "--quiet", "--iso", "127.5"}, more);
+    const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M"})));
+    const Result result = run(folder.path(), joined(arguments, {"--memory", std::to_string(cap) + "M"}));
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_LE(result.peak_bytes, cap * 1'000'000) << result.err;
+  }
+}
+
+// Slices of 256 MB, of which none is held.
+TEST(CliMemory, SlicesThatAreLargerThanTheCapAreRefusedAndNotHeld) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  const std::string volume = "generate:sphere:16000x16000x4:uint8";
+  const Result refused =
+      run(folder.path(), {"mesh", volume, "-o", "out.ply", "--iso", "127.5", "--error", "0", "--memory", "150M"});
+  EXPECT_GT(named_cap(refused), 900U);
+  EXPECT_LE(refused.peak_bytes, 150'000'000U);
+  const Result info = run(folder.path(), {"info", volume});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_LE(info.peak_bytes, 100'000'000U);
+}
+
+// What a reader must decode at once counts before it is decoded: a PNG-like band of chunks as deep as the volume.
+TEST(CliMemory, WhatTheReaderHoldsIsRefusedBeforeItIsRead) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  const std::string zarr =
+      R"({"zarr_format":2,"shape":[512,1000,1000],"chunks":[512,1000,1000],"dtype":"|u1","order":"C",)"
+      R"("fill_value":0,"compressor":null,"filters":null})";
+  std::filesystem::create_directory(folder / "a.zarr");
+  files::write_bytes(folder / "a.zarr/.zarray", zarr);
+  files::write_bytes(folder / "a.zarr/0.0.0", std::string(1000, '\0'));
+  const Result refused = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "1", "--memory", "200M"});
+  EXPECT_GT(named_cap(refused), 512U);
+  EXPECT_LE(refused.peak_bytes, 100'000'000U);
+}
+
+// 10^12 samples, none of them stored.
+TEST(CliMemory, AnArrayWithoutChunksIsAnsweredAtOnce) {
+  const files::Folder folder;
+  const std::string zarr = R"({"zarr_format":2,"shape":[10000,10000,10000],"chunks":[1,100,100],"dtype":"|u1",)"
+                           R"("order":"C","fill_value":7,"compressor":null,"filters":null})";
+  std::filesystem::create_directory(folder / "a.zarr");
+  files::write_bytes(folder / "a.zarr/.zarray", zarr);
+  const Result info = run(folder.path(), {"info", "a.zarr", "--json"});
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_EQ(Json::parse(info.out).at("input").at("max"), 7);
+  const Result forecast = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--dry-run"});
+  EXPECT_EQ(forecast.code, 0) << forecast.err;
+  const Result refused = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--memory", "100M"});
+  EXPECT_GT(named_cap(refused), 200U);
 }
 
 }  // namespace
