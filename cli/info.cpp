@@ -31,7 +31,15 @@ Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggest
                const std::string& path) {
   Json input = volume_json(info, path);
   add_range(input, histogram.min, histogram.max, histogram.nan);
+  if (histogram.whole) {
+    input["min"] = label_json((*histogram.whole)[0]);
+    input["max"] = label_json((*histogram.whole)[1]);
+  }
   input["infinite"] = histogram.infinite;
+  input["labels"] = Json::array();
+  for (const LabelName& label : info.labels) {
+    input["labels"].push_back({{"label", label_json(label.label)}, {"name", label.name}, {"layer", label.layer}});
+  }
   Json iso = Json::object();
   iso["otsu"] = suggested.otsu ? Json(*suggested.otsu) : Json(nullptr);
   if (suggested.formula) iso["formula"] = *suggested.formula;
@@ -64,6 +72,12 @@ std::string axes_text(const Geometry& geometry) {
   return text + "space " + std::string(space_name(geometry.space));
 }
 
+std::string range_text(const Histogram& histogram) {
+  if (histogram.empty()) return "no finite value";
+  if (histogram.whole) return fmt::format("{} to {}", (*histogram.whole)[0].text(), (*histogram.whole)[1].text());
+  return fmt::format("{} to {}", histogram.min, histogram.max);
+}
+
 std::string info_text(const VolumeInfo& info, const Histogram& histogram, const Suggestions& suggested,
                       const std::string& path) {
   const Geometry& geometry = info.geometry;
@@ -81,11 +95,13 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   if (info.slope != 1 || info.intercept != 0) {
     text += fmt::format("scaling    value = {} * stored + {}\n", info.slope, info.intercept);
   }
-  text += histogram.empty() ? "values     no finite value"
-                            : fmt::format("values     {} to {}", histogram.min, histogram.max);
+  text += "values     " + range_text(histogram);
   text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
   if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
   if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
+  for (const LabelName& label : info.labels) {
+    text += fmt::format("label      {} {}\n", label.label.text(), printable(label.name));
+  }
   for (const std::string& note : info.notes) text += fmt::format("note       {}\n", printable(note));
   if (!histogram.empty()) text += histogram_text(histogram);
   return text;

@@ -26,6 +26,7 @@
 #include "signals.hpp"
 #include "stop.hpp"
 #include "verbs.hpp"
+#include "volume/printable.hpp"
 #include "watch.hpp"
 
 namespace isoweave::cli {
@@ -108,23 +109,24 @@ void check_labels(const MeshArguments& arguments, const RunControl& control) {
 }
 
 // One mesh for each label.
-void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, SliceSource& volume,
+void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info,
                  const RunControl& control) {
-  const VolumeInfo& info = volume.info();
   Evidence evidence(arguments.run, arguments.page);
   LabelsTask task{arguments.input,
                   arguments.output,
                   arguments.run,
                   options,
                   parse_labels(arguments.labels),
+                  arguments.label_names,
                   arguments.numbered,
                   {},
                   {}};
-  task.file = [&](std::int64_t label) {
+  task.file = [&](const LabelName& label) {
     MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
-                     fmt::format("label {} {} {} quality {}{}", label, options.closed ? "closed" : "open",
+                     fmt::format("label {} {} {} quality {}{}", label.label.text(), options.closed ? "closed" : "open",
                                  stop_text(arguments.stop, kUsualError, 0), arguments.quality, smooth_text(options))};
+    if (!label.name.empty()) file.comments.push_back("name " + printable(label.name));
     return file;
   };
   task.describe = [&](Json& json) {
@@ -133,7 +135,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, Sli
     json["quality"] = arguments.quality;
     json["space"] = space_text(info.geometry, options.space);
   };
-  mesh_label_files(task, volume, control, evidence);
+  mesh_label_files(task, info, control, evidence);
 }
 
 // One run, step by step.
@@ -153,7 +155,7 @@ class MeshJob {
     const ProgressMode mode = progress_mode(arguments_.run.progress, quiet());
     check();
     open();
-    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, *volume_, control_);
+    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, info_, control_);
     Evidence evidence(arguments_.run, arguments_.page);
     if (arguments_.iso == "auto") find_iso();
     find_target();
@@ -412,10 +414,13 @@ void add_mesh_verb(CLI::App& app) {
       verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
   verb->add_option(
           "--labels", arguments->labels,
-          "Labels 1,2,5 of a label map, or all: one surface each from one sweep, -o a.ply makes a_label1.ply, ...")
+          "Labels of a label map by number or name, such as 1,2,5, or all: one surface each, in a file of its own")
       ->excludes("--iso", "--inside", "--lods", "--triangles", "--ratio", "--step", "--to-stdout", "--memory",
                  "--dry-run", "--checkpoint", "--every", "--color-by", "--min-component", "--largest", "--one-file",
                  "--html", "--page-triangles", "--watch");
+  verb->add_option("--label-names", arguments->label_names,
+                   "Names of labels for files and reports: a FreeSurfer, ITK-SNAP or BIDS table")
+      ->needs("--labels");
   exclude_task_options(*verb, *resume);
   verb->footer(kExamples);
   verb->callback([arguments, verb] {

@@ -80,6 +80,11 @@ void add_range(Json& input, double min, double max, std::uint64_t nan) {
   input["nan"] = nan;
 }
 
+Json label_json(const Label& label) {
+  if (label.is_negative()) return static_cast<std::int64_t>(label.bits());
+  return label.bits();
+}
+
 Json surface_json(const SurfaceReport& surface) {
   return {{"error", number_or_null(surface.error)},
           {"triangles", surface.triangles},

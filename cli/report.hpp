@@ -24,6 +24,9 @@ Json volume_json(const VolumeInfo& info, const std::string& path);
 // Adds min, max and nan; null where there is no value at all.
 void add_range(Json& input, double min, double max, std::uint64_t nan);
 
+// A label as a number.
+Json label_json(const Label& label);
+
 // A surface as it was written.
 Json surface_json(const SurfaceReport& surface);
 

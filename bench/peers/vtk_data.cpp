@@ -26,6 +26,10 @@ int vtk_type(isoweave::SampleType type) {
       return VTK_UNSIGNED_INT;
     case SampleType::kInt32:
       return VTK_INT;
+    case SampleType::kUint64:
+      return VTK_UNSIGNED_LONG_LONG;
+    case SampleType::kInt64:
+      return VTK_LONG_LONG;
     case SampleType::kFloat32:
       return VTK_FLOAT;
     case SampleType::kFloat64:

@@ -237,7 +237,7 @@ MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, co
 
 // A label of a label map, and where its mesh goes.
 struct LabelSink {
-  std::int64_t label = 0;
+  Label label;
   MeshSink* sink = nullptr;
   std::optional<Region> box{};  // that holds every sample of the label, as find_labels tells; none: the whole volume
 };

@@ -16,9 +16,24 @@
 #include <string_view>
 #include <vector>
 
+#include "isoweave/label.hpp"
+
 namespace isoweave {
 
-enum class SampleType : std::uint8_t { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64 };
+// Integers of 64 bits are compared as they are. Where a number is made of one (the place of a surface, a mean, the
+// range in a report), it is rounded to a double beyond 2^53.
+enum class SampleType : std::uint8_t {
+  kUint8,
+  kInt8,
+  kUint16,
+  kInt16,
+  kUint32,
+  kInt32,
+  kUint64,
+  kInt64,
+  kFloat32,
+  kFloat64
+};
 
 // Size of one sample in bytes.
 std::size_t sample_bytes(SampleType type);
@@ -51,6 +66,7 @@ struct VolumeInfo {
   Geometry geometry;
   double slope = 1;                // value = slope * stored + intercept; slope is not 0
   double intercept = 0;            // iso-values are given as values, samples stay as stored
+  std::vector<LabelName> labels;   // what the file says of labels, in its order (segmentations of 3D Slicer)
   std::vector<std::string> notes;  // things a user should know: "4-D: the first of 12 volumes is read"
 
   std::int64_t slice_samples() const { return dims[0] * dims[1]; }
@@ -171,23 +187,31 @@ struct SmoothOptions {
 std::unique_ptr<SliceSource> smooth_mask(std::unique_ptr<SliceSource> volume, const SmoothOptions& options = {},
                                          int threads = 0);
 
-// One label of a label map as a mask: uint8, 1 where the sample is the label and 0 elsewhere, to be meshed at iso 0.5.
-// Throws BadInput when the samples are not integers or are scaled (slope and intercept other than 1 and 0).
-std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, std::int64_t label);
+// A label map is a volume whose values are whole numbers: integers, also with a slope and an intercept that are whole
+// numbers, or floats up to 2^53. All that read one throw BadInput where it has another scaling, and when they come upon
+// a value that is none: it is named with its place.
+
+// One label of a label map as a mask: uint8, 1 where the value is the label and 0 elsewhere, to be meshed at iso 0.5.
+std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, Label label);
 
 // What is known of a label after a look at the volume.
 struct LabelExtent {
-  std::int64_t label = 0;
+  Label label;
   std::uint64_t samples = 0;
-  Region box;  // the smallest that holds them; empty where there are none
+  Region box;              // the smallest that holds them; empty where there are none
+  std::uint64_t runs = 0;  // of samples that follow each other along i
 };
 
 inline constexpr std::size_t kMostLabels = 4096;
 
 // Where labels lie in a label map: the `wanted` ones in their order, also those that do not occur, or, where none are
-// named, all that do, ascending, but 0, which is background. Reads the volume once. Throws what label_volume throws;
-// BadInput when all labels are more than kMostLabels; Interrupted when `stop` is set.
-std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const std::int64_t> wanted = {},
+// named, all that do, ascending, but 0, which is background. Reads the volume once. Throws BadInput when all labels are
+// more than kMostLabels; Interrupted when `stop` is set.
+std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted = {},
                                      const std::atomic<bool>* stop = nullptr);
+
+// Labels of these that lie about like the grey values of an image: thin, and hardly filling their box. A map of which
+// most do is none, as a rule; docs/labels.md has the measurements.
+std::size_t count_scattered(std::span<const LabelExtent> labels);
 
 }  // namespace isoweave

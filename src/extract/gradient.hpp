@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "isoweave/mesh.hpp"
 #include "parallel/host_device.hpp"
@@ -12,17 +13,39 @@
 
 namespace isoweave {
 
+// Whether samples of a type may not be doubles.
+template <class T>
+inline constexpr bool kIsWide = std::is_integral_v<T> && sizeof(T) == 8;
+
+// What numbers of wide samples are counted from: differences are exact before they are rounded.
+template <class T>
+struct SampleBase {
+  ISOWEAVE_HD double number(T sample) const { return static_cast<double>(sample); }
+};
+
+template <class T>
+requires kIsWide<T>
+struct SampleBase<T> {
+  T base = 0;
+
+  ISOWEAVE_HD double number(T sample) const {
+    const auto up = static_cast<std::uint64_t>(sample) - static_cast<std::uint64_t>(base);
+    return sample >= base ? static_cast<double>(up) : -static_cast<double>(-up);
+  }
+};
+
 // A row of samples; NaN outside the volume.
 template <class T>
 struct SampleRow {
   const T* samples = nullptr;
   std::int64_t size = 0;  // 0 for a row outside
+  [[no_unique_address]] SampleBase<T> base{};
 
   ISOWEAVE_HD double operator[](std::int64_t i) const {
     if (static_cast<std::uint64_t>(i) >= static_cast<std::uint64_t>(size)) {
       return std::numeric_limits<double>::quiet_NaN();
     }
-    return static_cast<double>(samples[i]);
+    return base.number(samples[i]);
   }
 };
 

@@ -227,7 +227,7 @@ struct MarchingCubes::EdgeRow {
 // Numbers the crossings, after the inherited ones, and makes vertices of them.
 template <class T>
 void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) {
-  const SampleView<T> samples(window);
+  const SampleView<T> samples(window, options_.rule.iso);
   for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
     const std::int64_t j = static_cast<std::int64_t>(row) - 1;
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
@@ -265,7 +265,7 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
     const double f0 = edges.low[i];
     const double f1 = edges.high[Axis == 0 ? i + 1 : i];
     const bool low_inside = (inside >> (bit & 63) & 1) != 0;
-    const double t = crossing_parameter(f0, f1, options_.rule.iso, low_inside);
+    const double t = crossing_parameter(f0, f1, samples.iso(), low_inside);
     const auto low = static_cast<double>(first_[0] + i);
     const double x = Axis == 0 ? low + t : low;
     *position++ = {x * spacing_[0], (Axis == 1 ? j + t : j) * spacing_[1], (Axis == 2 ? k + t : k) * spacing_[2]};

@@ -20,7 +20,8 @@ struct Comparison {
 
 struct RowKernels {
   std::tuple<Comparison<std::uint8_t>, Comparison<std::int8_t>, Comparison<std::uint16_t>, Comparison<std::int16_t>,
-             Comparison<std::uint32_t>, Comparison<std::int32_t>, Comparison<float>, Comparison<double>>
+             Comparison<std::uint32_t>, Comparison<std::int32_t>, Comparison<std::uint64_t>, Comparison<std::int64_t>,
+             Comparison<float>, Comparison<double>>
       compare;
 
   // Bits that differ from the next one in the row, where `mask` has bits. All rows have as many words.

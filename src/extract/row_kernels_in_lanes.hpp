@@ -34,12 +34,12 @@ template <class Lanes>
 class RowKernelsInLanes {
  public:
   static constexpr RowKernels table() {
-    return {
-        {comparison<std::uint8_t>(), comparison<std::int8_t>(), comparison<std::uint16_t>(), comparison<std::int16_t>(),
-         comparison<std::uint32_t>(), comparison<std::int32_t>(), comparison<float>(), comparison<double>()},
-        differ_along,
-        differ,
-        cells_crossed};
+    return {{comparison<std::uint8_t>(), comparison<std::int8_t>(), comparison<std::uint16_t>(),
+             comparison<std::int16_t>(), comparison<std::uint32_t>(), comparison<std::int32_t>(),
+             comparison<std::uint64_t>(), comparison<std::int64_t>(), comparison<float>(), comparison<double>()},
+            differ_along,
+            differ,
+            cells_crossed};
   }
 
  private:

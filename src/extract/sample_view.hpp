@@ -2,27 +2,41 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "extract/gradient.hpp"
 #include "slab/slice_window.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 
-// Read access to the samples a window holds; NaN outside the volume.
+// Read access to the samples a window holds; NaN outside the volume. Integers of 64 bits count from the whole number
+// below `iso`, so that none near it is rounded.
 template <class T>
 class SampleView {
  public:
-  explicit SampleView(const SliceWindow& window) : window_(window), dims_(window.info().dims) {}
+  explicit SampleView(const SliceWindow& window, double iso = 0)
+      : window_(window), dims_(window.info().dims), iso_(iso) {
+    if constexpr (kIsWide<T>) {
+      base_.base = nearest_integer<T>(std::floor(iso));
+      iso_ = iso - static_cast<double>(base_.base);
+    }
+  }
+
+  // The iso-value in the numbers that rows give.
+  double iso() const { return iso_; }
 
   SampleRow<T> row(std::int64_t j, std::int64_t k) const {
     if (j < 0 || k < 0 || j >= dims_[1] || k >= dims_[2]) return {};
-    return {reinterpret_cast<const T*>(window_.slice(k)) + j * dims_[0], dims_[0]};
+    return {reinterpret_cast<const T*>(window_.slice(k)) + j * dims_[0], dims_[0], base_};
   }
 
  private:
   const SliceWindow& window_;
   std::array<std::int64_t, 3> dims_;
+  double iso_;
+  [[no_unique_address]] SampleBase<T> base_{};
 };
 
 }  // namespace isoweave

@@ -16,6 +16,7 @@
 #include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
 #include "volume/samples.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 namespace {
@@ -289,10 +290,12 @@ class Forecaster {
     const bool whole = ny == info_.dims[1];
     return visit_sample_type(info_.type, [&]<class T>() {
       const T* const samples = reinterpret_cast<const T*>(slice.data());
+      const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
       std::uint64_t inside = 0;
+      if (!threshold.reachable) return inside;
       const auto add = [&](std::int64_t i, std::int64_t j) {
-        const auto value = static_cast<double>(samples[j * nx + i]);
-        inside += (rule.above ? value >= rule.iso : value <= rule.iso) ? 1 : 0;
+        const T value = samples[j * nx + i];
+        inside += (rule.above ? value >= threshold.value : value <= threshold.value) ? 1 : 0;
       };
       for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, ny - 1);
       for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);

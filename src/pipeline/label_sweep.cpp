@@ -26,7 +26,7 @@ HostSlabs::Options label_options(const SliceWindow& map, const Region& box, cons
 
 }  // namespace
 
-LabelBox::LabelBox(const SliceWindow& map, const Region& box, std::int64_t label)
+LabelBox::LabelBox(const SliceWindow& map, const Region& box, Label label)
     : map_(map), box_(box), label_(label), info_(map.info()) {
   info_.type = SampleType::kUint8;
   for (std::size_t axis = 0; axis < 3; ++axis) info_.dims[axis] = box.end[axis] - box.first[axis];

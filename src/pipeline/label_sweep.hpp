@@ -14,10 +14,13 @@
 
 namespace isoweave {
 
+// Adds the report of another map of the same volume, a layer that lies on the first one.
+void add_layer(LabelsReport& report, LabelsReport&& layer);
+
 // The mask of a label in a box of the map, read from the slices that a window holds.
 class LabelBox final : public SliceSource {
  public:
-  LabelBox(const SliceWindow& map, const Region& box, std::int64_t label);
+  LabelBox(const SliceWindow& map, const Region& box, Label label);
 
   const VolumeInfo& info() const override { return info_; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
@@ -27,7 +30,7 @@ class LabelBox final : public SliceSource {
  private:
   const SliceWindow& map_;
   Region box_;
-  std::int64_t label_;
+  Label label_;
   VolumeInfo info_;
 };
 

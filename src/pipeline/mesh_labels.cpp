@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "isoweave/pipeline.hpp"
 #include "pipeline/checkpoint.hpp"
@@ -79,15 +80,16 @@ class LabelsSweep {
  public:
   LabelsSweep(SliceSource& map, std::span<const LabelSink> labels, const MeshOptions& options,
               const RunControl& control)
-      : volume_(checked_volume(map.info())),
+      : numbers_(map),
+        volume_(checked_volume(numbers_.info())),
         options_(options),
         control_(control),
         executor_(control.threads),
         simplifies_(simplifies(volume_, options)),
-        window_(map) {
-    check_label_map(volume_);
+        window_(numbers_) {
     check_options(options, control);
     zone_options(volume_, options);  // finds out now what is wrong with them
+    warn_of_floats(map.info().type, labels);
     make_lanes(labels);
   }
 
@@ -121,14 +123,23 @@ class LabelsSweep {
     for (Lane& lane : lanes_) lane.large = samples_in(lane.box) * executor_.threads() > all;
   }
 
+  void warn_of_floats(SampleType type, std::span<const LabelSink> labels) {
+    constexpr std::uint64_t kLargestWhole = std::uint64_t{1} << 24;  // whole numbers up to it are float32, all of them
+    const bool large = std::ranges::any_of(labels, [](const LabelSink& sink) {
+      return (sink.label.is_negative() ? -sink.label.bits() : sink.label.bits()) > kLargestWhole;
+    });
+    if (type != SampleType::kFloat32 || !large) return;
+    report_.total.warnings.push_back(volume_.path +
+                                     ": labels beyond 2^24 in float32 may have been rounded: several may be one");
+  }
+
   void check_box(const LabelSink& label, const Region& box) const {
     if (is_empty(box)) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (box.first[axis] >= 0 && box.end[axis] <= volume_.dims[axis]) continue;
-      throw std::invalid_argument(volume_.path + ": label " + std::to_string(label.label) +
-                                  ": expected a box within 0:" + std::to_string(volume_.dims[axis]) + " on axis " +
-                                  std::to_string(axis) + ", found " + std::to_string(box.first[axis]) + ":" +
-                                  std::to_string(box.end[axis]));
+      throw std::invalid_argument(volume_.path + ": label " + label.label.text() + ": expected a box within 0:" +
+                                  std::to_string(volume_.dims[axis]) + " on axis " + std::to_string(axis) + ", found " +
+                                  std::to_string(box.first[axis]) + ":" + std::to_string(box.end[axis]));
     }
   }
 
@@ -230,7 +241,7 @@ class LabelsSweep {
     for (Lane& lane : lanes_) {
       if (lane.report.triangles == 0) {
         lane.report.warnings.push_back(
-            volume_.path + ": label " + std::to_string(lane.label->label) +
+            volume_.path + ": label " + lane.label->label.text() +
             (lane.report.triangles_extracted > 0 ? " has no triangles left" : " does not occur") +
             ": its mesh is empty");
       }
@@ -243,6 +254,7 @@ class LabelsSweep {
     report_.total.max = range_.max;
   }
 
+  LabelNumbers numbers_;
   const VolumeInfo volume_;
   const MeshOptions& options_;
   const RunControl& control_;
@@ -259,6 +271,20 @@ class LabelsSweep {
 };
 
 }  // namespace
+
+void add_layer(LabelsReport& report, LabelsReport&& layer) {
+  MeshReport& total = report.total;
+  SampleRange range{total.min, total.max, total.nan};
+  range.merge({layer.total.min, layer.total.max, layer.total.nan});
+  total.min = range.min;
+  total.max = range.max;
+  total.seconds_read += std::exchange(layer.total.seconds_read, 0);
+  add_to(total, layer.total);
+  total.seconds_total += layer.total.seconds_total;
+  total.peak_bytes = std::max(total.peak_bytes, layer.total.peak_bytes);
+  total.sweep.insert(total.sweep.end(), layer.total.sweep.begin(), layer.total.sweep.end());
+  for (MeshReport& label : layer.labels) report.labels.push_back(std::move(label));
+}
 
 LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
                          const RunControl& control) {

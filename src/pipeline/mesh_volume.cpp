@@ -137,6 +137,8 @@ class VolumeSweep {
     if (options_.components != nullptr) refuse("components to be dropped");
     if (options_.normals == Normals::kQuadric) refuse("normals by quadrics");
     if (options_.values != nullptr) refuse("values of another volume");
+    const SampleType type = field_.info().type;
+    if (type == SampleType::kUint64 || type == SampleType::kInt64) refuse("integers of 64 bits");
     if (saves() || control_.resume != nullptr) refuse("states to be saved or resumed");
     if (control_.observer != nullptr) refuse("an observer");
     if (control_.schedule != Schedule::kAutomatic && control_.schedule != Schedule::kRounds) {

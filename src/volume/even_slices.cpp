@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volume/samples.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 namespace {
@@ -16,7 +17,7 @@ template <class T>
 T between(T low, T high, double weight) {
   const double value = std::lerp(static_cast<double>(low), static_cast<double>(high), weight);
   constexpr double kHalf = 0.5;
-  if constexpr (std::is_integral_v<T>) return static_cast<T>(std::floor(value + kHalf));
+  if constexpr (std::is_integral_v<T>) return nearest_integer<T>(std::floor(value + kHalf));
   return static_cast<T>(value);
 }
 

@@ -63,12 +63,14 @@ SampleType sample_type_of(std::int64_t bits, const std::string& path) {
       return SampleType::kInt16;
     case 32:
       return SampleType::kInt32;
+    case 64:
+      return SampleType::kInt64;
     case -32:
       return SampleType::kFloat32;
     case -64:
       return SampleType::kFloat64;
     default:
-      bad_input(path, "BITPIX 8, 16, 32, -32 or -64", std::to_string(bits));
+      bad_input(path, "BITPIX 8, 16, 32, 64, -32 or -64", std::to_string(bits));
   }
 }
 

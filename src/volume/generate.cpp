@@ -71,6 +71,10 @@ void store_row_as(SampleType type, std::span<const double> row, const Mapping& m
       return store_row<std::uint32_t>(row, mapping, out);
     case SampleType::kInt32:
       return store_row<std::int32_t>(row, mapping, out);
+    case SampleType::kUint64:
+      return store_row<std::uint64_t>(row, mapping, out);
+    case SampleType::kInt64:
+      return store_row<std::int64_t>(row, mapping, out);
     case SampleType::kFloat32:
       return store_row<float>(row, mapping, out);
     case SampleType::kFloat64:

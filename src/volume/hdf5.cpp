@@ -110,7 +110,7 @@ std::string text_of(const Hdf5Dataset& dataset) {
   return text + " " + dataset.type_text + ")";
 }
 
-constexpr std::string_view kReadTypes = "integers of 8, 16 or 32 bits or floats of 32 or 64 bits";
+constexpr std::string_view kReadTypes = "integers of 8 to 64 bits or floats of 32 or 64 bits";
 
 // The one that is taken when none is named: the only one of three axes or more whose samples can be read.
 std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::string& path) {

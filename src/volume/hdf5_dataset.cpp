@@ -50,6 +50,7 @@ std::optional<SampleType> sample_type_of(const Number& number) {
   if (number.bytes == 1) return number.is_signed ? SampleType::kInt8 : SampleType::kUint8;
   if (number.bytes == 2) return number.is_signed ? SampleType::kInt16 : SampleType::kUint16;
   if (number.bytes == 4) return number.is_signed ? SampleType::kInt32 : SampleType::kUint32;
+  if (number.bytes == 8) return number.is_signed ? SampleType::kInt64 : SampleType::kUint64;
   return std::nullopt;
 }
 
@@ -167,12 +168,11 @@ std::optional<std::vector<double>> read_plain(const Hdf5Functions& h5, hid_t typ
   const hssize_t count = h5.sget_simple_extent_npoints(space);
   if (!number || count < 1 || count > most) return std::nullopt;
   const std::optional<SampleType> known = sample_type_of(*number);
-  if (!known && number->bytes != sizeof(std::int64_t)) return std::nullopt;
+  if (!known) return std::nullopt;
   std::vector<std::byte> values(static_cast<std::size_t>(count) * number->bytes);
   if (read(values.data()) < 0) return std::nullopt;
   const bool swap = number->big_endian != (std::endian::native == std::endian::big);
   if (swap) swap_sample_bytes(values, number->bytes);
-  if (!known) return number->is_signed ? as_doubles<std::int64_t>(values) : as_doubles<std::uint64_t>(values);
   return visit_sample_type(*known, [&]<class Value>() { return as_doubles<Value>(values); });
 }
 

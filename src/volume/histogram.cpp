@@ -86,6 +86,10 @@ void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
     }
   }
   if (finite == 0) return;
+  if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::int64_t)) {
+    if (!whole_) whole_ = {low, high};
+    whole_ = {std::min<Label>((*whole_)[0], low), std::max<Label>((*whole_)[1], high)};
+  }
   make_room(static_cast<double>(low), static_cast<double>(high));
   const double scale = std::ldexp(1.0, -exponent_);
   for (std::int64_t n = 0; n < count; ++n) {
@@ -141,6 +145,7 @@ Histogram HistogramCounter::histogram(double slope, double intercept) const {
   const double ends[] = {slope * min_ + intercept, slope * max_ + intercept};
   result.min = std::min(ends[0], ends[1]);
   result.max = std::max(ends[0], ends[1]);
+  if (slope == 1 && intercept == 0) result.whole = whole_;
   // A bin of integers holds one value when its width is 1: its lower end, not its middle.
   const double inside = is_integer(type_) && exponent_ == 0 ? 0 : 0.5;
   constexpr double kBins = static_cast<double>(Histogram::kBins);

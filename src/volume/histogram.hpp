@@ -19,7 +19,8 @@ struct Histogram {
   double max = 0;
   std::uint64_t nan = 0;
   std::uint64_t infinite = 0;
-  std::array<std::uint64_t, kBins> bins{};  // equal parts of [min, max], the last one closed
+  std::optional<std::array<Label, 2>> whole;  // min and max without rounding, of integers of 64 bits without a scaling
+  std::array<std::uint64_t, kBins> bins{};    // equal parts of [min, max], the last one closed
 
   bool empty() const { return min > max; }
 };
@@ -48,6 +49,7 @@ class HistogramCounter {
 
   SampleType type_;
   double min_ = 1, max_ = 0;
+  std::optional<std::array<Label, 2>> whole_;  // the same, of integers of 64 bits
   std::uint64_t nan_ = 0, infinite_ = 0;
   int exponent_;            // the width of a bin is 2^exponent_
   std::int64_t first_ = 0;  // fine bin n counts the samples in [first_ + n, first_ + n + 1) * width

@@ -16,17 +16,17 @@ namespace {
 
 constexpr std::size_t kMostCounted = std::size_t{1} << 20;  // labels, before it is no matter how many more there are
 
+// Whether numbers of a type can be the label.
 template <class T>
-bool is_of_type(std::int64_t label) {
-  return label >= static_cast<std::int64_t>(std::numeric_limits<T>::lowest()) &&
-         label <= static_cast<std::int64_t>(std::numeric_limits<T>::max());
+bool is_of_type(Label label) {
+  if (!label.is_negative()) return label.bits() <= static_cast<std::uint64_t>(std::numeric_limits<T>::max());
+  return std::is_signed_v<T> && Label(std::numeric_limits<T>::lowest()) <= label;
 }
 
 class LabelVolume final : public SliceSource {
  public:
-  LabelVolume(std::unique_ptr<SliceSource> map, std::int64_t label)
-      : map_(std::move(map)), info_(map_->info()), label_(label), slice_(info_.slice_bytes()) {
-    check_label_map(info_);
+  LabelVolume(std::unique_ptr<SliceSource> map, Label label)
+      : map_(std::move(map)), numbers_(*map_), info_(numbers_.info()), label_(label), slice_(info_.slice_bytes()) {
     info_.type = SampleType::kUint8;
   }
 
@@ -36,23 +36,30 @@ class LabelVolume final : public SliceSource {
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     auto* mask = reinterpret_cast<std::uint8_t*>(out.data());
     for (std::int64_t k = first; k < first + count; ++k, mask += info_.slice_samples()) {
-      map_->read(k, 1, slice_);
-      mask_row(slice_.data(), map_->info().type, info_.slice_samples(), label_, mask);
+      numbers_.read(k, 1, slice_);
+      mask_row(slice_.data(), numbers_.info().type, info_.slice_samples(), label_, mask);
     }
   }
 
  private:
   std::unique_ptr<SliceSource> map_;
+  LabelNumbers numbers_;
   VolumeInfo info_;
-  std::int64_t label_;
+  Label label_;
   std::vector<std::byte> slice_;  // of the map
 };
 
-// Finds extents, run by run of equal samples.
+// Finds extents, run by run of equal samples. Labels of one map are told apart by their bits.
 class ExtentFinder {
  public:
-  ExtentFinder(const VolumeInfo& volume, std::span<const std::int64_t> wanted) : volume_(volume), all_(wanted.empty()) {
-    for (const std::int64_t label : wanted) extents_.emplace(label, LabelExtent{label, 0, {}});
+  ExtentFinder(const VolumeInfo& volume, std::span<const Label> wanted) : volume_(volume), all_(wanted.empty()) {
+    visit_sample_type(volume.type, [&]<class T>() {
+      if constexpr (std::is_integral_v<T>) {
+        for (const Label label : wanted) {
+          if (is_of_type<T>(label)) extents_.emplace(label.bits(), LabelExtent{label, 0, {}});
+        }
+      }
+    });
   }
 
   template <class T>
@@ -61,11 +68,14 @@ class ExtentFinder {
     for (std::int64_t begin = 0, end = 0; begin < nx; begin = end) {
       end = begin + 1;
       while (end < nx && row[end] == row[begin]) ++end;
-      add_run(static_cast<std::int64_t>(row[begin]), {begin, j, k}, end);
+      if constexpr (std::is_integral_v<T>) add_run(row[begin], {begin, j, k}, end);
     }
   }
 
-  const LabelExtent& extent(std::int64_t label) const { return extents_.at(label); }
+  LabelExtent extent(Label label) const {
+    const auto found = extents_.find(label.bits());
+    return found != extents_.end() && found->second.label == label ? found->second : LabelExtent{label, 0, {}};
+  }
 
   std::vector<LabelExtent> all() const {
     if (extents_.size() > kMostLabels) {
@@ -74,13 +84,13 @@ class ExtentFinder {
                 (counted ? "" : "more than ") + std::to_string(std::min(extents_.size(), kMostCounted)));
     }
     std::vector<LabelExtent> list;
-    for (const auto& [label, extent] : extents_) list.push_back(extent);
+    for (const auto& [bits, extent] : extents_) list.push_back(extent);
     std::ranges::sort(list, {}, &LabelExtent::label);
     return list;
   }
 
  private:
-  void add_run(std::int64_t label, const std::array<std::int64_t, 3>& first, std::int64_t end) {
+  void add_run(Label label, const std::array<std::int64_t, 3>& first, std::int64_t end) {
     LabelExtent* const extent = find(label);
     if (extent == nullptr) return;
     const std::array<std::int64_t, 3> last{end, first[1] + 1, first[2] + 1};
@@ -90,58 +100,59 @@ class ExtentFinder {
       extent->box.end[axis] = std::max(extent->box.end[axis], last[axis]);
     }
     extent->samples += static_cast<std::uint64_t>(end - first[0]);
+    ++extent->runs;
   }
 
   // That of a label, or none where it is not asked for.
-  LabelExtent* find(std::int64_t label) {
+  LabelExtent* find(Label label) {
     if (all_ && label == 0) return nullptr;
-    const auto found = extents_.find(label);
+    const auto found = extents_.find(label.bits());
     if (found != extents_.end()) return &found->second;
     if (!all_ || extents_.size() > kMostCounted) return nullptr;
-    return &extents_.emplace(label, LabelExtent{label, 0, {}}).first->second;
+    return &extents_.emplace(label.bits(), LabelExtent{label, 0, {}}).first->second;
   }
 
   const VolumeInfo& volume_;
   bool all_;
-  std::unordered_map<std::int64_t, LabelExtent> extents_;
+  std::unordered_map<std::uint64_t, LabelExtent> extents_;
 };
+
+// The samples of a grey value are a sheet of one or two samples that winds through all of the image.
+bool is_scattered(const LabelExtent& label) {
+  constexpr double kThin = 3;       // samples of a run, on average
+  constexpr double kSparse = 0.02;  // of the box
+  const auto samples = static_cast<double>(label.samples);
+  double box = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) box *= static_cast<double>(label.box.end[axis] - label.box.first[axis]);
+  return samples < kThin * static_cast<double>(label.runs) && samples < kSparse * box;
+}
 
 }  // namespace
 
-void check_label_map(const VolumeInfo& volume) {
-  if (volume.type == SampleType::kFloat32 || volume.type == SampleType::kFloat64) {
-    bad_input(volume.path, "labels as integers", sample_type_name(volume.type));
-  }
-  if (volume.slope != 1 || volume.intercept != 0) {
-    bad_input(volume.path, "labels without a scaling",
-              "slope " + std::to_string(volume.slope) + " and intercept " + std::to_string(volume.intercept));
-  }
-}
-
-void mask_row(const std::byte* samples, SampleType type, std::int64_t count, std::int64_t label, std::uint8_t* mask) {
+void mask_row(const std::byte* samples, SampleType type, std::int64_t count, Label label, std::uint8_t* mask) {
   visit_sample_type(type, [&]<class T>() {
     if constexpr (std::is_integral_v<T>) {
       const T* const row = reinterpret_cast<const T*>(samples);
       const bool possible = is_of_type<T>(label);
-      const T wanted = static_cast<T>(possible ? label : 0);
+      const T wanted = static_cast<T>(possible ? label.bits() : 0);
       for (std::int64_t i = 0; i < count; ++i) mask[i] = possible && row[i] == wanted ? 1 : 0;
     }
   });
 }
 
-std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, std::int64_t label) {
+std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, Label label) {
   return std::make_unique<LabelVolume>(std::move(volume), label);
 }
 
-std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const std::int64_t> wanted,
+std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted,
                                      const std::atomic<bool>* stop) {
-  const VolumeInfo& info = volume.info();
-  check_label_map(info);
+  LabelNumbers numbers(volume);
+  const VolumeInfo& info = numbers.info();
   ExtentFinder finder(info, wanted);
   std::vector<std::byte> slice(info.slice_bytes());
   for (std::int64_t k = 0; k < info.dims[2]; ++k) {
     if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
-    volume.read(k, 1, slice);
+    numbers.read(k, 1, slice);
     visit_sample_type(info.type, [&]<class T>() {
       const T* row = reinterpret_cast<const T*>(slice.data());
       for (std::int64_t j = 0; j < info.dims[1]; ++j, row += info.dims[0]) finder.add_row(row, j, k);
@@ -149,8 +160,12 @@ std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const std::i
   }
   if (wanted.empty()) return finder.all();
   std::vector<LabelExtent> extents;
-  for (const std::int64_t label : wanted) extents.push_back(finder.extent(label));
+  for (const Label label : wanted) extents.push_back(finder.extent(label));
   return extents;
+}
+
+std::size_t count_scattered(std::span<const LabelExtent> labels) {
+  return static_cast<std::size_t>(std::ranges::count_if(labels, is_scattered));
 }
 
 }  // namespace isoweave

@@ -1,17 +1,37 @@
-// Label maps: what they may be, and their samples as masks.
+// Label maps: their values as whole numbers, and as masks.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "isoweave/volume.hpp"
 
 namespace isoweave {
 
-// Throws BadInput unless samples are integers and are what they are stored as.
-void check_label_map(const VolumeInfo& volume);
+// The values of a label map as integers without a scaling. A map that has them gives its samples as they are; floats
+// and scaled integers become int64, and each is looked at on the way: one that is no whole number, or that a float
+// cannot tell from its neighbours, is BadInput with its place.
+class LabelNumbers final : public SliceSource {
+ public:
+  // The volume must outlive it. Throws BadInput where slope or intercept are not whole numbers.
+  explicit LabelNumbers(SliceSource& volume);
 
-// 1 where a sample of a row is the label, else 0.
-void mask_row(const std::byte* samples, SampleType type, std::int64_t count, std::int64_t label, std::uint8_t* mask);
+  const VolumeInfo& info() const override { return info_; }
+  bool skips() const override { return volume_.skips(); }
+  void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+  std::span<const std::byte> held() const override;
+
+ private:
+  bool is_plain() const { return info_.type == volume_.info().type; }
+
+  SliceSource& volume_;
+  VolumeInfo info_;
+  std::vector<std::byte> slice_;  // as stored, where it is to become integers
+};
+
+// 1 where a sample of a row is the label, else 0. Samples are integers.
+void mask_row(const std::byte* samples, SampleType type, std::int64_t count, Label label, std::uint8_t* mask);
 
 }  // namespace isoweave

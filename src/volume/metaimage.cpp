@@ -104,15 +104,17 @@ std::vector<double> numbers_of(const MetaFields& fields, std::initializer_list<c
 SampleType sample_type_of(const MetaFields& fields, std::string_view path) {
   // MET_LONG is four bytes in every version of the format; eight are MET_LONG_LONG.
   static const std::map<std::string_view, SampleType> kTypes{
-      {"met_char", SampleType::kInt8},     {"met_uchar", SampleType::kUint8},  {"met_short", SampleType::kInt16},
-      {"met_ushort", SampleType::kUint16}, {"met_int", SampleType::kInt32},    {"met_uint", SampleType::kUint32},
-      {"met_long", SampleType::kInt32},    {"met_ulong", SampleType::kUint32}, {"met_float", SampleType::kFloat32},
-      {"met_double", SampleType::kFloat64}};
+      {"met_char", SampleType::kInt8},         {"met_uchar", SampleType::kUint8},
+      {"met_short", SampleType::kInt16},       {"met_ushort", SampleType::kUint16},
+      {"met_int", SampleType::kInt32},         {"met_uint", SampleType::kUint32},
+      {"met_long", SampleType::kInt32},        {"met_ulong", SampleType::kUint32},
+      {"met_float", SampleType::kFloat32},     {"met_long_long", SampleType::kInt64},
+      {"met_ulong_long", SampleType::kUint64}, {"met_double", SampleType::kFloat64}};
   const std::string_view text = fields.get({"elementtype"});
   const std::string name = lower_case(text);
   const auto found = kTypes.find(name);
   if (found == kTypes.end()) {
-    bad_input(path, "an ElementType of 8 to 32 bit integers, MET_FLOAT or MET_DOUBLE", quoted(text));
+    bad_input(path, "an ElementType of 8 to 64 bit integers, MET_FLOAT or MET_DOUBLE", quoted(text));
   }
   return found->second;
 }

@@ -39,7 +39,7 @@ ChunkedArray n5_array(const ZarrNode& node) {
   const std::string type = text_member(metadata, "dataType");
   const std::optional<SampleType> known = parse_sample_type(type);
   if (!known) {
-    bad_input(path, "dataType of integers of 8, 16 or 32 bits or floats of 32 or 64 bits",
+    bad_input(path, "dataType of integers of 8 to 64 bits or floats of 32 or 64 bits",
               type.empty() ? "another kind" : isoweave::quoted(type));
   }
   array.type = *known;

@@ -126,14 +126,16 @@ SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
       return SampleType::kUint16;
     case 768:
       return SampleType::kUint32;
+    case 1024:
+      return SampleType::kInt64;
+    case 1280:
+      return SampleType::kUint64;
     default:
       break;
   }
-  constexpr std::array<std::pair<int, std::string_view>, 9> kUnsupported{{{1, "1 bit"},
+  constexpr std::array<std::pair<int, std::string_view>, 7> kUnsupported{{{1, "1 bit"},
                                                                           {32, "complex64"},
                                                                           {128, "RGB"},
-                                                                          {1024, "int64"},
-                                                                          {1280, "uint64"},
                                                                           {1536, "float128"},
                                                                           {1792, "complex128"},
                                                                           {2048, "complex256"},
@@ -142,7 +144,7 @@ SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
   for (const auto& [code, text] : kUnsupported) {
     if (code == header.type) name = text;
   }
-  bad_input(path, "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
+  bad_input(path, "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
 }
 
 // From the slowest axis to the fastest: channels (dimensions 5 to 7 as one), time, z, y, x.

@@ -136,7 +136,7 @@ SampleType sample_type_of(const std::string& type, std::string_view path) {
     if (type.substr(1) == "b1") found = SampleType::kUint8;
     if (found) return *found;
   }
-  bad_input(path, "integers of 8 to 32 bits, floats of 32 or 64 bits, or truth values",
+  bad_input(path, "integers of 8 to 64 bits, floats of 32 or 64 bits, or truth values",
             "numbers of type " + quoted(type));
 }
 

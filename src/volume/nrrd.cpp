@@ -18,6 +18,7 @@
 #include "volume/nrrd_header.hpp"
 #include "volume/picked_stream.hpp"
 #include "volume/printable.hpp"
+#include "volume/segmentation.hpp"
 
 namespace isoweave {
 namespace {
@@ -34,13 +35,16 @@ SampleType sample_type_of(const NrrdFields& fields, std::string_view path) {
       {SampleType::kUint16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
       {SampleType::kInt32, {"int", "signed int", "int32", "int32_t"}},
       {SampleType::kUint32, {"uint", "unsigned int", "uint32", "uint32_t"}},
+      {SampleType::kInt64,
+       {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"}},
+      {SampleType::kUint64, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
       {SampleType::kFloat32, {"float"}},
       {SampleType::kFloat64, {"double"}}};
   const std::string text = lower_case(fields.get("type"));
   for (const Names& entry : kNames) {
     if (std::find(entry.names.begin(), entry.names.end(), text) != entry.names.end()) return entry.type;
   }
-  bad_input(path, "a type of 8 to 32 bit integers, float or double", "type '" + text + "'");
+  bad_input(path, "a type of 8 to 64 bit integers, float or double", "type '" + text + "'");
 }
 
 bool is_spatial(const NrrdAxis& axis, bool oriented) {
@@ -270,6 +274,20 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
   return open_only_file(info, open_file(beside(path, std::string(value))), 0, layout, bytes);
 }
 
+// The layers of a segmentation are a list, also where they are called a vector.
+void name_layers(std::vector<NrrdAxis>& axes, const NrrdFields& fields) {
+  if (!fields.pairs.contains("Segment0_Name") && !fields.pairs.contains("Segment0_ID")) return;
+  for (NrrdAxis& axis : axes) {
+    if (axis.kind == "vector") axis.kind = "list";
+  }
+}
+
+std::int64_t layers_of(const std::vector<ArrayAxis>& axes) {
+  const auto found =
+      std::find_if(axes.begin(), axes.end(), [](const ArrayAxis& axis) { return axis.name == "channel"; });
+  return found == axes.end() ? 1 : found->size;
+}
+
 }  // namespace
 
 OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options) {
@@ -280,11 +298,13 @@ OpenedVolume open_nrrd(const FilePtr& file, const OpenOptions& options) {
   info.format = "nrrd";
   info.type = sample_type_of(fields, info.path);
   std::vector<NrrdAxis> axes = parse_nrrd_axes(fields, info.path);
+  name_layers(axes, fields);
   const std::vector<ArrayAxis> named = named_axes(axes, options, info.path);
   const AxisChoice choice = choose_axes(named, options, info.path);
   info.dims = choice.dims(named);
   info.part = choice.part;
   info.notes = choice.notes;
+  info.labels = segments_of(fields.pairs, layers_of(named), info.path);
   checked_volume_bytes(info);
   set_axes(volume, fields, chosen_axes(axes, named, choice));
   const DataLayout layout = layout_of(fields, info.type, info.path);

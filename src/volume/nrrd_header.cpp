@@ -89,6 +89,7 @@ NrrdFields parse_nrrd_fields(const std::string& text, const std::string& path) {
     const std::size_t colon = line->find(':');
     const bool comment = line->starts_with('#');
     const bool key_and_value = line->substr(std::min(colon, line->size())).starts_with(":=");
+    if (!comment && key_and_value) fields.pairs.emplace(trimmed(line->substr(0, colon)), line->substr(colon + 2));
     if (comment || key_and_value) continue;
     if (colon == std::string_view::npos) {
       bad_input(path, "header lines 'field: value'", quoted(*line));

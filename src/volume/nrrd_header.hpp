@@ -16,8 +16,9 @@ namespace isoweave {
 // The header as text: names of fields in lower case and without blanks.
 struct NrrdFields {
   std::map<std::string, std::string> values;
-  std::vector<std::string> listed;  // the lines behind "data file: LIST"
-  std::size_t end = 0;              // bytes of the header, blank line included
+  std::map<std::string, std::string> pairs;  // of lines "key:=value"
+  std::vector<std::string> listed;           // the lines behind "data file: LIST"
+  std::size_t end = 0;                       // bytes of the header, blank line included
   bool blank_line = false;
 
   std::string_view get(const std::string& name) const {

@@ -16,14 +16,16 @@ struct TypeFacts {
 };
 
 // In the order of the enumeration.
-constexpr std::array<TypeFacts, 8> kTypes{{{SampleType::kUint8, "uint8", 1},
-                                           {SampleType::kInt8, "int8", 1},
-                                           {SampleType::kUint16, "uint16", 2},
-                                           {SampleType::kInt16, "int16", 2},
-                                           {SampleType::kUint32, "uint32", 4},
-                                           {SampleType::kInt32, "int32", 4},
-                                           {SampleType::kFloat32, "float32", 4},
-                                           {SampleType::kFloat64, "float64", 8}}};
+constexpr std::array<TypeFacts, 10> kTypes{{{SampleType::kUint8, "uint8", 1},
+                                            {SampleType::kInt8, "int8", 1},
+                                            {SampleType::kUint16, "uint16", 2},
+                                            {SampleType::kInt16, "int16", 2},
+                                            {SampleType::kUint32, "uint32", 4},
+                                            {SampleType::kInt32, "int32", 4},
+                                            {SampleType::kUint64, "uint64", 8},
+                                            {SampleType::kInt64, "int64", 8},
+                                            {SampleType::kFloat32, "float32", 4},
+                                            {SampleType::kFloat64, "float64", 8}}};
 
 }  // namespace
 

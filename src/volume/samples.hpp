@@ -25,6 +25,10 @@ decltype(auto) visit_sample_type(SampleType type, Visitor&& visit) {
       return visit.template operator()<std::uint32_t>();
     case SampleType::kInt32:
       return visit.template operator()<std::int32_t>();
+    case SampleType::kUint64:
+      return visit.template operator()<std::uint64_t>();
+    case SampleType::kInt64:
+      return visit.template operator()<std::int64_t>();
     case SampleType::kFloat32:
       return visit.template operator()<float>();
     case SampleType::kFloat64:

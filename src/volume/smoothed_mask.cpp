@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volume/stream_source.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 namespace {
@@ -142,9 +143,10 @@ void SmoothedMask::read_row(std::int64_t j, Slice& out) const {
   const std::int64_t nx = info_.dims[0];
   const T* const samples = reinterpret_cast<const T*>(stored_.data()) + j * nx;
   float* const to = out.samples.data() + j * nx;
-  const auto is_inside = [iso = options_.iso, above = options_.above](T sample) {
-    const auto value = static_cast<double>(sample);
-    return above ? value >= iso : value <= iso;
+  const auto is_inside = [threshold = threshold_for<T>(options_.iso, options_.above),
+                          above = options_.above](T sample) {
+    if (!threshold.reachable) return false;
+    return above ? sample >= threshold.value : sample <= threshold.value;
   };
   std::int64_t inside = 0;
   for (std::int64_t i = 0; i < nx; ++i) inside += is_inside(samples[i]) ? 1 : 0;

@@ -46,19 +46,21 @@ SampleType sample_type_of(const TiffFile& tiff) {
     int format;
     SampleType type;
   };
-  static constexpr std::array<Known, 8> kKnown{{{8, SAMPLEFORMAT_UINT, SampleType::kUint8},
-                                                {8, SAMPLEFORMAT_INT, SampleType::kInt8},
-                                                {16, SAMPLEFORMAT_UINT, SampleType::kUint16},
-                                                {16, SAMPLEFORMAT_INT, SampleType::kInt16},
-                                                {32, SAMPLEFORMAT_UINT, SampleType::kUint32},
-                                                {32, SAMPLEFORMAT_INT, SampleType::kInt32},
-                                                {32, SAMPLEFORMAT_IEEEFP, SampleType::kFloat32},
-                                                {64, SAMPLEFORMAT_IEEEFP, SampleType::kFloat64}}};
+  static constexpr std::array<Known, 10> kKnown{{{8, SAMPLEFORMAT_UINT, SampleType::kUint8},
+                                                 {8, SAMPLEFORMAT_INT, SampleType::kInt8},
+                                                 {16, SAMPLEFORMAT_UINT, SampleType::kUint16},
+                                                 {16, SAMPLEFORMAT_INT, SampleType::kInt16},
+                                                 {32, SAMPLEFORMAT_UINT, SampleType::kUint32},
+                                                 {32, SAMPLEFORMAT_INT, SampleType::kInt32},
+                                                 {64, SAMPLEFORMAT_UINT, SampleType::kUint64},
+                                                 {64, SAMPLEFORMAT_INT, SampleType::kInt64},
+                                                 {32, SAMPLEFORMAT_IEEEFP, SampleType::kFloat32},
+                                                 {64, SAMPLEFORMAT_IEEEFP, SampleType::kFloat64}}};
   const int meant = format == SAMPLEFORMAT_VOID ? SAMPLEFORMAT_UINT : format;
   for (const Known& known : kKnown) {
     if (known.bits == bits && known.format == meant) return known.type;
   }
-  bad_input(tiff.file()->path(), "integers of 8, 16 or 32 bits or floats of 32 or 64 bits",
+  bad_input(tiff.file()->path(), "integers of 8 to 64 bits or floats of 32 or 64 bits",
             std::to_string(bits) + " bits of sample format " + std::to_string(format));
 }
 

@@ -82,6 +82,10 @@ std::string metaimage_type(SampleType type) {
       return "MET_UINT";
     case SampleType::kInt32:
       return "MET_INT";
+    case SampleType::kUint64:
+      return "MET_ULONG_LONG";
+    case SampleType::kInt64:
+      return "MET_LONG_LONG";
     case SampleType::kFloat32:
       return "MET_FLOAT";
     case SampleType::kFloat64:

@@ -16,21 +16,23 @@ struct StoredType {
 
 // "<i2": byte order, kind and bytes.
 StoredType type_of(const Json& metadata, const std::string& path) {
-  static constexpr std::array<std::pair<std::string_view, SampleType>, 9> kTypes{{{"b1", SampleType::kUint8},
-                                                                                  {"u1", SampleType::kUint8},
-                                                                                  {"i1", SampleType::kInt8},
-                                                                                  {"u2", SampleType::kUint16},
-                                                                                  {"i2", SampleType::kInt16},
-                                                                                  {"u4", SampleType::kUint32},
-                                                                                  {"i4", SampleType::kInt32},
-                                                                                  {"f4", SampleType::kFloat32},
-                                                                                  {"f8", SampleType::kFloat64}}};
+  static constexpr std::array<std::pair<std::string_view, SampleType>, 11> kTypes{{{"b1", SampleType::kUint8},
+                                                                                   {"u1", SampleType::kUint8},
+                                                                                   {"i1", SampleType::kInt8},
+                                                                                   {"u2", SampleType::kUint16},
+                                                                                   {"i2", SampleType::kInt16},
+                                                                                   {"u4", SampleType::kUint32},
+                                                                                   {"i4", SampleType::kInt32},
+                                                                                   {"u8", SampleType::kUint64},
+                                                                                   {"i8", SampleType::kInt64},
+                                                                                   {"f4", SampleType::kFloat32},
+                                                                                   {"f8", SampleType::kFloat64}}};
   const std::string text = text_member(metadata, "dtype");
   const std::string_view name = std::string_view(text).substr(text.empty() ? 0 : 1);
   for (const auto& [known, type] : kTypes) {
     if (known == name && std::string_view("<>|").find(text[0]) != std::string_view::npos) return {type, text[0] == '>'};
   }
-  bad_input(path, "a dtype of integers of 8, 16 or 32 bits or floats of 32 or 64 bits",
+  bad_input(path, "a dtype of integers of 8 to 64 bits or floats of 32 or 64 bits",
             text.empty() ? "a structure or none" : isoweave::quoted(text));
 }
 

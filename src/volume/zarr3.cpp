@@ -144,7 +144,7 @@ ChunkedArray zarr3_array(const ZarrNode& node) {
   const std::string type = text_member(metadata, "data_type");
   const std::optional<SampleType> known = parse_sample_type(type == "bool" ? "uint8" : type);
   if (!known) {
-    bad_input(path, "data_type of integers of 8, 16 or 32 bits or floats of 32 or 64 bits",
+    bad_input(path, "data_type of integers of 8 to 64 bits or floats of 32 or 64 bits",
               type.empty() ? "another kind" : isoweave::quoted(type));
   }
   array.type = *known;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "volume/input_file.hpp"
 #include "volume/printable.hpp"
@@ -51,6 +52,13 @@ std::optional<Sample> sample_of_bits(std::string_view text) {
   return sample;
 }
 
+template <class Sample, class Number>
+std::optional<Sample> checked(Number number) {
+  return std::in_range<Sample>(number) ? std::optional(static_cast<Sample>(number)) : std::nullopt;
+}
+
+constexpr double kLargestWhole = 0x1p53;  // whole numbers up to it are all doubles
+
 template <class Sample>
 std::optional<Sample> sample_of(const Json& value) {
   using Limits = std::numeric_limits<Sample>;
@@ -65,10 +73,14 @@ std::optional<Sample> sample_of(const Json& value) {
     return sample_of_bits<Sample>(text);
   }
   if (!value.is_number()) return std::nullopt;
+  if constexpr (Limits::is_integer) {
+    if (value.is_number_unsigned()) return checked<Sample>(value.get<std::uint64_t>());
+    if (value.is_number_integer()) return checked<Sample>(value.get<std::int64_t>());
+  }
   const auto number = value.get<double>();
   if constexpr (Limits::is_integer) {
-    // All integers of up to 32 bits are doubles.
-    if (!(number >= Limits::lowest() && number <= Limits::max()) || number != std::floor(number)) return std::nullopt;
+    if (std::abs(number) > kLargestWhole || number != std::floor(number)) return std::nullopt;
+    return checked<Sample>(static_cast<std::int64_t>(number));
   } else if (std::isfinite(number) && std::abs(number) > static_cast<double>(Limits::max())) {
     return std::nullopt;
   }

@@ -149,7 +149,7 @@ TEST_F(CliLabels, MapsThatAreNoneAreRefused) {
   const auto refused = [&](const std::string& volume, const std::string& says) {
     expect_refused(folder_, {"mesh", volume, "-o", "seg.ply", "--labels", "all"}, 3, says);
   };
-  refused("generate:sphere:8x8x8", "expected labels as integers, found float32");
+  refused("generate:sphere:8x8x8", "expected whole numbers as labels, found ");
   files::write_bytes(folder_ / "empty_4x4x4_uint8.raw", std::string(64, '\0'));
   refused("empty_4x4x4_uint8.raw", "found none");
   std::string many;
@@ -157,6 +157,103 @@ TEST_F(CliLabels, MapsThatAreNoneAreRefused) {
   files::write_bytes(folder_ / "many_32x32x8_uint16.raw", many);
   refused("many_32x32x8_uint16.raw", "expected a label map of at most 4096 labels, found 8191");
   EXPECT_EQ(run(folder_.path(), {"mesh", "many_32x32x8_uint16.raw", "-o", "s.ply", "--labels", "5000"}).code, 0);
+}
+
+TEST_F(CliLabels, AGreyImageIsRefusedUnlessOneInsists) {
+  const auto mesh_grey = [](const std::string& labels) {
+    return std::vector<std::string>{"mesh", "generate:noise:24x22x20:uint8", "-o", "g.ply", "--labels", labels};
+  };
+  expect_refused(folder_, mesh_grey("all"), 3, "--labels all expects a label map, found ");
+  EXPECT_EQ(run(folder_.path(), mesh_grey("100,101")).code, 0);
+  EXPECT_GT(report_of(folder_, mesh_grey("all!")).at("labels").size(), 100U);
+}
+
+// 2^63 + 5 and the id of a neuron: 64 bits, and no sign.
+TEST_F(CliLabels, IdsOf64BitsAreExact) {
+  const std::array<std::uint64_t, 2> ids{720575940621039145U, (std::uint64_t{1} << 63) + 5};
+  std::string bytes;
+  for (const char sample : map_bytes()) {
+    const std::uint64_t id = sample == 3 ? ids[0] : sample == 8 ? ids[1] : 0;
+    bytes.append(reinterpret_cast<const char*>(&id), sizeof id);
+  }
+  files::write_bytes(folder_ / "ids_24x22x20_uint64.raw", bytes);
+  const std::vector<std::string> all{"mesh", "ids_24x22x20_uint64.raw", "-o", "n.precomputed", "--labels", "all"};
+  const json report = report_of(folder_, all);
+  const json small = report_of(folder_, mesh({"--labels", "3,8"}));
+  ASSERT_EQ(report.at("labels").size(), 2U);
+  for (std::size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(report.at("labels").at(n).at("label").get<std::uint64_t>(), ids.at(n));
+    EXPECT_EQ(report.at("labels").at(n).at("digest"), small.at("labels").at(n).at("digest"));
+    const std::string id = std::to_string(ids.at(n));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / ("n_label" + id + ".precomputed/" + id + ":0"))) << id;
+  }
+  const json info = json::parse(run(folder_.path(), {"info", "ids_24x22x20_uint64.raw", "--json"}).out);
+  EXPECT_EQ(info.at("input").at("max").get<std::uint64_t>(), ids[1]);
+  EXPECT_NE(run(folder_.path(), {"info", "ids_24x22x20_uint64.raw"}).out.find("0 to 9223372036854775813"),
+            std::string::npos);
+}
+
+TEST_F(CliLabels, NamesAreThoseOfAFile) {
+  files::write_bytes(folder_ / "lut.txt",
+                     "#No. Label Name: R G B A\n0 Unknown 0 0 0 0\n3 Left-Hippocampus 220 216 20 0\n8 a/b 1 2 3 0\n");
+  const json report = report_of(folder_, mesh({"--labels", "all", "--label-names", "lut.txt"}));
+  const json& labels = report.at("labels");
+  EXPECT_EQ(labels.at(0).at("output"), "seg_Left-Hippocampus.ply");
+  EXPECT_EQ(labels.at(0).at("name"), "Left-Hippocampus");
+  EXPECT_EQ(labels.at(0).at("color"), "#dcd814");
+  EXPECT_EQ(labels.at(1).at("output"), "seg_a_b.ply");
+  EXPECT_EQ(labels.at(2).at("output"), "seg_label200.ply");
+  EXPECT_EQ(labels.at(2).at("name"), "");
+  EXPECT_NE(files::read_bytes(folder_ / "seg_Left-Hippocampus.ply").find("comment name Left-Hippocampus\n"),
+            std::string::npos);
+  const json one = report_of(folder_, mesh({"--labels", "a/b,200", "--label-names", "lut.txt"}));
+  EXPECT_EQ(one.at("labels").at(0).at("label"), 8);
+  EXPECT_EQ(one.at("labels").at(0).at("digest"), labels.at(1).at("digest"));
+  expect_refused(folder_, mesh({"--labels", "Amygdala", "--label-names", "lut.txt"}), 2, "found 'Amygdala'");
+  expect_refused(folder_, mesh({"--labels", "3,Left-Hippocampus", "--label-names", "lut.txt"}), 2, "each label once");
+  expect_refused(folder_, mesh({"--labels", "3", "--label-names", kMap}), 3, kMap);
+  expect_refused(folder_, mesh({"--labels", "3", "--label-names", "none.txt"}), 3, "none.txt");
+  expect_refused(folder_, mesh({"--iso", "3", "--label-names", "lut.txt"}), 2, "--label");
+}
+
+// Layer 0 holds 3 and 8, layer 1 a segment of value 3 that overlaps both, and one that is empty.
+TEST_F(CliLabels, SegmentsThatOverlapAreASurfaceEach) {
+  std::string samples;
+  const std::string map = map_bytes();
+  for (std::size_t n = 0; n < map.size(); ++n)
+    samples += {map[n] == 3 || map[n] == 8 ? map[n] : '\0', map[n] != 0 ? '\3' : '\0'};
+  files::write_bytes(folder_ / "a.seg.nrrd",
+                     "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 24 22 20\nkinds: list domain domain domain\n"
+                     "space dimension: 3\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
+                     "encoding: raw\nSegment0_Name:=ball\nSegment0_LabelValue:=3\nSegment0_Layer:=0\n"
+                     "Segment0_Color:=1 0.5 0\nSegment1_Name:=other\nSegment1_LabelValue:=8\nSegment1_Layer:=0\n"
+                     "Segment2_Name:=Ball\nSegment2_LabelValue:=3\nSegment2_Layer:=1\n"
+                     "Segment3_Name:=none\nSegment3_LabelValue:=4\nSegment3_Layer:=1\n\n" +
+                         samples);
+  const json report = report_of(folder_, {"mesh", "a.seg.nrrd", "-o", "s.ply", "--labels", "all"});
+  const json& labels = report.at("labels");
+  ASSERT_EQ(labels.size(), 4U);
+  const json single = report_of(folder_, mesh({"--labels", "3,8"}));
+  EXPECT_EQ(labels.at(0).at("output"), "s_ball_label3.ply");
+  EXPECT_EQ(labels.at(0).at("color"), "#ff8000");
+  EXPECT_EQ(labels.at(0).at("digest"), single.at("labels").at(0).at("digest"));
+  EXPECT_EQ(labels.at(1).at("output"), "s_other.ply");
+  EXPECT_EQ(labels.at(1).at("digest"), single.at("labels").at(1).at("digest"));
+  EXPECT_EQ(labels.at(2).at("output"), "s_Ball_layer1_label3.ply");
+  std::string any = map_bytes();
+  for (char& sample : any) sample = sample != 0;
+  files::write_bytes(folder_ / "any_24x22x20_uint8.raw", any);
+  const json mask = report_of(folder_, {"mesh", "any_24x22x20_uint8.raw", "-o", "m.ply", "--iso", "0.5"});
+  EXPECT_EQ(labels.at(2).at("digest"), mask.at("digest"));
+  EXPECT_EQ(labels.at(3).at("triangles"), 0);
+  EXPECT_EQ(report.at("triangles").get<int>(), labels.at(0).at("triangles").get<int>() +
+                                                   labels.at(1).at("triangles").get<int>() +
+                                                   labels.at(2).at("triangles").get<int>());
+  const json one = report_of(folder_, {"mesh", "a.seg.nrrd", "-o", "s.ply", "--labels", "Ball"});
+  ASSERT_EQ(one.at("labels").size(), 1U);
+  EXPECT_EQ(one.at("labels").at(0).at("digest"), mask.at("digest"));
+  const json layer = report_of(folder_, {"mesh", "a.seg.nrrd", "-o", "s.ply", "--labels", "all", "--channel", "1"});
+  EXPECT_EQ(layer.at("labels").size(), 2U);
 }
 
 TEST_F(CliLabels, NothingIsLeftOfARunThatFails) {

@@ -1,6 +1,8 @@
 // The meshes of the labels of a map out of one sweep are those of a run on each label's mask.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "label_maps.hpp"
 #include "surfaces.hpp"
 
@@ -8,7 +10,7 @@ namespace isoweave::testing {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{18, 15, 18};
-constexpr std::array<std::int64_t, 6> kLabels{1, 2, 7, 300, 9, 44};  // the last one does not occur
+constexpr std::array<Label, 6> kLabels{1, 2, 7, 300, 9, 44};  // the last one does not occur
 
 std::unique_ptr<LabelMap> make_map() {
   auto map = std::make_unique<LabelMap>(kDims, touching_blobs(kDims));
@@ -45,7 +47,7 @@ LabelRun run_labels(const MeshOptions& options, const RunControl& control, bool 
 LabelRun run_each(MeshOptions options) {
   options.iso = 0.5;
   LabelRun run;
-  for (const std::int64_t label : kLabels) {
+  for (const Label label : kLabels) {
     MemorySink sink;
     run.reports.push_back(mesh_volume(*label_volume(make_map(), label), sink, options));
     run.meshes.push_back(std::move(sink.mesh));
@@ -68,7 +70,7 @@ std::vector<std::array<float, 6>> sorted_vertices(const TriangleMesh& mesh) {
 void expect_same(const LabelRun& found, const LabelRun& expected) {
   std::uint64_t triangles = 0;
   for (std::size_t n = 0; n < kLabels.size(); ++n) {
-    SCOPED_TRACE(::testing::Message() << "label " << kLabels[n]);
+    SCOPED_TRACE(::testing::Message() << "label " << kLabels[n].text());
     const MeshReport& a = found.reports[n];
     const MeshReport& b = expected.reports[n];
     triangles += b.triangles;
@@ -136,6 +138,71 @@ INSTANTIATE_TEST_SUITE_P(Options, LabelSweeps,
                                            LabelCase{"SmoothOpen", false, 2, 0.2}, LabelCase{"SmoothFull", true, 1, 0}),
                          [](const auto& instance) { return instance.param.name; });
 
+template <class T>
+Label label_of(T sample, double slope) {
+  if constexpr (std::is_integral_v<T>) return sample;
+  return static_cast<std::int64_t>(slope * static_cast<double>(sample));
+}
+
+// The labels of make_map() as samples of another type, where as(label) is what a label is there before it is scaled.
+template <class T>
+std::vector<std::uint64_t> digests_as(SampleType type, const std::function<T(std::uint16_t)>& as, double slope,
+                                      const MeshOptions& options, int threads) {
+  std::vector<T> samples;
+  for (const std::uint16_t label : touching_blobs(kDims)) samples.push_back(as(label));
+  VolumeInfo info = make_map()->info();
+  info.type = type;
+  info.slope = slope;
+  const auto map = volume_in_memory(info, std::as_bytes(std::span(samples)));
+  std::vector<MemorySink> sinks(kLabels.size());
+  std::vector<LabelSink> labels;
+  for (std::size_t n = 0; n < kLabels.size(); ++n) {
+    const T sample = as(static_cast<std::uint16_t>(kLabels[n].bits()));
+    labels.push_back({label_of(sample, slope), &sinks[n], {}});
+  }
+  RunControl control;
+  control.threads = threads;
+  std::vector<std::uint64_t> digests;
+  for (const MeshReport& report : mesh_labels(*map, labels, options, control).labels) digests.push_back(report.digest);
+  return digests;
+}
+
+TEST(LabelTypes, GiveTheMeshesOfTheSameMapInAnotherType) {
+  MeshOptions options;
+  options.smooth = 1;
+  std::vector<std::uint64_t> expected;
+  for (const MeshReport& report : run_each(options).reports) expected.push_back(report.digest);
+  for (const std::int64_t slab : {1, 5}) {
+    options.slab = slab;
+    const int threads = slab == 1 ? 1 : 3;
+    const auto high = [](std::uint16_t label) { return label == 0 ? 0 : ~std::uint64_t{0} - label; };
+    EXPECT_EQ((digests_as<std::uint64_t>(SampleType::kUint64, high, 1, options, threads)), expected);
+    const auto low = [](std::uint16_t label) { return label == 0 ? 0 : -7112614941 - label; };
+    EXPECT_EQ((digests_as<std::int64_t>(SampleType::kInt64, low, 1, options, threads)), expected);
+    const auto same = [](std::uint16_t label) { return static_cast<float>(label); };
+    EXPECT_EQ((digests_as<float>(SampleType::kFloat32, same, 1, options, threads)), expected);
+    EXPECT_EQ((digests_as<float>(SampleType::kFloat32, same, -3, options, threads)), expected);
+    const auto wide = [](std::uint16_t label) { return 1e12 * label; };
+    EXPECT_EQ((digests_as<double>(SampleType::kFloat64, wide, 1, options, threads)), expected);
+  }
+}
+
+TEST(LabelTypes, AFractionEndsTheSweep) {
+  MemorySink sink;
+  const LabelSink labels[] = {{1, &sink, {}}};
+  std::vector<float> samples(static_cast<std::size_t>(kDims[0] * kDims[1] * kDims[2]), 1);
+  samples[static_cast<std::size_t>((4 * kDims[1] + 3) * kDims[0] + 2)] = 0.5F;
+  VolumeInfo info = make_map()->info();
+  info.type = SampleType::kFloat32;
+  try {
+    mesh_labels(*volume_in_memory(info, std::as_bytes(std::span(samples))), labels, {});
+    FAIL() << "expected BadInput";
+  } catch (const BadInput& error) {
+    EXPECT_STREQ(error.what(), "labels: expected whole numbers as labels, found 0.5 in sample 2,3,4");
+  }
+  EXPECT_FALSE(sink.finished);
+}
+
 TEST(LabelSweepOptions, WithADistanceTheyAreTheSameToo) {
   MeshOptions options;
   options.smooth = 2;
@@ -180,7 +247,7 @@ TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
   const LabelSink outside[] = {{1, &sink, Region{{0, 0, 0}, {19, 15, 18}}}};
   EXPECT_THROW(mesh_labels(*make_map(), outside, {}), std::invalid_argument);
   const auto scaled = make_map();
-  scaled->info().slope = 2;
+  scaled->info().slope = 0.5;
   EXPECT_THROW(mesh_labels(*scaled, labels, {}), BadInput);
 }
 

@@ -62,6 +62,11 @@ void put_nrrd(Seeds& seeds) {
             "NRRD0005\ntype: short\ndimension: 4\nsizes: 3 1 5 2\nspace: left-posterior-superior-time\n"
             "space directions: (1,0,0,0) (0,2,0,0) (0,0,3,0) (0,0,0,1)\nspace origin: (1,2,3,0)\nencoding: text\n\n"
             "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30\n");
+  seeds.put("nrrd",
+            "NRRD0004\ntype: longlong\ndimension: 4\nsizes: 2 1 2 1\nkinds: list domain domain domain\nendian: little\n"
+            "encoding: raw\nSegment0_Name:=a\\nb\nSegment0_LabelValue:=2\nSegment0_Layer:=1\n"
+            "Segment0_Color:=1 0 0.5\nSegment1_Name:=c\n\n" +
+                std::string(32, '\2'));
   seeds.put("nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: hex\n\n00 7fFF\n12345678 9a");
 }
 
@@ -387,6 +392,12 @@ void put_meshes(Seeds& seeds) {
       "</vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources></model>");
 }
 
+void put_label_names(Seeds& seeds) {
+  seeds.put("label_names", "#No. Label Name: R G B A\n0 Unknown 0 0 0 0\n17  Left-Hippocampus 220 216 20 0\n");
+  seeds.put("label_names", "0 0 0 0 0 0 0 \"Clear Label\"\n1 255 0 0 1 1 1 \"a/b\"\n2 0 255 0 1 1 1 \"A/B\"\n");
+  seeds.put("label_names", "index\tname\tcolor\n1\tGray Matter\t#ff00fe\n-2\tGray Matter\tn/a\n");
+}
+
 void put_options(Seeds& seeds) {
   for (const char* text :
        {"512x512x300:int16:big:skip=1024", "a/foot_256x256x256_uint8.raw", "0.2vox", "30um", "float32"}) {
@@ -435,6 +446,7 @@ int main(int argc, char** argv) {
   put_meshes(seeds);
   fuzz::put_packages(seeds);
   put_options(seeds);
+  put_label_names(seeds);
   put_state(seeds);
   return 0;
 }

@@ -1,4 +1,5 @@
-// Inside bits: the comparison in the samples' own type must equal the comparison with the iso-value in double.
+// Inside bits: the comparison in the samples' own type must equal the comparison of exact numbers. A long double holds
+// every sample.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ template <class T>
 void expect_bits(const std::vector<T>& row, const IsoRule& rule, const std::vector<std::uint64_t>& words) {
   for (std::size_t bit = 0; bit < 64 * words.size(); ++bit) {
     const bool sample = bit >= 1 && bit <= row.size();
-    const double value = sample ? static_cast<double>(row[bit - 1]) : 0;
+    const long double value = sample ? static_cast<long double>(row[bit - 1]) : 0;
     const bool inside = sample && (rule.above ? value >= rule.iso : value <= rule.iso);
     ASSERT_EQ((words[bit / 64] >> (bit % 64) & 1) != 0, inside)
         << "bit " << bit << ", value " << value << ", iso " << rule.iso << ", above " << rule.above;
@@ -63,15 +64,42 @@ void expect_all(SampleType type) {
   }
 }
 
-TEST(Classify, EveryTypeComparesAsInDouble) {
+TEST(Classify, EveryTypeComparesExactly) {
   expect_all<std::uint8_t>(SampleType::kUint8);
   expect_all<std::int8_t>(SampleType::kInt8);
   expect_all<std::uint16_t>(SampleType::kUint16);
   expect_all<std::int16_t>(SampleType::kInt16);
   expect_all<std::uint32_t>(SampleType::kUint32);
   expect_all<std::int32_t>(SampleType::kInt32);
+  expect_all<std::uint64_t>(SampleType::kUint64);
+  expect_all<std::int64_t>(SampleType::kInt64);
   expect_all<float>(SampleType::kFloat32);
   expect_all<double>(SampleType::kFloat64);
+}
+
+// Whole numbers beyond 2^53 are compared without rounding; the right answers are written out.
+TEST(Classify, IntegersOf64BitsAreNotRounded) {
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t odd = (std::int64_t{1} << 53) + 1;  // as a double it is one less
+  const std::vector<std::int64_t> row{odd - 1, odd, odd + 1, most, most - 1, -odd, -most - 1};
+  const auto bits = [&](double iso, bool above) {
+    std::vector<std::uint64_t> words(1);
+    classify_row(reinterpret_cast<const std::byte*>(row.data()), SampleType::kInt64, 7, {iso, above, true}, words);
+    return words[0] >> 1;
+  };
+  EXPECT_EQ(bits(0x1p53 + 2, true), 0b0011100U);
+  EXPECT_EQ(bits(0x1p53, false), 0b1100001U);
+  EXPECT_EQ(bits(0x1p63, true), 0U);
+  EXPECT_EQ(bits(0x1p63, false), 0b1111111U);
+  EXPECT_EQ(bits(-0x1p63, false), 0b1000000U);
+  EXPECT_EQ(bits(-0x1p53 - 2, true), 0b0111111U);
+  EXPECT_EQ(bits(-0x1p53, false), 0b1100000U);
+  const std::vector<std::uint64_t> high{~std::uint64_t{0}, std::uint64_t{1} << 63, 0};
+  std::vector<std::uint64_t> words(1);
+  classify_row(reinterpret_cast<const std::byte*>(high.data()), SampleType::kUint64, 3, {0x1p63, true, true}, words);
+  EXPECT_EQ(words[0] >> 1, 0b011U);
+  classify_row(reinterpret_cast<const std::byte*>(high.data()), SampleType::kUint64, 3, {0x1p64, true, true}, words);
+  EXPECT_EQ(words[0] >> 1, 0U);
 }
 
 TEST(SampleRange, IgnoresNanAndCountsIt) {

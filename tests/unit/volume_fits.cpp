@@ -39,6 +39,7 @@ TEST(Fits, ReadsCubesInEveryType) {
                                    {"16", SampleType::kInt16},
                                    {"32", SampleType::kInt32},
                                    {"-32", SampleType::kFloat32},
+                                   {"64", SampleType::kInt64},
                                    {"-64", SampleType::kFloat64}}) {
     EXPECT_EQ(open_volume(folder.put("a.fits", fits(cards(bits), std::string(240, '\0'))))->info().type, type);
   }

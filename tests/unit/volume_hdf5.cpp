@@ -63,8 +63,7 @@ TEST(Hdf5, TypesAndByteOrders) {
   EXPECT_EQ(samples_of<float>(*open("/f32")).at(7), 8);
   EXPECT_EQ(samples_of<std::int8_t>(*open("/i8")).at(7), 8);
   EXPECT_EQ(samples_of<std::int8_t>(*open("/bool")).at(0), 1);
-  EXPECT_THROW(open("/i64"), BadInput);
-  EXPECT_TRUE(contains(refusal(path, options), "in '/i64', found int64"));
+  EXPECT_EQ(samples_of<std::int64_t>(*open("/i64")).at(7), 8);
   EXPECT_TRUE(
       contains(refusal(path), "expected --dataset with one of '/bool' (1 x 1 x 1 int8), '/f32' (2 x 2 x 2 float32)"));
   options.dataset = "/nothing";
@@ -75,8 +74,6 @@ TEST(Hdf5, TypesAndByteOrders) {
 
 TEST(Hdf5, TheOnlyDatasetOfATypeThatIsNotReadIsNamed) {
   const TempFolder folder;
-  Writer(folder / "a.h5").put<std::int64_t>("/v", {2, 2, 2}, H5T_STD_I64LE, H5T_NATIVE_INT64);
-  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "in '/v', found int64"));
   {
     const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
     H5Tset_fields(half, 15, 10, 5, 0, 10);

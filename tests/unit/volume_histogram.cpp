@@ -34,6 +34,22 @@ TEST(Histogram, CountsEveryValueOfABytePlainly) {
   for (std::size_t value = 0; value < 256; ++value) EXPECT_EQ(histogram.bins[value], value + 1);
 }
 
+// 2^64 - 1 and 2^53 + 1 are no doubles.
+TEST(Histogram, EndsOf64BitsAreExact) {
+  const std::vector<std::uint64_t> samples{(std::uint64_t{1} << 53) + 1, ~std::uint64_t{0}, std::uint64_t{1} << 60};
+  const Histogram histogram = histogram_of(SampleType::kUint64, samples, 1);
+  ASSERT_TRUE(histogram.whole);
+  EXPECT_EQ((*histogram.whole)[0].text(), "9007199254740993");
+  EXPECT_EQ((*histogram.whole)[1].text(), "18446744073709551615");
+  EXPECT_EQ(std::accumulate(histogram.bins.begin(), histogram.bins.end(), std::uint64_t{0}), 3U);
+  const std::vector<std::int64_t> negative{-5, std::numeric_limits<std::int64_t>::lowest()};
+  EXPECT_EQ((*histogram_of(SampleType::kInt64, negative).whole)[0].text(), "-9223372036854775808");
+  EXPECT_FALSE(histogram_of(SampleType::kInt32, std::vector<std::int32_t>{3}).whole);
+  HistogramCounter scaled(SampleType::kInt64);
+  scaled.add(reinterpret_cast<const std::byte*>(negative.data()), 1);
+  EXPECT_FALSE(scaled.histogram(2, 0).whole);
+}
+
 TEST(Histogram, IsTheSameHoweverTheSamplesAreCut) {
   std::vector<float> samples;
   for (int n = 0; n < 5000; ++n) samples.push_back(std::ldexp(static_cast<float>((n * 7919) % 5003), (n % 40) - 20));

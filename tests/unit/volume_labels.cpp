@@ -1,6 +1,7 @@
 // Label maps: where labels lie, and their masks.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "isoweave/error.hpp"
@@ -28,7 +29,7 @@ TEST(LabelExtents, AreTheSmallestBoxes) {
 }
 
 TEST(LabelExtents, ComeInTheOrderAskedFor) {
-  const std::vector<std::int64_t> wanted{9, 0, -4, 5};
+  const std::vector<Label> wanted{9, 0, -4, 5};
   const std::vector<LabelExtent> found = find_labels(*small_map(), wanted);
   ASSERT_EQ(found.size(), 4U);
   EXPECT_EQ(found[0].label, 9);
@@ -48,7 +49,7 @@ TEST(LabelExtents, TooManyAreCounted) {
   } catch (const BadInput& error) {
     EXPECT_STREQ(error.what(), "labels: expected a label map of at most 4096 labels, found 8191");
   }
-  const std::vector<std::int64_t> wanted{8000};
+  const std::vector<Label> wanted{8000};
   LabelMap again({64, 64, 2}, labels);
   EXPECT_EQ(find_labels(again, wanted)[0].samples, 1U);
 }
@@ -76,15 +77,116 @@ TEST(LabelVolume, HoldsNothingWhereTheTypeCannotHoldTheLabel) {
   }
 }
 
-TEST(LabelVolume, WantsPlainIntegers) {
-  EXPECT_THROW(
-      label_volume(std::make_unique<MemoryVolume>(std::array<std::int64_t, 3>{2, 2, 2}, std::vector<float>(8)), 1),
-      BadInput);
-  MemoryVolume floats({2, 2, 2}, std::vector<float>(8));
-  EXPECT_THROW(find_labels(floats), BadInput);
-  auto scaled = small_map();
-  scaled->info().intercept = -1024;
-  EXPECT_THROW(label_volume(std::move(scaled), 5), BadInput);
+template <class T>
+VolumeInfo row_of(const std::vector<T>& samples, SampleType type) {
+  VolumeInfo info;
+  info.path = "map";
+  info.type = type;
+  info.dims = {static_cast<std::int64_t>(samples.size()), 1, 1};
+  return info;
+}
+
+template <class T>
+std::vector<LabelExtent> labels_in(const std::vector<T>& samples, SampleType type, double slope = 1,
+                                   double intercept = 0, std::span<const Label> wanted = {}) {
+  VolumeInfo info = row_of(samples, type);
+  info.slope = slope;
+  info.intercept = intercept;
+  return find_labels(*volume_in_memory(info, std::as_bytes(std::span(samples))), wanted);
+}
+
+std::string texts(const std::vector<LabelExtent>& labels) {
+  std::string text;
+  for (const LabelExtent& extent : labels) text += extent.label.text() + "*" + std::to_string(extent.samples) + " ";
+  return text;
+}
+
+template <class T>
+std::string refusal_of_labels(const std::vector<T>& samples, SampleType type, double slope = 1, double intercept = 0) {
+  try {
+    labels_in(samples, type, slope, intercept);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(LabelTypes, NumbersOf64BitsAreWhatTheyAre) {
+  const std::uint64_t most = ~std::uint64_t{0}, odd = (std::uint64_t{1} << 53) + 1;
+  const std::vector<std::uint64_t> ids{0, 7112614941, odd, odd - 1, odd, most, most};
+  EXPECT_EQ(texts(labels_in(ids, SampleType::kUint64)),
+            "7112614941*1 9007199254740992*1 9007199254740993*2 18446744073709551615*2 ");
+  const std::vector<std::int64_t> below{-7112614941, 0, 3, -7112614941};
+  EXPECT_EQ(texts(labels_in(below, SampleType::kInt64)), "-7112614941*2 3*1 ");
+  // The same bits, but another number.
+  const std::vector<Label> wanted{-1, most, 7112614941};
+  EXPECT_EQ(texts(labels_in(ids, SampleType::kUint64, 1, 0, wanted)), "-1*0 18446744073709551615*2 7112614941*1 ");
+  EXPECT_EQ(texts(labels_in(std::vector<std::int64_t>{-1, 5}, SampleType::kInt64, 1, 0, wanted)),
+            "-1*1 18446744073709551615*0 7112614941*0 ");
+  EXPECT_EQ(texts(labels_in(std::vector<std::uint8_t>{255, 5}, SampleType::kUint8, 1, 0, wanted)),
+            "-1*0 18446744073709551615*0 7112614941*0 ");
+}
+
+TEST(LabelTypes, WholeNumbersInFloatsAreLabels) {
+  EXPECT_EQ(texts(labels_in(std::vector<float>{0, 1, 1, -0.0F, -4, 2035}, SampleType::kFloat32)), "-4*1 1*2 2035*1 ");
+  EXPECT_EQ(texts(labels_in(std::vector<double>{7112614941, 0x1p53, 0}, SampleType::kFloat64)),
+            "7112614941*1 9007199254740992*1 ");
+  EXPECT_EQ(refusal_of_labels(std::vector<float>{0, 1, 1.5F, 0.25F}, SampleType::kFloat32),
+            "map: expected whole numbers as labels, found 1.5 in sample 2,0,0");
+  EXPECT_EQ(refusal_of_labels(std::vector<double>{0, std::nan("")}, SampleType::kFloat64),
+            "map: expected whole numbers as labels, found nan in sample 1,0,0");
+  EXPECT_EQ(refusal_of_labels(std::vector<double>{-HUGE_VAL}, SampleType::kFloat64),
+            "map: expected whole numbers as labels, found -inf in sample 0,0,0");
+  EXPECT_EQ(refusal_of_labels(std::vector<double>{0x1p53 + 2}, SampleType::kFloat64),
+            "map: expected labels of at most 2^53 in a map of floats, found 9007199254740994 in sample 0,0,0");
+}
+
+TEST(LabelTypes, ScalingsByWholeNumbersAreApplied) {
+  EXPECT_EQ(texts(labels_in(std::vector<std::uint8_t>{0, 1, 200}, SampleType::kUint8, 2, -1)), "-1*1 1*1 399*1 ");
+  EXPECT_EQ(texts(labels_in(std::vector<float>{0, 1.5F}, SampleType::kFloat32, 2, 0)), "3*1 ");
+  EXPECT_EQ(refusal_of_labels(std::vector<std::int16_t>{0, 1}, SampleType::kInt16, 0.25, -2),
+            "map: expected labels without a scaling, or scaled by whole numbers, found slope 0.25 and intercept -2");
+  EXPECT_EQ(refusal_of_labels(std::vector<std::uint64_t>{0, ~std::uint64_t{0}}, SampleType::kUint64, 1, 1),
+            "map: expected scaled labels of less than 2^63, found 18446744073709551615 before scaling in sample 1,0,0");
+}
+
+TEST(LabelTypes, MasksAreOfTheSameNumbers) {
+  const auto mask_of = [](const auto& samples, SampleType type, Label label) {
+    const auto mask = label_volume(volume_in_memory(row_of(samples, type), std::as_bytes(std::span(samples))), label);
+    EXPECT_EQ(mask->info().slope, 1);
+    std::vector<std::uint8_t> found(samples.size());
+    mask->read(0, 1, std::as_writable_bytes(std::span(found)));
+    return found;
+  };
+  const std::vector<std::uint64_t> ids{std::uint64_t{1} << 32, 0, (std::uint64_t{1} << 32) + 7, ~std::uint64_t{0}};
+  EXPECT_EQ(mask_of(ids, SampleType::kUint64, ids[2]), (std::vector<std::uint8_t>{0, 0, 1, 0}));
+  EXPECT_EQ(mask_of(ids, SampleType::kUint64, -1), (std::vector<std::uint8_t>{0, 0, 0, 0}));
+  EXPECT_EQ(mask_of(ids, SampleType::kUint64, ids[3]), (std::vector<std::uint8_t>{0, 0, 0, 1}));
+  EXPECT_EQ(mask_of(std::vector<float>{2, 0, 3}, SampleType::kFloat32, 3), (std::vector<std::uint8_t>{0, 0, 1}));
+  EXPECT_THROW(mask_of(std::vector<float>{2, 0.5F, 3}, SampleType::kFloat32, 3), BadInput);
+}
+
+// A grey image by the formula of a gyroid, and blocks of labels.
+TEST(ScatteredLabels, AreThoseOfGreyImages) {
+  GenerateOptions options;
+  options.kind = "noise";
+  options.dims = {48, 40, 32};
+  options.type = SampleType::kUint8;
+  const std::vector<LabelExtent> grey = find_labels(*generate_volume(options));
+  EXPECT_GT(grey.size(), 200U);
+  EXPECT_GT(10 * count_scattered(grey), 9 * grey.size());
+  const std::array<std::int64_t, 3> dims{48, 40, 32};
+  Labels blocks, single;
+  for (std::int64_t n = 0; n < 48 * 40 * 32; ++n) {
+    const std::int64_t i = n % 48, j = n / 48 % 40, k = n / (48 * 40);
+    blocks.push_back(static_cast<std::uint16_t>(1 + i / 4 + 12 * (j / 4) + 120 * (k / 4)));
+    single.push_back(static_cast<std::uint16_t>(n % 17 == 0 && n < 17 * 4000 ? 1 + n / 17 : 0));
+  }
+  const std::vector<LabelExtent> atlas = find_labels(*std::make_unique<LabelMap>(dims, blocks));
+  EXPECT_EQ(atlas.size(), 960U);
+  EXPECT_EQ(atlas[0].runs, 16U);
+  EXPECT_EQ(count_scattered(atlas), 0U);
+  EXPECT_EQ(count_scattered(find_labels(*std::make_unique<LabelMap>(dims, single))), 0U);
 }
 
 }  // namespace

@@ -124,14 +124,15 @@ TEST(MetaImage, RefusesWrongGeometry) {
 TEST(MetaImage, KnowsAllScalarTypesAndNamesTheOthers) {
   const TempFolder folder;
   const std::vector<std::pair<std::string, SampleType>> types{
-      {"MET_CHAR", SampleType::kInt8},     {"MET_UCHAR", SampleType::kUint8},   {"MET_SHORT", SampleType::kInt16},
-      {"MET_USHORT", SampleType::kUint16}, {"MET_INT", SampleType::kInt32},     {"MET_UINT", SampleType::kUint32},
-      {"MET_FLOAT", SampleType::kFloat32}, {"MET_DOUBLE", SampleType::kFloat64}};
+      {"MET_CHAR", SampleType::kInt8},       {"MET_UCHAR", SampleType::kUint8},       {"MET_SHORT", SampleType::kInt16},
+      {"MET_USHORT", SampleType::kUint16},   {"MET_INT", SampleType::kInt32},         {"MET_UINT", SampleType::kUint32},
+      {"MET_LONG_LONG", SampleType::kInt64}, {"MET_ULONG_LONG", SampleType::kUint64}, {"MET_LONG", SampleType::kInt32},
+      {"MET_FLOAT", SampleType::kFloat32},   {"MET_DOUBLE", SampleType::kFloat64}};
   for (const auto& [name, type] : types) {
     const std::string content = header("ElementType = " + name + "\n") + std::string(30 * sample_bytes(type), 'x');
     EXPECT_EQ(open_volume(folder.put("a.mha", content))->info().type, type) << name;
   }
-  for (const std::string name : {"MET_LONG_LONG", "MET_UCHAR_ARRAY", "MET_STRING", ""}) {
+  for (const std::string name : {"MET_LONG_LONG_ARRAY", "MET_UCHAR_ARRAY", "MET_STRING", ""}) {
     EXPECT_TRUE(contains(refusal_of(folder, "ElementType = " + name + "\n"), "'" + name + "'")) << name;
   }
 }

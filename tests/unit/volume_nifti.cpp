@@ -51,16 +51,18 @@ TEST(Nifti, SkipsSlicesOfAGzipStream) {
 TEST(Nifti, ReadsAllScalarTypesAndNamesTheOthers) {
   const TempFolder folder;
   const std::vector<std::pair<int, SampleType>> types{
-      {2, SampleType::kUint8},    {4, SampleType::kInt16},  {8, SampleType::kInt32},    {16, SampleType::kFloat32},
-      {64, SampleType::kFloat64}, {256, SampleType::kInt8}, {512, SampleType::kUint16}, {768, SampleType::kUint32}};
+      {2, SampleType::kUint8},    {4, SampleType::kInt16},    {8, SampleType::kInt32},    {16, SampleType::kFloat32},
+      {64, SampleType::kFloat64}, {256, SampleType::kInt8},   {512, SampleType::kUint16}, {768, SampleType::kUint32},
+      {1024, SampleType::kInt64}, {1280, SampleType::kUint64}};
   for (const auto& [code, type] : types) {
     NiftiFields fields;
     fields.type = static_cast<std::int16_t>(code);
     const auto path = folder.put("a.nii", nifti_header(fields) + std::string(30 * sample_bytes(type), 'x'));
     EXPECT_EQ(open_volume(path)->info().type, type);
   }
-  const std::vector<std::pair<int, std::string>> refused{
-      {1, "1 bit"}, {32, "complex64"}, {128, "RGB"}, {1024, "int64"}, {2304, "RGBA"}, {0, "code 0"}, {-7, "code -7"}};
+  const std::vector<std::pair<int, std::string>> refused{{1, "1 bit"},       {32, "complex64"}, {128, "RGB"},
+                                                         {1536, "float128"}, {2304, "RGBA"},    {0, "code 0"},
+                                                         {-7, "code -7"}};
   for (const auto& [code, name] : refused) {
     NiftiFields fields;
     fields.type = static_cast<std::int16_t>(code);

@@ -50,9 +50,10 @@ TEST(Npy, ReadsTheOrderOfFortranAsTheSameArray) {
 TEST(Npy, ReadsEveryTypeAndNamesTheOthers) {
   const TempFolder folder;
   const std::vector<std::pair<std::string, SampleType>> types{
-      {"|u1", SampleType::kUint8},  {"|i1", SampleType::kInt8},    {"|b1", SampleType::kUint8},
-      {"<u2", SampleType::kUint16}, {"<i2", SampleType::kInt16},   {">u4", SampleType::kUint32},
-      {"=i4", SampleType::kInt32},  {"<f4", SampleType::kFloat32}, {">f8", SampleType::kFloat64}};
+      {"|u1", SampleType::kUint8},   {"|i1", SampleType::kInt8},   {"|b1", SampleType::kUint8},
+      {"<u2", SampleType::kUint16},  {"<i2", SampleType::kInt16},  {">u4", SampleType::kUint32},
+      {"=i4", SampleType::kInt32},   {"<i8", SampleType::kInt64},  {">u8", SampleType::kUint64},
+      {"<f4", SampleType::kFloat32}, {">f8", SampleType::kFloat64}};
   for (const auto& [name, type] : types) {
     const std::string content = npy_header(name, kShape) + std::string(30 * sample_bytes(type), 'x');
     EXPECT_EQ(open_volume(folder.put("a.npy", content))->info().type, type) << name;

@@ -72,12 +72,14 @@ TEST(Nrrd, KnowsAllTypeNamesAndNamesTheOthers) {
       {"unsigned char", SampleType::kUint8}, {"uint8_t", SampleType::kUint8},
       {"short int", SampleType::kInt16},     {"unsigned short", SampleType::kUint16},
       {"int32", SampleType::kInt32},         {"unsigned int", SampleType::kUint32},
-      {"float", SampleType::kFloat32},       {"double", SampleType::kFloat64}};
+      {"float", SampleType::kFloat32},       {"double", SampleType::kFloat64},
+      {"long long", SampleType::kInt64},     {"int64_t", SampleType::kInt64},
+      {"ulonglong", SampleType::kUint64},    {"unsigned long long int", SampleType::kUint64}};
   for (const auto& [name, type] : types) {
     const std::string content = header("type: " + name + "\n") + "\n" + std::string(30 * sample_bytes(type), 'x');
     EXPECT_EQ(open_volume(folder.put("a.nrrd", content))->info().type, type) << name;
   }
-  for (const std::string name : {"int64", "unsigned long long", "block", "half", ""}) {
+  for (const std::string name : {"long", "unsigned long", "block", "half", ""}) {
     EXPECT_TRUE(contains(refusal_of(folder, "type: " + name + "\n"), "type '" + name + "'")) << name;
   }
 }

@@ -9,16 +9,16 @@ namespace isoweave::testing {
 namespace {
 
 TEST(SampleTypes, NamesAndSizesBelongTogether) {
-  const std::vector<std::pair<std::string, std::size_t>> expected{{"uint8", 1},   {"int8", 1},   {"uint16", 2},
-                                                                  {"int16", 2},   {"uint32", 4}, {"int32", 4},
-                                                                  {"float32", 4}, {"float64", 8}};
+  const std::vector<std::pair<std::string, std::size_t>> expected{
+      {"uint8", 1}, {"int8", 1},   {"uint16", 2}, {"int16", 2},   {"uint32", 4},
+      {"int32", 4}, {"uint64", 8}, {"int64", 8},  {"float32", 4}, {"float64", 8}};
   for (const auto& [name, bytes] : expected) {
     const auto type = parse_sample_type(name);
     ASSERT_TRUE(type) << name;
     EXPECT_EQ(sample_type_name(*type), name);
     EXPECT_EQ(sample_bytes(*type), bytes) << name;
   }
-  EXPECT_FALSE(parse_sample_type("int64"));
+  EXPECT_FALSE(parse_sample_type("int128"));
 }
 
 TEST(RawLayout, ParsesEveryPart) {
@@ -34,7 +34,7 @@ TEST(RawLayout, NamesThePartThatIsWrong) {
   const std::vector<std::pair<std::string, std::string>> wrong{{"512x256:uint8", "'512x256'"},
                                                                {"0x2x3:uint8", "'0x2x3'"},
                                                                {"1x-2x3:uint8", "'1x-2x3'"},
-                                                               {"1x2x3:int64", "'int64'"},
+                                                               {"1x2x3:int128", "'int128'"},
                                                                {"1x2x3:uint8:huge", "'huge'"},
                                                                {"1x2x3:uint8:skip=-1", "'skip=-1'"},
                                                                {"1x2x3", "'1x2x3'"},
@@ -59,7 +59,7 @@ TEST(RawLayout, IsReadFromNames) {
   EXPECT_EQ(layout->type, SampleType::kUint16);
   EXPECT_FALSE(layout->big_endian);
   for (const char* name : {"foot.raw", "foot_256x128x64.raw", "foot_256x128_uint8.raw", "foot_256x128x64_uint8.bin",
-                           "foot_256x128x0_uint8.raw", "foot_256x128x64_uint64.raw", ""}) {
+                           "foot_256x128x0_uint8.raw", "foot_256x128x64_uint128.raw", ""}) {
     EXPECT_FALSE(raw_layout_from_name(name)) << name;
   }
 }

@@ -47,6 +47,10 @@ Range range_of(SliceSource& source) {
       return range_of<std::uint32_t>(source);
     case SampleType::kInt32:
       return range_of<std::int32_t>(source);
+    case SampleType::kUint64:
+      return range_of<std::uint64_t>(source);
+    case SampleType::kInt64:
+      return range_of<std::int64_t>(source);
     case SampleType::kFloat32:
       return range_of<float>(source);
     case SampleType::kFloat64:
