@@ -292,10 +292,10 @@ class Forecaster {
       const T* const samples = reinterpret_cast<const T*>(slice.data());
       const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
       std::uint64_t inside = 0;
-      if (!threshold.reachable) return inside;
       const auto add = [&](std::int64_t i, std::int64_t j) {
         const T value = samples[j * nx + i];
-        inside += (rule.above ? value >= threshold.value : value <= threshold.value) ? 1 : 0;
+        const bool is_beyond = rule.above ? value >= threshold.value : value <= threshold.value;
+        inside += threshold.reachable && is_beyond ? 1 : 0;
       };
       for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, ny - 1);
       for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);

@@ -120,8 +120,7 @@ TEST(LabelFileNames, AreSafeAndStayReadable) {
 TEST(LabelFileNames, AreDifferentFromEachOther) {
   EXPECT_EQ(file_names({{1, "Tumor", {}, 0}, {2, "tumor", {}, 0}, {3, "a/b", {}, 0}, {4, "a:b", {}, 0}}),
             (std::vector<std::string>{"Tumor_label1", "tumor_label2", "a_b_label3", "a_b_label4"}));
-  EXPECT_EQ(file_names({{1, "label2", {}, 0}, {2, "", {}, 0}}),
-            (std::vector<std::string>{"label2_label1", "label2"}));
+  EXPECT_EQ(file_names({{1, "label2", {}, 0}, {2, "", {}, 0}}), (std::vector<std::string>{"label2_label1", "label2"}));
   EXPECT_EQ(file_names({{1, "x_label2", {}, 0}, {2, "x", {}, 0}, {3, "x", {}, 0}}),
             (std::vector<std::string>{"x_label2", "x_label2_label2", "x_label3"}));
   EXPECT_EQ(file_names({{1, "", {}, 0}, {1, "", {}, 1}}), (std::vector<std::string>{"label1", "layer1_label1"}));
