@@ -137,8 +137,7 @@ TEST(SliceSeries, LeavesOtherFilesOfAFolderOutButNotOfAPattern) {
   EXPECT_EQ(source->info().dims[2], 12);
   EXPECT_EQ(source->info().notes.at(0),
             "5 files of the folder are no slices and are left out: a?.txt, b.txt, c.txt, ...");
-  EXPECT_TRUE(
-      contains(refusal(folder / "*.t*"), "a?.txt: expected a slice in TIFF, PNG or DICOM, found text"));
+  EXPECT_TRUE(contains(refusal(folder / "*.t*"), "a?.txt: expected a slice in TIFF, PNG or DICOM, found text"));
 }
 
 TEST(SliceSeries, RefusesFoldersWithoutSlices) {
