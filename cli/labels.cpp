@@ -118,6 +118,7 @@ std::vector<MeshedLabel> all_labels(const LabelsTask& task, const LabelBook& boo
   const std::vector<LabelExtent> extents = find_labels(*open_input(input), {}, stop);
   if (book.segments(layer).empty()) check_is_label_map(task, extents);
   std::vector<MeshedLabel> labels;
+  labels.reserve(extents.size());
   for (const LabelExtent& extent : extents) labels.push_back({book.entry(extent.label, layer), extent});
   for (LabelName& segment : book.segments(layer)) {
     const bool occurs = std::ranges::find(extents, segment.label, &LabelExtent::label) != extents.end();

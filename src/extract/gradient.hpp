@@ -111,7 +111,7 @@ ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& cross
   }
   Vec3 g = crossing_gradient(samples, crossing, spacing, 1);
   if (!is_finite(g)) {  // a difference is beyond the largest number: directions are those of smaller samples
-    constexpr double kSmall = 1.0 / (std::uint64_t{1} << 62) / (std::uint64_t{1} << 62);
+    constexpr double kSmall = 0x1p-124;
     const Vec3 small = crossing_gradient(samples, crossing, spacing, kSmall);
     if (is_finite(small)) g = small;
   }

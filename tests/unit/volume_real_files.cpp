@@ -372,7 +372,7 @@ TEST_F(RealFiles, OmeZarrExamples) {
   OpenOptions second;
   second.level = 1;
   EXPECT_TRUE(contains(refusal(data_file(folder + "invalid/image-04.zarr"), second), "3 axes of its image"));
-  EXPECT_TRUE(contains(refusal(data_file(folder + "warning/image-01.zarr")), "found '<i8'"));
+  EXPECT_EQ(open_volume(data_file(folder + "warning/image-01.zarr"))->info().type, SampleType::kInt64);
 }
 #endif
 
