@@ -1,4 +1,5 @@
 // The digest of a triangle. The digest of a mesh is the sum over its triangles, modulo 2^64.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <compare>
@@ -44,7 +45,10 @@ std::uint64_t mix_corners(const CornerBits& p, const CornerBits& q, const Corner
 struct WideCornerBits {
   std::array<std::uint64_t, 3> bits{};
 
-  friend auto operator<=>(const WideCornerBits&, const WideCornerBits&) = default;
+  friend bool operator==(const WideCornerBits&, const WideCornerBits&) = default;
+  friend bool operator<(const WideCornerBits& a, const WideCornerBits& b) {
+    return std::lexicographical_compare(a.bits.begin(), a.bits.end(), b.bits.begin(), b.bits.end());
+  }
 };
 
 WideCornerBits bits_of(const Point& p, const std::array<double, 3>& offset) {
