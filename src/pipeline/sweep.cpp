@@ -114,7 +114,7 @@ std::string short_number(double number) {
 // Why more triangles are left than a run was to stop at.
 std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error) {
   const std::string within = std::isfinite(most_error) ? " within an error of " + short_number(most_error) : "";
-  const std::string held = "no other collapse" + within + " keeps the topology and the sides of faces";
+  std::string held = "no other collapse" + within + " keeps the topology and the sides of faces";
   const std::uint64_t least = kLeastTriangles * report.components;
   if (report.open_edges > 0 || least <= asked) return held;
   const std::string kept = "each of " + std::to_string(report.components) + " components keeps " +
