@@ -106,6 +106,7 @@ class Forecaster {
       const std::int64_t thin = thick == 0 || room >= thick + kThin ? std::min(kThin, room) : 0;
       const std::int64_t first = begin + (room - thin - thick) / 2;
       band_ = band_of(n);
+      map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});  // without a thin part it stays empty
       if (n == 0 && first > 0 && options_.closed) look_at_first();
       BlockFacts facts;
       if (thin > 0) facts = look_at_thin(first, thin);
@@ -187,7 +188,6 @@ class Forecaster {
   }
 
   BlockFacts look_at_thin(std::int64_t first, std::int64_t slices) {
-    map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});
     const auto look = [&](double i, double j, double /*k*/) { map_.add(i, j); };
     LocatingSink sink(info_.geometry.spacing, look);
     return look_at(first, slices, sink, nullptr);

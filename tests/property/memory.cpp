@@ -83,6 +83,16 @@ class StreamedVolume final : public SliceSource {
   VolumeInfo info_;
 };
 
+// Where a block of slices takes more than a band, and there are too few slices for a thin part.
+TEST(Forecast, TakesFewLargeSlices) {
+  GenerateOptions volume;
+  volume.kind = "sphere";
+  volume.dims = {3000, 3000, 1};
+  MeshOptions options;
+  options.iso = suggested_iso(volume.kind, volume.type);
+  EXPECT_GT(forecast_mesh(*generate_volume(volume), options).peak_bytes, 0U);
+}
+
 TEST(Forecast, LooksAtTheFirstHalfGigabyteOfAStream) {
   StreamedVolume volume(100000);
   MeshOptions options;
