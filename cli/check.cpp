@@ -89,7 +89,7 @@ std::string self_intersections_text(const SelfIntersections& found) {
   return text;
 }
 
-// What there is to know beside the counts.
+// Facts of the mesh beside its counts.
 void tell_input(const CheckArguments& arguments, const InputMesh& input, const MeshCheck& check, Json& json) {
   std::vector<std::string> warnings = mesh_warnings(arguments.path, input.mesh);
   if (check.open_edges > 0 && !arguments.weld) {

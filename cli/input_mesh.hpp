@@ -19,7 +19,7 @@ struct InputMesh {
 
 InputMesh read_input_mesh(const std::string& path, bool weld);
 
-// What a user should know of a mesh that was read, one line each.
+// Notes on a mesh that was read, for the user, one line each.
 std::vector<std::string> mesh_warnings(const std::string& path, const TriangleMesh& mesh);
 
 // A line for each of them on standard error.

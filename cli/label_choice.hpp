@@ -10,7 +10,7 @@
 
 namespace isoweave::cli {
 
-// What --labels says.
+// The value of --labels, parsed.
 struct LabelChoice {
   bool all = false;                // labels that occur, but 0
   bool insists = false;            // also where the map looks like a grey image
@@ -29,7 +29,7 @@ class LabelBook {
   // The layers of the map, ascending: one, but for a segmentation whose segments overlap.
   const std::vector<std::int64_t>& layers() const { return layers_; }
 
-  // What is known of a label; its number at least.
+  // The entry of a label: its number at least.
   LabelName entry(Label label, std::int64_t layer) const;
 
   // The labels that are asked for one by one. Throws std::invalid_argument for a name that is not known and for a

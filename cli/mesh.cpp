@@ -349,12 +349,12 @@ void run_mesh(MeshArguments arguments) {
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
-    // What lies between two labels is none of them.
+    // A value between two labels is no label: slices are not resampled.
     const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
     if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
     return MeshJob(arguments, nullptr, nullptr).run();
   }
-  // What is no folder has nothing to lock, and no state.
+  // A path that is no folder cannot be locked and holds no state.
   std::optional<CheckpointLock> lock;
   if (std::filesystem::is_directory(arguments.resume)) lock.emplace(arguments.resume);
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);

@@ -28,7 +28,7 @@ void handle_with(void (*handler)(int)) {
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
-  // Whoever starts a program by nohup wants it to outlive the terminal.
+  // SIGHUP stays ignored under nohup: the program is to outlive the terminal.
   struct sigaction before {};
   if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
     ::sigaction(SIGHUP, &action, nullptr);
