@@ -258,7 +258,8 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   }
   LabelFiles files(task, layers);
   if (!run.quiet) {
-    for (const std::string& note : open_input(layers.front().input)->info().notes) print_note("warning: " + note);
+    const std::unique_ptr<SliceSource> first = open_input(layers.front().input);
+    for (const std::string& note : first->info().notes) print_note("warning: " + note);
   }
   ProgressPrinter printer(progress_mode(run.progress, run.quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };
