@@ -33,11 +33,11 @@ struct TriangleMesh {
 // vertex), OBJ (v and f), OFF, VTP and legacy VTK (polygons and strips), GLB and glTF (where the nodes place them; what
 // isoweave wrote as stored, without the node's unit and axes, and of several levels the finest; not compressed), and
 // 3MF (all that is to be built, at its place); told by content, then by name.
-// Polygons are fanned. Throws BadInput for anything missing, truncated, out of range or not understood. OBJ normals are
-// kept when they are numbered like the vertices, those of PLY, OFF, VTP and GLB always. Values are the property
-// `quality` of PLY. Where a file has more than 32 bits, and rounding to 32 would move a vertex by more than a
-// thousandth of the root of twice the mean triangle area, the mesh gets an offset: the one that the file names, or one
-// near its middle.
+// Polygons are cut into triangles. Throws BadInput for what is missing, truncated, out of range or not understood. OBJ
+// normals are kept if numbered like the vertices, those of PLY, OFF, VTP, VTK and GLB always. Values: the number that a
+// PLY, VTP or VTK file has for each vertex, as docs/formats.md says; `notes` say what is not kept. Where a file has
+// more than 32 bits, and rounding to 32 would move a vertex by more than a thousandth of the root of twice the mean
+// triangle area, the mesh gets an offset: the one that the file names, or one near its middle.
 TriangleMesh read_mesh(const std::string& path);
 
 // Makes the coordinates relative to another offset, rounded to 32 bits anew.

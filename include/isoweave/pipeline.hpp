@@ -313,9 +313,9 @@ struct Forecast {
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 // Simplifies a mesh with the same rules, a piece of its triangles after the other: beside the mesh that is given,
-// memory is held for what is undecided, as with a volume, where triangles that share a vertex do not lie far apart in
-// the list, and else for all of it. Vertices on non-manifold or badly oriented edges, and vertices whose triangles form
-// more than one fan, are locked: they stay where they are. Normals of the input are not kept.
+// memory is held for what is undecided, as with a volume, where triangles that share a vertex are near in the list, and
+// else for all of it. Vertices on non-manifold or badly oriented edges, and vertices whose triangles form more than one
+// fan, are locked: they stay where they are. Normals of the input are not kept, values are.
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control = {});
 
