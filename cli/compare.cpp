@@ -69,7 +69,10 @@ TriangleMesh read_surface(const std::string& path) {
 std::vector<std::string> match(TriangleMesh& b, const TriangleMesh& a, const CompareArguments& arguments) {
   try {
     std::vector<std::string> notes = match_place(b, a);
-    for (std::string& note : notes) print_note(note = arguments.b + ": " + note);
+    for (std::string& note : notes) {
+      note.insert(0, arguments.b + ": ");
+      print_note(note);
+    }
     return notes;
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: cannot be compared with {}: {}", arguments.b, arguments.a, error.what()));

@@ -337,14 +337,7 @@ class Forecaster {
 
   // Nothing but the six sides of a closed volume that is inside as a whole.
   Forecast conclude_constant() {
-    const SampleBytes sample = *constant_sample(volume_);
-    const IsoRule rule = stored_rule(info_, options_);
-    const double value = visit_sample_type(info_.type, [&]<class T>() {
-      T stored{};
-      std::memcpy(&stored, sample.data(), sizeof(T));
-      return static_cast<double>(stored);
-    });
-    const bool inside = rule.above ? value >= rule.iso : value <= rule.iso;
+    const bool inside = is_inside(*constant_sample(volume_), info_.type, stored_rule(info_, options_));
     const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
     facts_.push_back({0, inside && options_.closed ? 4 * sides : 0});
     slices_read_ = 1;

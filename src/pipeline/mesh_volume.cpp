@@ -48,6 +48,7 @@ class VolumeSweep {
         sinks_(sinks.begin(), sinks.end()),
         engine_(make_engine(finder)),
         layers_(engine_->layers_left()) {
+    find_constant(source);
     if (saves()) open_folder();
     if (control.resume != nullptr) load_state();
     window_.emplace(field_.source(), engine_->slices_for(1).first);
@@ -59,7 +60,7 @@ class VolumeSweep {
     start_report();
     check_values();
     if (saves()) save_state();
-    while (engine_->layers_left() > 0) {
+    while (!all_outside_ && engine_->layers_left() > 0) {
       stop_if_asked();
       sweep_slab();
       if (state_is_due()) save_state();
@@ -94,6 +95,15 @@ class VolumeSweep {
     if (a.spacing == b.spacing && a.origin == b.origin && a.direction == b.direction) return;
     report_.warnings.push_back(values.path + ": lies elsewhere than " + volume_.path +
                                " by its spacing, origin or axes; sample by sample it is taken for the same place");
+  }
+
+  // A volume of one value that is outside has no surface, and may declare more samples than anyone can look at.
+  void find_constant(const SliceSource& source) {
+    const std::optional<SampleBytes> sample = constant_sample(source);
+    if (!sample || is_inside(*sample, volume_.type, stored_rule(volume_, options_))) return;
+    all_outside_ = true;
+    range_ = sample_range(sample->data(), volume_.type, 1);
+    range_.nan *= static_cast<std::uint64_t>(volume_.slice_samples() * volume_.dims[2]);
   }
 
   bool normals() const { return options_.normals != Normals::kAbsent; }
@@ -427,6 +437,7 @@ class VolumeSweep {
   std::optional<SliceWindow> values_window_;
   SlabPlan plan_;  // of the slices that have been read; no layers: of none
   SampleRange range_;
+  bool all_outside_ = false;  // as is known without reading a sample
   MeshReport report_;
   Stopwatch clock_;
   std::int64_t layers_;

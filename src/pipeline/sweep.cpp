@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -15,6 +16,8 @@
 #include "isoweave/error.hpp"
 #include "pipeline/world.hpp"
 #include "slab/lattice.hpp"
+#include "volume/samples.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 
@@ -89,6 +92,15 @@ IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options) {
   rule.above = options.inside_above == (volume.slope > 0);
   rule.closed = options.closed;
   return rule;
+}
+
+bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) {
+  return visit_sample_type(type, [&]<class T>() {
+    T stored{};
+    std::memcpy(&stored, sample.data(), sizeof stored);
+    const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
+    return threshold.reachable && (rule.above ? stored >= threshold.value : stored <= threshold.value);
+  });
 }
 
 CostBits retire_cost(double error, double a0, std::uint64_t triangles) {

@@ -12,6 +12,7 @@
 #include "simplify/count_target.hpp"
 #include "simplify/simplifier.hpp"
 #include "slab/memory_model.hpp"
+#include "volume/row_source.hpp"
 
 namespace isoweave {
 
@@ -49,6 +50,9 @@ const VolumeInfo& checked_volume(const VolumeInfo& volume);
 // The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument
 // for an iso-value that is not finite.
 IsoRule stored_rule(const VolumeInfo& volume, const MeshOptions& options);
+
+// Whether a sample of that type lies inside.
+bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
 
 // The cost, in units of a0, above which edges are retired. Throws std::invalid_argument for a negative error or NaN,
 // and for an infinite one where no number of triangles stops the run.

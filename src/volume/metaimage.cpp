@@ -165,8 +165,8 @@ std::vector<ArrayAxis> axes_of(const MetaFields& fields, const OpenOptions& opti
 
 // ElementSize is the extent of a sample, which is the distance of samples where nothing else is said.
 std::vector<double> spacing_of(VolumeInfo& info, const MetaFields& fields, std::size_t axes) {
-  const auto spacing = numbers_of(fields, {"elementspacing"}, axes, info.path);
-  const auto size = numbers_of(fields, {"elementsize"}, axes, info.path);
+  auto spacing = numbers_of(fields, {"elementspacing"}, axes, info.path);
+  auto size = numbers_of(fields, {"elementsize"}, axes, info.path);
   if (spacing.empty() && size.empty()) info.notes.emplace_back("the spacing is not given and taken as 1");
   if (spacing.empty()) return size;
   constexpr double kRounding = 1e-3;

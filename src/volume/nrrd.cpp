@@ -57,6 +57,7 @@ bool is_spatial(const NrrdAxis& axis, bool oriented) {
 std::vector<bool> find_spatial(std::vector<NrrdAxis>& axes, std::string_view path) {
   const bool oriented = std::any_of(axes.begin(), axes.end(), [](const NrrdAxis& axis) { return axis.step; });
   std::vector<bool> spatial;
+  spatial.reserve(axes.size());
   for (const NrrdAxis& axis : axes) spatial.push_back(is_spatial(axis, oriented));
   auto surplus = std::count(spatial.begin(), spatial.end(), true) - 3;
   for (std::size_t n = axes.size(); n-- > 0 && surplus > 0;) {

@@ -167,7 +167,7 @@ class SmallerVolume final : public SliceSource {
     }
   }
 
-  static constexpr double kSmall = 1.0 / (std::uint64_t{1} << 62);
+  static constexpr double kSmall = 0x1p-62;
 
   std::unique_ptr<SliceSource> whole_;
   VolumeInfo info_;

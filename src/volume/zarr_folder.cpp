@@ -195,7 +195,8 @@ FoundArray alone_or_level(const ZarrNode& array) {
   if (!folder.has_filename()) folder = folder.parent_path();
   std::string name;
   for (int above = 0; above < kMostAbove && folder.has_relative_path(); ++above) {
-    name = folder.filename().string() + (name.empty() ? "" : "/" + name);
+    if (!name.empty()) name.insert(0, "/");
+    name.insert(0, folder.filename().string());
     folder = folder.parent_path();
     const std::optional<ZarrNode> group = open_node(folder.string());
     if (!group || group->is_array) break;

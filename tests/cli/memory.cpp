@@ -170,6 +170,16 @@ TEST(CliMemory, AnArrayWithoutChunksIsAnsweredAtOnce) {
   EXPECT_EQ(forecast.code, 0) << forecast.err;
   const Result refused = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--memory", "100M"});
   EXPECT_GT(named_cap(refused), 200U);
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{}, {"--largest"}, {"--checkpoint", "states"}, {"--triangles", "9"}}) {
+    std::vector<std::string> arguments = {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result meshed = run(folder.path(), arguments);
+    ASSERT_EQ(meshed.code, 0) << meshed.err;
+    EXPECT_NE(meshed.err.find("the surface is empty: iso 9.000000, samples from 7.000000 to 7.000000"),
+              std::string::npos)
+        << meshed.err;
+  }
 }
 
 }  // namespace
