@@ -233,18 +233,26 @@ class MeshJob {
 
   // A cap that is too small for a part of all triangles is refused before they are counted.
   void foresee_share() {
-    options_.triangles = stop_triangles(arguments_.stop, [&] {
-      return forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
-    });
+    const std::uint64_t all = forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
     const MeshFileOptions file = file_options(arguments_, arguments_.stop, options_, info_);
-    checked_forecast(arguments_, options_, file, control_);
+    const auto check_with = [&](std::uint64_t triangles) {
+      options_.triangles = stop_triangles(arguments_.stop, [&] { return triangles; });
+      checked_forecast(arguments_, options_, file, control_);
+    };
+    try {
+      check_with(all);
+    } catch (const OverMemory&) {
+      check_with(all + all / 2);  // the cap that is named has to do where there are more than foreseen
+      throw;
+    }
     options_.triangles = 0;
   }
 
   void foresee() {
-    forecast_ = checked_forecast(arguments_, options_, file_, control_);
+    const CheckedForecast checked = checked_forecast(arguments_, options_, file_, control_);
+    forecast_ = checked.run;
+    files_bytes_ = checked.files;
     check_finer(arguments_, options_, file_, control_, *forecast_);
-    check_page_memory(arguments_, control_.memory, forecast_->triangles);
   }
 
   void tell_forecast(Evidence& evidence) const {
@@ -279,7 +287,7 @@ class MeshJob {
   }
 
   void sweep(ProgressMode mode, Evidence& evidence) {
-    if (control_.memory > 0) control_.memory = memory_beside_watch(arguments_, control_.memory);
+    control_.memory_elsewhere = watch_memory(arguments_.watch) + files_bytes_;
     const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
     const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
     print_volume_notes();
@@ -340,6 +348,7 @@ class MeshJob {
   std::optional<ComponentChoice> components_;
   MeshFileOptions file_;
   std::optional<Forecast> forecast_;  // of a run that is not resumed
+  std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold
 };
 
 void run_mesh(MeshArguments arguments) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "isoweave/error.hpp"
 #include "output.hpp"
@@ -12,6 +11,22 @@
 #include "report.hpp"
 
 namespace isoweave::cli {
+namespace {
+
+constexpr const char* kForPage = " (for --html)";
+
+// Triangles of all levels: no finer one has more of them than the finest.
+std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
+                                  const Forecast& last) {
+  if (options.levels.empty()) return last.triangles;
+  MeshOptions finest = options;
+  finest.error = options.levels.front();
+  finest.levels.clear();
+  const Forecast forecast = forecast_mesh(*open_input(arguments.input), finest, control);
+  return last.triangles + options.levels.size() * forecast.triangles;
+}
+
+}  // namespace
 
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
   return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
@@ -31,26 +46,28 @@ std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::ui
       threads, threads == 1 ? "" : "s");
 }
 
-Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
-                          const RunControl& control) {
+CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options,
+                                 const MeshFileOptions& file, const RunControl& control) {
   Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
   output_bytes(forecast, arguments, file);
-  const std::uint64_t beside =
-      output_memory(arguments.output, forecast.vertices, forecast.triangles, file) + watch_memory(arguments.watch);
-  forecast.peak_bytes += beside;
-  forecast.least_bytes += beside;
+  const std::uint64_t triangles = triangles_of_levels(arguments, options, control, forecast);
+  const std::uint64_t files = output_memory(arguments.output, triangles / 2, triangles, file);
+  forecast.peak_bytes += files + watch_memory(arguments.watch);
+  forecast.least_bytes += files + watch_memory(arguments.watch);
   // A run with that cap looks at the volume, too.
   forecast.least_bytes = std::max(forecast.least_bytes, with_slack(peak_process_bytes()));
+  const std::uint64_t page = arguments.page.given() ? with_slack(page_memory(triangles)) : 0;
+  const bool page_decides = page > forecast.least_bytes;
+  forecast.least_bytes = std::max(forecast.least_bytes, page);
   if (control.memory > 0 && without_slack(forecast.least_bytes) > control.memory) {
-    refuse_cap(arguments.input.path, forecast.least_bytes, control.memory);
+    refuse_cap(arguments.input.path, forecast.least_bytes, control.memory, page_decides ? kForPage : "");
   }
-  return forecast;
+  return {forecast, files};
 }
 
 void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles) {
   if (!arguments.page.given() || cap == 0 || page_memory(triangles) <= cap) return;
-  throw OverMemory(fmt::format("{}: expected --memory {:.0f}M or more for --html, found {}", arguments.input.path,
-                               std::ceil(static_cast<double>(page_memory(triangles)) * 1e-6), arguments.memory));
+  refuse_cap(arguments.input.path, page_memory(triangles), cap, kForPage);
 }
 
 void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
@@ -67,13 +84,6 @@ void check_finer(const MeshArguments& arguments, const MeshOptions& options, con
     output_bytes(sum, arguments, file);
     if (!arguments.output.one_file) return;
   }
-}
-
-std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t cap) {
-  const std::uint64_t held = watch_memory(arguments.watch);
-  if (held < cap) return cap - held;
-  throw OverMemory(fmt::format("{}: expected more than --memory {:.0f}M for --watch, found {}", arguments.input.path,
-                               static_cast<double>(held) * 1e-6, arguments.memory));
 }
 
 }  // namespace isoweave::cli

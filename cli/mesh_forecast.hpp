@@ -16,9 +16,14 @@ std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& argume
 // asked: the number of triangles to stop at, or 0.
 std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads);
 
+struct CheckedForecast {
+  Forecast run;
+  std::uint64_t files = 0;  // bytes that writing holds
+};
+
 // What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
-Forecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
-                          const RunControl& control);
+CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options,
+                                 const MeshFileOptions& file, const RunControl& control);
 
 // Throws OverMemory where a page for so many triangles does not fit into the cap.
 void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles);
@@ -27,8 +32,5 @@ void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::u
 // the coarsest level.
 void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
                  const RunControl& control, const Forecast& last);
-
-// What of a cap is left for the run.
-std::uint64_t memory_beside_watch(const MeshArguments& arguments, std::uint64_t cap);
 
 }  // namespace isoweave::cli

@@ -110,7 +110,8 @@ struct RunControl {
   // mesh_volume only: bytes that the process should stay below; 0: no cap. Slabs and read-ahead are chosen for it,
   // unless MeshOptions name the slab. OverMemory is thrown when not even one layer more would fit.
   std::uint64_t memory = 0;
-  CheckpointOptions checkpoint{};  // mesh_volume only. The sink must be able to give marks
+  std::uint64_t memory_elsewhere = 0;  // of them, what sinks and observers are going to hold
+  CheckpointOptions checkpoint{};      // mesh_volume only. The sink must be able to give marks
   const Checkpoint* resume =
       nullptr;  // go on from there, with the same volume and options and a sink opened at its mark
   // Digest, components, non-manifold edges and vertices, and range of the samples: without it these stay empty in the

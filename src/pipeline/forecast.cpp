@@ -1,7 +1,7 @@
 // Forecasts: a few blocks of the volume are meshed, and the rest is taken to be like them.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <optional>
 #include <vector>
 
 #include "extract/rules.hpp"
@@ -35,14 +35,17 @@ constexpr double kTileBytes = 16e6;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever the cap: it must not be another forecast
 constexpr std::int64_t kThinnestBand = 8;  // rows
+constexpr double kRoughSurface = 250;      // triangles that are held, per sample along two sides of a slice
 
 // How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
 // flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
 double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
 constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
+constexpr double kCapsLeft = 0.005;   // share of the triangles of caps that their outlines keep
 constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
-constexpr double kCountMargin = 2.3;  // the same, where what is held depends on a number of triangles
+constexpr double kCountMargin = 2.5;  // the same, where what is held depends on a number of triangles
+constexpr double kFineDepth = 1.5;    // of the zone with fine quality, over that with normal quality
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;   // mean voxels
 constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
@@ -107,12 +110,13 @@ class Forecaster {
       const std::int64_t first = begin + (room - thin - thick) / 2;
       band_ = band_of(n);
       map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});  // without a thin part it stays empty
-      if (n == 0 && first > 0 && options_.closed) look_at_first();
+      if (n == 0 && first > 0 && options_.closed) first_cap_ = end_cap(0);
       BlockFacts facts;
       if (thin > 0) facts = look_at_thin(first, thin);
       if (thick > 0) facts = look_at_thick(first + thin, thick);
       facts_.push_back(facts);
     }
+    if (options_.closed && !last_cap_) last_cap_ = volume_.skips() ? end_cap(info_.dims[2] - 1) : first_cap_;
     if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
     return conclude();
   }
@@ -121,14 +125,16 @@ class Forecaster {
   // What meshing a block of slices holds, per sample of one: slices in the ring, and bits.
   double block_bytes() const { return 9 * static_cast<double>(sample_bytes(info_.type)) + 4; }
 
-  // A source that decodes more at once than the cap leaves is not read from at all.
+  // A source that decodes more at once than the cap leaves is not read from at all, unless that is no more than what
+  // looking at a volume takes anyway. The surface is not known then: what is named is enough for a rough one.
   void refuse_reader(std::uint64_t cap) const {
-    const std::uint64_t held = held_by_rows(volume_);
+    const auto held = static_cast<double>(held_by_rows(volume_));
     const double least =
-        static_cast<double>(resident_ + held) + kThinnestBand * block_bytes() * static_cast<double>(info_.dims[0]);
-    if (cap == 0 || held == 0 || least <= static_cast<double>(cap)) return;
-    const Profiles none{Profile({0.0}, 1), Profile({0.0}, 1)};
-    refuse_cap(info_.path, with_slack(to_count(std::max(least, kCapMargin * peak(none, 1) / kUsedPart))), cap);
+        static_cast<double>(resident_) + held + kThinnestBand * block_bytes() * static_cast<double>(info_.dims[0]);
+    if (cap == 0 || held <= kBandBytes || least <= static_cast<double>(cap)) return;
+    const Profiles rough{Profile({kRoughSurface * static_cast<double>(info_.dims[0] + info_.dims[1])}, 1),
+                         Profile({0.0}, 1)};
+    refuse_cap(info_.path, with_slack(to_count(std::max(least, least_cap(rough)))), cap);
   }
 
   // Rows of the bands that are looked at: all, unless slices are so large that a block of them would not fit.
@@ -164,15 +170,17 @@ class Forecaster {
     every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
-  // The first slice, where no block begins with it.
-  void look_at_first() {
+  // Triangles on one side of a slice that no block looks at, where it is an end of a closed volume.
+  double end_cap(std::int64_t k) {
+    double cap = 0;
     const std::size_t row = info_.slice_bytes() / static_cast<std::size_t>(info_.dims[1]);
     std::vector<std::byte> band(static_cast<std::size_t>(band_rows_) * row);
     for (std::int64_t j = 0; j < info_.dims[1]; j += band_rows_) {
       const std::int64_t rows = std::min(band_rows_, info_.dims[1] - j);
-      rows_.read(0, j, rows, band);
-      first_cap_ += 2 * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
+      rows_.read(k, j, rows, band);
+      cap += 2 * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
     }
+    return cap;
   }
 
   double inside_in(std::span<const std::byte> bytes) const {
@@ -211,6 +219,7 @@ class Forecaster {
       if (tile != nullptr) tile->take(n, slice);
       if (options_.closed) inside += inside_on_sides(slice);
       if (options_.closed && first + n == 0) first_cap_ = 2 * inside_in(slice) * rows_in_bands();
+      if (options_.closed && first + n == info_.dims[2] - 1) last_cap_ = 2 * inside_in(slice) * rows_in_bands();
     });
     Stopwatch watch;
     const MeshReport report = mesh(section, sink, 0, 0);
@@ -312,17 +321,16 @@ class Forecaster {
     const Profiles profiles = make_profiles();
     const auto layers = static_cast<double>(info_.dims[2]);
     const double open = profiles.open.below(layers);
-    const double caps = profiles.caps.below(layers);
+    const double caps = profiles.caps.below(layers) + first_cap_ + last_cap_.value_or(0);
     const double extracted = open + caps;
     Forecast forecast;
     forecast.triangles_extracted = to_count(extracted);
-    const double left = std::isinf(error_) ? extracted : open * left_ + (error_ > 0 ? 0 : caps);
+    const double left = std::isinf(error_) ? extracted : open * left_ + caps * (error_ > 0 ? kCapsLeft : 1);
     forecast.triangles = to_count(left);
     if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
     forecast.peak_bytes = to_count(peak(profiles, options_.slab));
-    forecast.least_bytes =
-        with_slack(to_count((options_.triangles > 0 ? kCountMargin : kCapMargin) * peak(profiles, 1) / kUsedPart));
+    forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
@@ -339,7 +347,10 @@ class Forecaster {
   Forecast conclude_constant() {
     const bool inside = is_inside(*constant_sample(volume_), info_.type, stored_rule(info_, options_));
     const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
-    facts_.push_back({0, inside && options_.closed ? 4 * sides : 0});
+    const bool boxed = inside && options_.closed;
+    facts_.push_back({0, boxed ? 4 * sides : 0});
+    first_cap_ = boxed ? 2 * static_cast<double>(info_.slice_samples()) : 0;
+    last_cap_ = first_cap_;
     slices_read_ = 1;
     blocks_ = 1;
     return conclude();
@@ -411,7 +422,8 @@ class Forecaster {
                             vertex_extras(options_),
                             options_.levels.size(),
                             options_.max_distance.value > 0};
-    const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : undecided_layers(left_);
+    const double deeper = options_.quality == Quality::kFine ? kFineDepth : 1;
+    const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : deeper * undecided_layers(left_);
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
@@ -432,7 +444,8 @@ class Forecaster {
       recent = planned;
       const auto extracted = [&] {
         const double end = at + static_cast<double>(recent);
-        return sum(profiles.open, at, end) + sum(profiles.caps, at, end) + (done == 0 ? first_cap_ : 0);
+        return sum(profiles.open, at, end) + sum(profiles.caps, at, end) + (done == 0 ? first_cap_ : 0) +
+               (done + recent == info_.dims[2] ? last_cap_.value_or(0) : 0);
       };
       const double fullest = 2 * static_cast<double>(goal.most_vertices);
       while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
@@ -441,6 +454,11 @@ class Forecaster {
       per_layer = triangles / static_cast<double>(recent);
     }
     return most;
+  }
+
+  // The cap that a run should do with, without slack.
+  double least_cap(const Profiles& profiles) const {
+    return (options_.triangles > 0 ? kCountMargin : kCapMargin) * peak(profiles, 1) / kUsedPart;
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
@@ -465,6 +483,7 @@ class Forecaster {
   double simplified_ = 0;                 // triangles of tiles
   std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
   double first_cap_ = 0;                  // triangles below the first slice, two for each sample inside
+  std::optional<double> last_cap_;        // above the last one
   double left_ = 1;                       // share of the triangles that is left
   double depth_ = 0;                      // layers seen undecided
   double seconds_extracting_ = 0, seconds_simplifying_ = 0;

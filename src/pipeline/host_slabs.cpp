@@ -42,7 +42,8 @@ void HostSlabs::simplify(SlabRecord& record) {
   if (!options_.simplifies) return;
   simplifier_.append(piece_);
   record.live_triangles = simplifier_.live_triangles();
-  record.bytes += simplifier_.zone().bytes();
+  zone_bytes_ = simplifier_.zone().bytes();
+  record.bytes += zone_bytes_;
   for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
     simplifier_.decide(level);
     outputs_[level]->take(simplifier_);

@@ -42,6 +42,7 @@ class HostSlabs final : public SlabEngine {
   void take_values(const SliceWindow& window) override;
   void simplify(SlabRecord& record) override;
   void write(SlabRecord& record, MeshReport& report) override;
+  std::uint64_t zone_bytes() const override { return zone_bytes_; }
   std::uint64_t held_triangles() const override { return options_.simplifies ? simplifier_.live_triangles() : 0; }
   void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sink() override;
@@ -72,6 +73,7 @@ class HostSlabs final : public SlabEngine {
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
   FullOutput full_output_;
   SurfacePiece piece_;
+  std::uint64_t zone_bytes_ = 0;  // with the last slab
 };
 
 // How the surface of a field is extracted and simplified; `volume` is the whole that the options speak of.

@@ -7,13 +7,13 @@ namespace {
 
 constexpr std::uint64_t kKilo = 1'000;
 constexpr std::uint64_t kMega = 1'000'000;
-constexpr std::uint64_t kSlack = 5 * kMega;  // and a twentieth
+constexpr std::uint64_t kSlack = 5 * kMega;  // and two fifths
 
 }  // namespace
 
-std::uint64_t with_slack(std::uint64_t least) { return least + least / 20 + kSlack; }
+std::uint64_t with_slack(std::uint64_t least) { return least + least / 5 * 2 + kSlack; }
 
-std::uint64_t without_slack(std::uint64_t named) { return named <= kSlack ? 0 : (named - kSlack) / 21 * 20; }
+std::uint64_t without_slack(std::uint64_t named) { return named <= kSlack ? 0 : (named - kSlack) / 7 * 5; }
 
 std::uint64_t whole_cap(std::uint64_t bytes) { return (bytes / kMega + (bytes % kMega > 0 ? 1 : 0)) * kMega; }
 

@@ -190,16 +190,30 @@ class VolumeSweep {
     return plan;
   }
 
+  MemoryModel memory_model(double heavier) const {
+    return {resident_ + control_.memory_elsewhere + reader_ + SurfaceField::memory(volume_, options_) +
+                engine_->other_bytes(),
+            field_.info().slice_bytes(),
+            static_cast<std::uint64_t>(volume_.slice_samples()),
+            executor_.threads(),
+            simplifies_,
+            vertex_extras(options_),
+            level_errors_.size(),
+            options_.max_distance.value > 0,
+            heavier};
+  }
+
+  // The formula is a fit: surfaces with more vertices, or more of what is kept beside triangles, take more.
+  void weigh_zone(const SlabRecord& record) {
+    constexpr std::uint64_t kEnough = 20'000;  // triangles; what does not grow hardly counts then
+    if (control_.memory == 0 || record.live_triangles < kEnough) return;
+    const double expected = memory_model(1).zone(static_cast<double>(record.live_triangles));
+    if (expected > 0) heavier_ = std::max(heavier_, static_cast<double>(engine_->zone_bytes()) / expected);
+  }
+
   // Thinner slabs, and fewer slices read ahead. Throws OverMemory when there is no room for one layer.
   void fit_into_cap(SlabPlan& plan, double per_layer) {
-    const MemoryModel model{resident_ + reader_ + SurfaceField::memory(volume_, options_) + engine_->other_bytes(),
-                            field_.info().slice_bytes(),
-                            static_cast<std::uint64_t>(volume_.slice_samples()),
-                            executor_.threads(),
-                            simplifies_,
-                            vertex_extras(options_),
-                            level_errors_.size(),
-                            options_.max_distance.value > 0};
+    const MemoryModel model = memory_model(heavier_);
     const auto undecided = static_cast<double>(engine_->held_triangles());
     const auto cap = static_cast<double>(control_.memory);
     const auto room = [&](double part) {
@@ -265,6 +279,7 @@ class VolumeSweep {
       engine_->take_slices(*window_, plan_.layers);
     }
     engine_->simplify(record);
+    weigh_zone(record);
     clock_.lap(report_.seconds_simplify);
     engine_->write(record, report_);
     clock_.lap(report_.seconds_write);
@@ -435,7 +450,8 @@ class VolumeSweep {
   std::unique_ptr<SlabEngine> engine_;
   std::optional<SliceWindow> window_;
   std::optional<SliceWindow> values_window_;
-  SlabPlan plan_;  // of the slices that have been read; no layers: of none
+  double heavier_ = 1;  // MemoryModel's
+  SlabPlan plan_;       // of the slices that have been read; no layers: of none
   SampleRange range_;
   bool all_outside_ = false;  // as is known without reading a sample
   MeshReport report_;

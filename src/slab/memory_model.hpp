@@ -24,6 +24,7 @@ struct MemoryModel {
   VertexExtras extras{};
   std::uint64_t levels = 0;  // finer ones
   bool bounded = false;      // distances: the extracted surface around the zone is held as well
+  double heavier = 1;        // what the zone has turned out to take, in terms of what it was taken for
 
   // What does not grow.
   double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
@@ -42,9 +43,12 @@ struct MemoryModel {
   // Slices in the ring for a slab and for those read ahead.
   static double ring_for(double layers, double ahead, bool normals) { return layers + 1 + ahead + (normals ? 2 : 0); }
 
+  // What the zone should take with so many triangles.
+  double zone(double triangles) const { return per_held() * triangles; }
+
  private:
   static constexpr double kBuffers = 6e6;
-  static constexpr double kBounded = 240;  // two extracted triangles for each that is held
+  static constexpr double kBounded = 500;  // four extracted triangles for each that is held
 
   double slices(double layers, double ring) const {
     constexpr double kBits = 0.75;  // bytes per sample: inside, crossings along three axes, cells, numbers of vertices
@@ -59,7 +63,7 @@ struct MemoryModel {
   double per_held() const {
     if (!simplifies) return 0;
     const double extra = static_cast<double>(extras.held) / 2 + 10 * static_cast<double>(levels);
-    return 160 + extra + (bounded ? kBounded : 0);
+    return heavier * (160 + extra + (bounded ? kBounded : 0));
   }
 };
 

@@ -3,6 +3,8 @@
 // other formats keep none.)
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 84;
 constexpr std::size_t kCountAt = 80;
 constexpr std::size_t kTriangleBytes = 50;
+constexpr std::uint64_t kReadBack = 1 << 20;  // positions at a time
 
 // A header that begins with "solid" would announce the ascii dialect.
 std::vector<std::byte> header_bytes(const MeshFileOptions& options, std::uint32_t triangles) {
@@ -44,6 +47,31 @@ Point facet_normal(const Point& a, const Point& b, const Point& c) {
   return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
+// Positions by number. They never move: an array that grows would hold itself twice while it does.
+class Positions {
+ public:
+  std::uint64_t size() const { return size_; }
+
+  const Point& operator[](std::uint64_t n) const { return blocks_[n / kBlock][n % kBlock]; }
+
+  void append(std::span<const Point> points) {
+    while (!points.empty()) {
+      if (size_ % kBlock == 0) blocks_.push_back(std::make_unique<Point[]>(kBlock));
+      const std::uint64_t from = size_ % kBlock;
+      const std::size_t count = std::min<std::size_t>(points.size(), kBlock - from);
+      std::ranges::copy(points.first(count), blocks_.back().get() + from);
+      points = points.subspan(count);
+      size_ += count;
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kBlock = 1 << 16;
+
+  std::vector<std::unique_ptr<Point[]>> blocks_;
+  std::uint64_t size_ = 0;
+};
+
 class StlSink final : public MeshFileSink {
  public:
   StlSink(const MeshTarget& target, const MeshFileOptions& options)
@@ -62,7 +90,7 @@ class StlSink final : public MeshFileSink {
 
   void write_piece(const MeshPiece& piece) override {
     check_count_fits(path(), "triangles", this->triangles(), piece.triangles.size());
-    positions_.insert(positions_.end(), piece.vertices.begin(), piece.vertices.end());
+    positions_.append(piece.vertices);
     if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(piece.vertices));
     write_records(file(), records_, piece.triangles.size(), kTriangleBytes,
                   [&](std::byte*& out, std::size_t n) { store_triangle(out, piece.triangles[n]); });
@@ -85,12 +113,16 @@ class StlSink final : public MeshFileSink {
   }
 
   void read_positions_back() {
-    positions_.resize(vertices());
-    kept_positions_->read_back(0, std::as_writable_bytes(std::span(positions_)));
+    std::vector<Point> some;
+    while (positions_.size() < vertices()) {
+      some.resize(std::min<std::uint64_t>(kReadBack, vertices() - positions_.size()));
+      kept_positions_->read_back(positions_.size() * sizeof(Point), std::as_writable_bytes(std::span(some)));
+      positions_.append(some);
+    }
   }
 
   RoundedPlaces places_;
-  std::vector<Point> positions_;
+  Positions positions_;
   OutputDescriptor* kept_positions_ = nullptr;
   std::vector<std::byte> records_;
 };

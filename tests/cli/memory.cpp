@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <regex>
 #include <string>
 #include <utility>
@@ -103,6 +105,16 @@ std::vector<std::string> joined(std::vector<std::string> arguments, const std::v
   return arguments;
 }
 
+void expect_named_cap(const std::string& volume, const std::string& file, const std::vector<std::string>& more) {
+  SCOPED_TRACE(volume + " " + file + (more.empty() ? "" : " " + more[0]));
+  const files::Folder folder;
+  const auto arguments = joined({"mesh", volume, "-o", file, "--quiet", "--iso", "127.5"}, more);
+  const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M"})));
+  const Result result = run(folder.path(), joined(arguments, {"--memory", std::to_string(cap) + "M"}));
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_LE(result.peak_bytes, cap * 1'000'000) << result.err;
+}
+
 TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
   if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
   using Words = std::vector<std::string>;
@@ -116,14 +128,36 @@ TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
       {"generate:sphere:900x900x60:uint8", {"--error", "0.5vox"}},
       {"generate:sphere:400x400x60:uint8", {"--inside", "below"}},
       {"generate:white:64x64x64:uint8", {}}};
-  for (const auto& [volume, more] : cases) {
-    SCOPED_TRACE(volume + (more.empty() ? "" : " " + more[0]));
-    const files::Folder folder;
-    const Words arguments = joined({"mesh", volume, "-o", "out.ply", "--quiet", "--iso", "127.5"}, more);
-    const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M"})));
-    const Result result = run(folder.path(), joined(arguments, {"--memory", std::to_string(cap) + "M"}));
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_LE(result.peak_bytes, cap * 1'000'000) << result.err;
+  for (const auto& [volume, more] : cases) expect_named_cap(volume, "out.ply", more);
+}
+
+// Volumes and options by chance, with a fixed seed.
+TEST(CliMemory, TheCapThatIsNamedDoesForAnyVolumeAndOptions) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  using Words = std::vector<std::string>;
+  std::mt19937 random(12);
+  const auto any = [&](const auto& list) { return list[random() % std::size(list)]; };
+  const Words shapes{"gyroid", "noise", "smooth", "sphere", "white", "specks"};
+  const Words types{"uint8", "int16", "float32", "int64", "float64"};
+  const Words files{"out.ply", "out.stl", "out.glb", "out.obj"};
+  const std::vector<Words> options{{"--error", "0"},
+                                   {"--error", "1vox"},
+                                   {"--error", "1vox", "--quality", "fine"},
+                                   {"--error", "1vox", "--max-distance", "0.5vox"},
+                                   {"--triangles", "5000"},
+                                   {"--ratio", "0.3"},
+                                   {"--lods", "0.1vox,0.5vox"},
+                                   {"--normals", "quadric"},
+                                   {"--step", "2"},
+                                   {"--step", "3", "--ratio", "0.1"},
+                                   {"--largest"},
+                                   {"--html", "page.html"}};
+  const std::vector<int> sides{2, 7, 40, 64, 100, 160};
+  for (int trial = 0; trial < 36; ++trial) {
+    std::string volume = "generate:" + any(shapes) + ":";
+    for (const char* next : {"x", "x", ":"}) volume += std::to_string(any(sides)) + next;
+    const std::string file = any(files);
+    expect_named_cap(volume + any(types), file, any(options));
   }
 }
 

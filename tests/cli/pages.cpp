@@ -303,7 +303,7 @@ TEST(CliPage, WhatCannotBeShownIsRefusedBeforeTheRun) {
   expect_failure(folder, with({"-o", "a.ply", "--page-triangles", "0"}), 2,
                  "--page-triangles: expected a whole number");
   expect_failure(folder, mesh({"--html", "none/out.html"}), 4, "none/out.html");
-  expect_failure(folder, mesh({"--html", "out.html", "--memory", "150M"}), 5, "or more for --html, found 150M");
+  expect_failure(folder, mesh({"--html", "out.html", "--memory", "150M"}), 5, "M or more, found 150M (for --html)");
 }
 
 TEST(CliView, ShowsAMeshFile) {
