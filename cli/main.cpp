@@ -35,6 +35,16 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& arguments) 
   if (!arguments[0].starts_with('-')) wrong_value("verb", "one of " + verbs, arguments[0]);
 }
 
+// What a script gives where a variable of it is empty is never taken for an option that was not given.
+void refuse_empty_values(CLI::App& app) {
+  const auto check = [](const std::string& value) { return value.empty() ? "expected a value, found ''" : ""; };
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
+    for (CLI::Option* option : verb->get_options()) {
+      if (!option->get_positional()) option->check(check);
+    }
+  }
+}
+
 int run(const std::vector<std::string>& arguments) {
   CLI::App app("Large volumes to simplified triangle surfaces, exactly, in bounded memory", "isoweave");
   app.set_version_flag("--version", "isoweave " ISOWEAVE_VERSION);
@@ -49,6 +59,7 @@ int run(const std::vector<std::string>& arguments) {
   add_render_verb(app);
   add_view_verb(app);
   add_generate_verb(app);
+  refuse_empty_values(app);
   try {
     check_verb(app, arguments);
     // CLI11 takes them from the back.

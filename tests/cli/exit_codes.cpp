@@ -115,5 +115,21 @@ TEST(CliExitCodes, CoordinatesThatAreNotNumbersNameTheirFile) {
   }
 }
 
+// As where a variable of a script is empty: an option is never left out in silence.
+TEST(CliUsage, AnEmptyValueIsRefused) {
+  const files::Folder folder;
+  for (const std::string option : {"--report", "--error", "--memory", "--roi", "--color-by", "--html", "--checkpoint",
+                                   "--lods", "--spacing", "--raw", "--space", "--triangles", "--threads"}) {
+    const Words words{"mesh", kSmall, "--iso", "0", "-o", "new.ply"};
+    Words apart = words;
+    apart.insert(apart.end(), {option, ""});
+    expect_code(folder, apart, 2, option + ": expected a value, found ''");
+    Words joined = words;
+    joined.push_back(option + "=");
+    expect_code(folder, joined, 2, option + ": ");
+  }
+  expect_code(folder, {"info", kSmall, "--series", ""}, 2, "--series: expected a value, found ''");
+}
+
 }  // namespace
 }  // namespace isoweave
