@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -36,6 +37,28 @@ constexpr int kAttempts = 100;
                  " bytes that it had when the state was saved, found " + found);
 }
 
+struct OverwrittenBytes {
+  std::uint64_t offset = 0;
+  std::span<const std::byte> bytes;
+};
+
+// The records of the file `name`: offset, count, bytes.
+std::vector<OverwrittenBytes> overwritten_in(std::span<const std::byte> saved, const std::string& name) {
+  std::vector<OverwrittenBytes> records;
+  while (!saved.empty()) {
+    std::array<std::uint64_t, 2> place{};
+    const bool has_place = saved.size() >= sizeof place;
+    if (has_place) std::memcpy(place.data(), saved.data(), sizeof place);
+    if (!has_place || place[1] > saved.size() - sizeof place) {
+      throw BadInput(name + ": expected what was overwritten in a part, found a file that was cut off or changed");
+    }
+    saved = saved.subspan(sizeof place);
+    records.push_back({place[0], saved.first(static_cast<std::size_t>(place[1]))});
+    saved = saved.subspan(static_cast<std::size_t>(place[1]));
+  }
+  return records;
+}
+
 // Of all that was written to it.
 std::uint32_t crc_of_file(OutputDescriptor& file) {
   std::vector<std::byte> block(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, file.size())));
@@ -46,6 +69,17 @@ std::uint32_t crc_of_file(OutputDescriptor& file) {
     crc = add_to_crc(crc, block);
   }
   return crc;
+}
+
+OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) bad_part(path, mark, std::generic_category().message(errno));
+  OutputDescriptor file(fd, path, mark.size);
+  struct stat status {};
+  if (::fstat(fd, &status) != 0) cannot_write(path, "cannot be looked up", errno);
+  const auto found = static_cast<std::uint64_t>(status.st_size);
+  if (found < mark.size) bad_part(path, mark, std::to_string(found) + " bytes");
+  return file;
 }
 
 std::string name_of(const std::string& path) {
@@ -152,7 +186,9 @@ OutputDescriptor::OutputDescriptor(OutputDescriptor&& other) noexcept
       path_(std::move(other.path_)),
       size_(other.size_),
       buffer_(std::move(other.buffer_)),
-      checksum_(other.checksum_) {}
+      checksum_(other.checksum_),
+      keeps_overwritten_(other.keeps_overwritten_),
+      overwritten_(std::move(other.overwritten_)) {}
 
 OutputDescriptor::~OutputDescriptor() {
   if (fd_ >= 0) ::close(fd_);
@@ -191,6 +227,11 @@ void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte
   if (offset > size_ || bytes.size() > size_ - offset) throw std::invalid_argument("overwrite past the end of a file");
   if (checksum_) replace_in_checksum(offset, bytes);
   flush();
+  if (keeps_overwritten_) save_overwritten(offset, bytes.size());
+  pwrite_now(offset, bytes);
+}
+
+void OutputDescriptor::pwrite_now(std::uint64_t offset, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (written > 0) {
@@ -249,6 +290,44 @@ void OutputDescriptor::replace_in_checksum(std::uint64_t offset, std::span<const
   const std::uint64_t behind = size_ - offset - bytes.size();
   *checksum_ ^= static_cast<std::uint32_t>(::crc32_combine(change, 0, static_cast<z_off_t>(behind)));
 }
+
+void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t count) {
+  const std::array<std::uint64_t, 2> place{offset, count};
+  const auto head = std::as_bytes(std::span(place));
+  overwritten_.insert(overwritten_.end(), head.begin(), head.end());
+  overwritten_.resize(overwritten_.size() + static_cast<std::size_t>(count));
+  read_back(offset, std::span(overwritten_).last(static_cast<std::size_t>(count)));
+  const std::string name = overwritten_path();
+  const std::string unfinished = name + ".new";
+  const int fd = ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
+  if (fd < 0) cannot_write(unfinished, "cannot be created", errno);
+  OutputDescriptor file(fd, unfinished);
+  file.write(overwritten_);
+  file.close();
+  if (::rename(unfinished.c_str(), name.c_str()) != 0) cannot_write(name, "cannot be renamed into place", errno);
+  sync_folder(path_, name);
+}
+
+void OutputDescriptor::restore_overwritten() {
+  const std::string name = overwritten_path();
+  const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0 && errno == ENOENT) return;
+  if (fd < 0) cannot_write(name, "cannot be opened", errno);
+  struct stat status {};
+  OutputDescriptor file(fd, name);
+  if (::fstat(fd, &status) != 0) cannot_write(name, "cannot be looked up", errno);
+  std::vector<std::byte> saved(static_cast<std::size_t>(status.st_size));
+  file.read_back(0, saved);
+  std::vector<OverwrittenBytes> records = overwritten_in(saved, name);
+  std::reverse(records.begin(), records.end());  // what was overwritten last is put back first
+  for (const auto& [offset, bytes] : records) {
+    if (offset < size_) pwrite_now(offset, bytes.first(std::min<std::uint64_t>(bytes.size(), size_ - offset)));
+  }
+  sync();
+  forget_overwritten();
+}
+
+void OutputDescriptor::forget_overwritten() const { ::unlink(overwritten_path().c_str()); }
 
 void OutputDescriptor::verify() {
   if (!checksum_) return;
@@ -326,6 +405,7 @@ void AtomicFile::commit() {
     if (errno != EXDEV) cannot_write(path_, "cannot be renamed into place", errno);
     copy_into_place();
   }
+  if (kept_) file_.forget_overwritten();
   temporary_.clear();
   sync_folder(path_, target_);
 }
@@ -347,7 +427,8 @@ void AtomicFile::name_file() {
 // A part file may lie on another file system than the target.
 void AtomicFile::copy_into_place() {
   AtomicFile copy(path_);
-  OutputDescriptor part = open_part({temporary_, PartMark{file_.size(), *file_.checksum()}});
+  OutputDescriptor part = open_part_again(temporary_, PartMark{file_.size(), *file_.checksum()});
+  part.keep_checksum(*file_.checksum());
   copy.file_.keep_checksum(0);
   copy.append(part);
   copy.commit();
@@ -370,17 +451,8 @@ OutputDescriptor create_part(const std::string& path) {
     throw CannotWrite(path + ": is there already: resume the unfinished run that it belongs to, or remove it");
   }
   if (fd < 0) cannot_write(path, "cannot be created", errno);
-  return {fd, path};
-}
-
-OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (fd < 0) bad_part(path, mark, std::generic_category().message(errno));
-  OutputDescriptor file(fd, path, mark.size);
-  struct stat status {};
-  if (::fstat(fd, &status) != 0) cannot_write(path, "cannot be looked up", errno);
-  const auto found = static_cast<std::uint64_t>(status.st_size);
-  if (found < mark.size) bad_part(path, mark, std::to_string(found) + " bytes");
+  OutputDescriptor file(fd, path);
+  file.forget_overwritten();  // of a part that went before
   return file;
 }
 
@@ -390,7 +462,9 @@ OutputDescriptor open_part(const PartFile& part) {
   OutputDescriptor file = part.mark ? open_part_again(part.path, *part.mark) : create_part(part.path);
   if (!file.try_lock()) throw CannotWrite(part.path + ": another process is writing to it");
   file.keep_checksum(part.mark ? part.mark->checksum : 0);
+  file.keep_overwritten();
   if (!part.mark) return file;
+  file.restore_overwritten();
   if (crc_of_file(file) != part.mark->checksum) bad_part(part.path, *part.mark, "others: its checksum does not fit");
   file.cut_off();  // of what came after the state was saved
   return file;

@@ -45,6 +45,14 @@ class OutputDescriptor {
   void keep_checksum(std::uint32_t so_far) { checksum_ = so_far; }
   std::optional<std::uint32_t> checksum() const { return checksum_; }
 
+  // From now on keeps what is overwritten in a file beside this one, so that open_part finds the bytes that a state was
+  // saved with, however the process ends.
+  void keep_overwritten() { keeps_overwritten_ = true; }
+
+  // Puts back what was overwritten, as far as the file goes; and forgets it.
+  void restore_overwritten();
+  void forget_overwritten() const;
+
   // Reads the file from its beginning, where a checksum is kept. Throws CannotWrite when it holds other bytes than were
   // written.
   void verify();
@@ -69,6 +77,9 @@ class OutputDescriptor {
   std::uint64_t append_in_kernel(const OutputDescriptor& source);
   void add_to_checksum(const OutputDescriptor& source);
   void replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes);
+  void save_overwritten(std::uint64_t offset, std::uint64_t count);
+  void pwrite_now(std::uint64_t offset, std::span<const std::byte> bytes);
+  std::string overwritten_path() const { return path_ + ".before"; }
   [[noreturn]] void fail(const char* what, int error) const;
 
   int fd_;
@@ -76,6 +87,8 @@ class OutputDescriptor {
   std::uint64_t size_ = 0;
   std::vector<std::byte> buffer_;
   std::optional<std::uint32_t> checksum_;  // of all size_ bytes
+  bool keeps_overwritten_ = false;
+  std::vector<std::byte> overwritten_;  // as in the file beside: offset, count, bytes; and again
 };
 
 // How far a part file had come.

@@ -161,6 +161,37 @@ TEST(AtomicFile, OpeningFailsAtOnceWithThePathAndTheReason) {
   EXPECT_EQ(folder.entries().size(), 2U);
 }
 
+// As when a process is killed while it puts counts into the header of a mesh that is complete otherwise.
+TEST(OutputDescriptor, APartThatWasOverwrittenGoesOnFromItsMark) {
+  const files::Folder folder;
+  const std::string text = "header: 0000, then what was written before the mark";
+  const PartMark mark{text.size(), add_to_crc(0, bytes_of(text))};
+  {
+    OutputDescriptor file = open_part({folder / "a", std::nullopt});
+    file.write(bytes_of(text + " and behind it"));
+    file.overwrite(8, bytes_of("1234"));
+    file.overwrite(10, bytes_of("56"));
+    file.overwrite(text.size() - 2, bytes_of("across it"));
+    file.flush();
+  }
+  EXPECT_NE(files::read_bytes(folder / "a").substr(0, text.size()), text);
+  OutputDescriptor file = open_part({folder / "a", mark});
+  EXPECT_EQ(files::read_bytes(folder / "a"), text);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.before"));
+  file.write(bytes_of("."));
+  file.flush();
+  EXPECT_EQ(files::read_bytes(folder / "a"), text + ".");
+}
+
+TEST(OutputDescriptor, WhatWasOverwrittenAndIsDamagedIsRefused) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a", "text");
+  for (const std::string& saved : {std::string("short"), std::string(8, '\0') + std::string(8, '\x7f') + "x"}) {
+    files::write_bytes(folder / "a.before", saved);
+    EXPECT_THROW(open_part({folder / "a", PartMark{4, add_to_crc(0, bytes_of("text"))}}), BadInput);
+  }
+}
+
 // The checksum of the file follows all that is done to it: appended in buffers and past them, joined, overwritten.
 TEST(OutputDescriptor, KeepsTheChecksumOfTheWholeFile) {
   const files::Folder folder;
