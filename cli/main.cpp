@@ -35,7 +35,7 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& arguments) 
   if (!arguments[0].starts_with('-')) wrong_value("verb", "one of " + verbs, arguments[0]);
 }
 
-// What a script gives where a variable of it is empty is never taken for an option that was not given.
+// Empty values are refused: where a variable of a script is empty, its option would be ignored in silence.
 void refuse_empty_values(CLI::App& app) {
   const auto check = [](const std::string& value) { return value.empty() ? "expected a value, found ''" : ""; };
   for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {

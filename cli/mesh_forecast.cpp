@@ -15,10 +15,11 @@ namespace {
 
 constexpr const char* kForPage = " (for --html)";
 
-// Triangles of all levels: no finer one has more of them than the finest.
-std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
-                                  const Forecast& last) {
-  if (options.levels.empty()) return last.triangles;
+// Triangles of all levels, at most: none has more of them than the finest. Looked at only where memory depends on it.
+std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOptions& options,
+                                  const MeshFileOptions& file, const RunControl& control, const Forecast& last) {
+  const bool matters = arguments.page.given() || output_memory(arguments.output, 1, 1, file) > 0;
+  if (options.levels.empty() || !matters) return last.triangles;
   MeshOptions finest = options;
   finest.error = options.levels.front();
   finest.levels.clear();
@@ -50,7 +51,7 @@ CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptio
                                  const MeshFileOptions& file, const RunControl& control) {
   Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
   output_bytes(forecast, arguments, file);
-  const std::uint64_t triangles = triangles_of_levels(arguments, options, control, forecast);
+  const std::uint64_t triangles = triangles_of_levels(arguments, options, file, control, forecast);
   const std::uint64_t files = output_memory(arguments.output, triangles / 2, triangles, file);
   forecast.peak_bytes += files + watch_memory(arguments.watch);
   forecast.least_bytes += files + watch_memory(arguments.watch);

@@ -18,7 +18,7 @@ inline constexpr double kRingPart = 0.05;    // of a cap, slices in the ring bey
 // A cap in the form in which one is asked for: the largest unit in which it is a whole number.
 std::string cap_text(std::uint64_t bytes);
 
-// What the smallest cap that is named has beyond what a forecast comes to. It has to do, while a forecast is a guess;
+// The margin of the cap that a message names over a forecast. That cap has to do, while a forecast is a guess;
 // two processes differ by some megabytes, and the one that gets this cap looks again. Smaller ones are tried, down to
 // what is forecast.
 std::uint64_t with_slack(std::uint64_t least);

@@ -52,7 +52,7 @@ class SlabEngine {
   // Triangles held over to the next slab, in the memory of the process.
   virtual std::uint64_t held_triangles() const = 0;
 
-  // What holds the triangles of the last slab and those before it, in bytes of the process; 0: not known.
+  // Bytes of the zone with the last slab, in the memory of the process; 0: not known.
   virtual std::uint64_t zone_bytes() const { return 0; }
 
   // Held besides in the memory of the process, and growing.

@@ -80,7 +80,7 @@ void check_stop(const RunControl& control);
 // Bytes that a run holds for a vertex beside its place.
 VertexExtras vertex_extras(const MeshOptions& options);
 
-// What a run to `asked` triangles came to: `report.error`, which is the error that was asked for, becomes the largest
+// The outcome of a run to `asked` triangles: `report.error`, which is the error that was asked for, becomes the largest
 // of a collapse, and where more triangles are left a warning says why. `unit` is the root of a0. To be called when all
 // else is in the report.
 void report_target(const Simplifier& simplifier, std::uint64_t asked, double unit, MeshReport& report);

@@ -24,7 +24,7 @@ struct MemoryModel {
   VertexExtras extras{};
   std::uint64_t levels = 0;  // finer ones
   bool bounded = false;      // distances: the extracted surface around the zone is held as well
-  double heavier = 1;        // what the zone has turned out to take, in terms of what it was taken for
+  double heavier = 1;        // measured bytes of the zone over those of this formula
 
   // What does not grow.
   double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
@@ -43,7 +43,7 @@ struct MemoryModel {
   // Slices in the ring for a slab and for those read ahead.
   static double ring_for(double layers, double ahead, bool normals) { return layers + 1 + ahead + (normals ? 2 : 0); }
 
-  // What the zone should take with so many triangles.
+  // Bytes of the zone with so many triangles.
   double zone(double triangles) const { return per_held() * triangles; }
 
  private:

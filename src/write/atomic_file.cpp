@@ -298,7 +298,7 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
   overwritten_.resize(overwritten_.size() + static_cast<std::size_t>(count));
   read_back(offset, std::span(overwritten_).last(static_cast<std::size_t>(count)));
   const std::string name = overwritten_path();
-  const std::string unfinished = name + ".new";
+  const std::string unfinished = unfinished_path();
   const int fd = ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
   if (fd < 0) cannot_write(unfinished, "cannot be created", errno);
   OutputDescriptor file(fd, unfinished);
@@ -311,7 +311,7 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
 void OutputDescriptor::restore_overwritten() {
   const std::string name = overwritten_path();
   const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0 && errno == ENOENT) return;
+  if (fd < 0 && errno == ENOENT) return forget_overwritten();
   if (fd < 0) cannot_write(name, "cannot be opened", errno);
   struct stat status {};
   OutputDescriptor file(fd, name);
@@ -327,7 +327,10 @@ void OutputDescriptor::restore_overwritten() {
   forget_overwritten();
 }
 
-void OutputDescriptor::forget_overwritten() const { ::unlink(overwritten_path().c_str()); }
+void OutputDescriptor::forget_overwritten() const {
+  ::unlink(overwritten_path().c_str());
+  ::unlink(unfinished_path().c_str());
+}
 
 void OutputDescriptor::verify() {
   if (!checksum_) return;

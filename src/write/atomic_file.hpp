@@ -80,6 +80,7 @@ class OutputDescriptor {
   void save_overwritten(std::uint64_t offset, std::uint64_t count);
   void pwrite_now(std::uint64_t offset, std::span<const std::byte> bytes);
   std::string overwritten_path() const { return path_ + ".before"; }
+  std::string unfinished_path() const { return overwritten_path() + ".new"; }  // a process was killed as it wrote that
   [[noreturn]] void fail(const char* what, int error) const;
 
   int fd_;

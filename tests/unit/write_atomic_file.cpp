@@ -175,9 +175,11 @@ TEST(OutputDescriptor, APartThatWasOverwrittenGoesOnFromItsMark) {
     file.flush();
   }
   EXPECT_NE(files::read_bytes(folder / "a").substr(0, text.size()), text);
+  files::write_bytes(folder / "a.before.new", "of a process that was killed");
   OutputDescriptor file = open_part({folder / "a", mark});
   EXPECT_EQ(files::read_bytes(folder / "a"), text);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.before"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.before.new"));
   file.write(bytes_of("."));
   file.flush();
   EXPECT_EQ(files::read_bytes(folder / "a"), text + ".");
