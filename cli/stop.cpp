@@ -14,7 +14,7 @@ namespace isoweave::cli {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option("--error", stop.error,
-                  "Simplification error: a length in vox, mm, um, nm or the input's unit; 0: none");
+                  "Simplification error: a length in vox, mm, um, nm, in or the input's unit; 0: none");
   CLI::Option* const triangles = verb.add_option(
       "--triangles", stop.triangles,
       "Stop at this number of triangles, or at the error; without --error at a twentieth of the volume's "
@@ -48,7 +48,9 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
 }
 
 bool has_metric_length(const StopOptions& stop) {
-  const auto is_metric = [](const std::string& text) { return text.ends_with('m'); };
+  const auto is_metric = [](const std::string& text) {
+    return !text.empty() && text.find_last_not_of("0123456789.") == text.size() - 1 && !text.ends_with("vox");
+  };
   const std::vector<StopOptions> levels = stop_levels(stop);
   return is_metric(stop.max_distance) ||
          std::ranges::any_of(levels, [&](const StopOptions& level) { return is_metric(level.error); });

@@ -24,7 +24,7 @@ struct TriangleMesh {
   // A vertex lies at offset + its coordinates: 32 bits are spent on the shape and not on how far away it is. All 0
   // unless coordinates in 32 bits would lose the shape.
   std::array<double, 3> offset{0, 0, 0};
-  std::string unit{};                // of the coordinates: "mm", "um", "nm" or "m"; empty: not said
+  std::string unit{};                // of the coordinates: "mm", "um", "nm", "m" or "in"; empty: not said
   std::string space{};               // "LPS", "RAS" or "index"; empty: not said
   std::vector<std::string> notes{};  // things a user should know, one line each: what a file has and is not kept
 };
@@ -145,7 +145,7 @@ struct MeshFileOptions {
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 
   // What the coordinates are, as far as it is known; said in the file where the format has a place for it.
-  std::string unit{};   // "mm", "um", "nm" or "m"
+  std::string unit{};   // "mm", "um", "nm", "m" or "in"
   std::string space{};  // "LPS", "RAS" or "index"
 
   // Of all coordinates, as that of TriangleMesh: pieces are relative to it. PLY, OBJ, OFF and VTP hold the sums in 64

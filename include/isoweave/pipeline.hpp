@@ -28,8 +28,9 @@ struct Length {
   bool voxels = false;
 };
 
-// Parses "0.2vox", "0.05mm", "30um", "500nm" or "0.05" (the volume's own unit). Metric lengths are converted to `unit`
-// ("mm" where the volume does not say). Throws std::invalid_argument naming the text.
+// Parses "0.2vox", "0.05mm", "30um", "500nm", "0.01in" or "0.05" (the volume's own unit). Units are spelled in any way
+// that volumes spell them. Their lengths are converted to `unit` ("mm" where the volume does not say). Throws
+// std::invalid_argument naming the text.
 Length parse_length(std::string_view text, std::string_view unit);
 
 // Coordinates of the output: as the volume's own world, in a named convention (x and y change sign between the two), or

@@ -80,7 +80,7 @@ void HostSlabs::finish(MeshReport& report) const {
     outputs_[level]->report(report.levels[level]);
     report_defects(simplifier_.defects(level), report.levels[level]);
   }
-  if (target_) report_target(simplifier_, options_.triangles, options_.voxel, report);
+  if (target_) report_target(simplifier_, options_.triangles, options_.voxel, options_.unit, report);
 }
 
 HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, const MeshOptions& options,
@@ -95,6 +95,7 @@ HostSlabs::Options host_options(const VolumeInfo& volume, const IsoRule& rule, c
   host.simplifies = simplifies(volume, options);
   host.triangles = options.triangles;
   host.voxel = voxel;
+  host.unit = volume.geometry.unit;
   host.components = options.components;
   host.measure = control.measure;
   host.observer = control.observer;

@@ -24,6 +24,7 @@ class HostSlabs final : public SlabEngine {
     bool simplifies = true;
     std::uint64_t triangles = 0;                  // to stop at; 0: no such number
     double voxel = 1;                             // mean side
+    std::string unit;                             // of the volume's lengths; may be empty
     const ComponentChoice* components = nullptr;  // that are kept; null: all
     bool measure = true;
     SweepObserver* observer = nullptr;

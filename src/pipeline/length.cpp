@@ -1,28 +1,22 @@
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "isoweave/pipeline.hpp"
+#include "volume/length_units.hpp"
 
 namespace isoweave {
 namespace {
 
-struct Unit {
-  std::string_view name;
-  double millimetres;
-};
-
-constexpr std::array<Unit, 5> kUnits{{{"mm", 1}, {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10}, {"m", 1e3}}};
-
-double millimetres(std::string_view unit) {
-  if (unit.empty()) return 1;
-  for (const Unit& known : kUnits) {
-    if (known.name == unit) return known.millimetres;
-  }
-  return 0;
+// So many of the unit of the suffix in the other unit; nothing where one of them is not known. An input without a unit
+// is in mm.
+std::optional<double> converted(double value, std::string_view suffix, std::string_view unit) {
+  const std::optional<LengthUnit> length = find_length_unit(suffix);
+  if (!length) return std::nullopt;
+  return unit_in(LengthUnit{value * length->scale, length->name}, unit.empty() ? "mm" : unit);
 }
 
 }  // namespace
@@ -31,14 +25,13 @@ Length parse_length(std::string_view text, std::string_view unit) {
   double value = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  const bool known = suffix.empty() || suffix == "vox" || (millimetres(suffix) > 0 && millimetres(unit) > 0);
-  if (failed != std::errc{} || !(value >= 0) || std::isinf(value) || !known) {
+  const bool plain = suffix.empty() || suffix == "vox";
+  const std::optional<double> length = plain ? value : converted(value, suffix, unit);
+  if (failed != std::errc{} || !(value >= 0) || std::isinf(value) || !length) {
     throw std::invalid_argument("length '" + std::string(text) +
-                                "': expected a number of 0 or more and vox, mm, um, nm or nothing");
+                                "': expected a number of 0 or more and vox, mm, um, nm, in or nothing");
   }
-  if (suffix == "vox") return {value, true};
-  if (suffix.empty()) return {value, false};
-  return {value * millimetres(suffix) / millimetres(unit), false};
+  return {*length, suffix == "vox"};
 }
 
 }  // namespace isoweave

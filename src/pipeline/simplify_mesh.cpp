@@ -97,7 +97,7 @@ class MeshRun {
     for (const auto& output : outputs_) output->wait();
     report_run();
     for (std::size_t level = 0; level < sinks_.size(); ++level) report_level(level);
-    if (target_) report_target(simplifier_, options_.triangles, std::sqrt(a0_), report_);
+    if (target_) report_target(simplifier_, options_.triangles, std::sqrt(a0_), mesh_.unit, report_);
     for (MeshSink* sink : sinks_) sink->finish();
     clock_.lap(report_.seconds_write);
     total_.lap(report_.seconds_total);

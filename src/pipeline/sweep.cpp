@@ -124,8 +124,9 @@ std::string short_number(double number) {
 }
 
 // Why more triangles are left than a run was to stop at.
-std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error) {
-  const std::string within = std::isfinite(most_error) ? " within an error of " + short_number(most_error) : "";
+std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error, std::string_view unit) {
+  const std::string length = short_number(most_error) + (unit.empty() ? "" : " ") + std::string(unit);
+  const std::string within = std::isfinite(most_error) ? " within an error of " + length : "";
   std::string held = "no other collapse" + within + " keeps the topology and the sides of faces";
   const std::uint64_t least = kLeastTriangles * report.components;
   if (report.open_edges > 0 || least <= asked) return held;
@@ -136,15 +137,16 @@ std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, dou
 
 }  // namespace
 
-void report_target(const Simplifier& simplifier, std::uint64_t asked, double unit, MeshReport& report) {
+void report_target(const Simplifier& simplifier, std::uint64_t asked, double side, std::string_view unit,
+                   MeshReport& report) {
   const double most_error = report.error;
   const auto dearest = static_cast<CostBits>(simplifier.counts().dearest);
   // Lower costs are all the same.
   const bool none = dearest <= cost_bits(kCostFloor);
-  report.error = none ? 0 : unit * std::sqrt(static_cast<double>(cost_value(dearest)));
+  report.error = none ? 0 : side * std::sqrt(static_cast<double>(cost_value(dearest)));
   if (report.triangles <= asked) return;
   report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " + std::to_string(asked) +
-                            " were asked for: " + why_more_are_left(report, asked, most_error));
+                            " were asked for: " + why_more_are_left(report, asked, most_error, unit));
 }
 
 double most_shape_error(const VolumeInfo& volume) {

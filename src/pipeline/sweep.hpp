@@ -81,9 +81,10 @@ void check_stop(const RunControl& control);
 VertexExtras vertex_extras(const MeshOptions& options);
 
 // The outcome of a run to `asked` triangles: `report.error`, which is the error that was asked for, becomes the largest
-// of a collapse, and where more triangles are left a warning says why. `unit` is the root of a0. To be called when all
-// else is in the report.
-void report_target(const Simplifier& simplifier, std::uint64_t asked, double unit, MeshReport& report);
+// of a collapse, and where more triangles are left a warning says why. `side` is the root of a0. To be called when all
+// else is in the report. The warning gives lengths in `unit`, if it has a name.
+void report_target(const Simplifier& simplifier, std::uint64_t asked, double side, std::string_view unit,
+                   MeshReport& report);
 
 // Copies the simplifier's counters.
 void report_simplifier(const Simplifier& simplifier, MeshReport& report);

@@ -117,7 +117,7 @@ double scale_of_unit(VolumeInfo& info, std::string_view text) {
   while (text.starts_with('"')) text.remove_prefix(1);
   while (text.ends_with('"')) text.remove_suffix(1);
   if (text.empty()) return 1;
-  const std::optional<LengthUnit> unit = find_length_unit(text);
+  const std::optional<LengthUnit> unit = find_metric_unit(text);
   if (!unit) {
     info.notes.push_back("the unit " + quoted(text) + " is no known length");
     return 1;

@@ -15,7 +15,9 @@ struct Spellings {
   std::initializer_list<std::string_view> names;  // in lower case, without the s of a plural
 };
 
-// All names of a unit of length that headers use. The units of Geometry come first.
+constexpr double kMillimetresPerInch = 25.4;
+
+// All names of a unit of length that headers use. Units that numbers are kept in come first.
 const std::initializer_list<Spellings>& known_spellings() {
   static const std::initializer_list<Spellings> kSpellings{
       {{1, "m"}, {"m", "meter", "metre"}},
@@ -27,8 +29,8 @@ const std::initializer_list<Spellings>& known_spellings() {
       {{10, "mm"}, {"cm", "centimeter", "centimetre"}},
       {{0.1, "nm"}, {"\xc3\xa5", "\xe2\x84\xab", "angstrom", "\xc3\xa5ngstr\xc3\xb6m", "ang"}},
       {{0.001, "nm"}, {"pm", "picometer", "picometre"}},
-      {{25.4, "mm"}, {"inch", "inche", "in"}},
-      {{304.8, "mm"}, {"ft", "foot", "feet"}},
+      {{1, "in"}, {"in", "inch", "inche"}},
+      {{12, "in"}, {"ft", "foot", "feet"}},
       {{0.0254, "mm"}, {"thou"}},
   };
   return kSpellings;
@@ -54,17 +56,14 @@ std::string plain_spelling(std::string_view text) {
   return plain;
 }
 
-// Thousands between the units of Geometry: products and quotients of powers of 1000 are exact, metres are not.
-int power_of(std::string_view name) {
-  static constexpr std::array<std::string_view, 4> kNames{"nm", "um", "mm", "m"};
-  return static_cast<int>(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
-}
-
-double in_unit(const LengthUnit& from, std::string_view to) {
-  double up = 1, down = 1;
-  for (int power = power_of(to); power < power_of(from.name); ++power) up *= 1000;
-  for (int power = power_of(from.name); power < power_of(to); ++power) down *= 1000;
-  return from.scale * up / down;
+// Nanometres are whole numbers for all units, so that the ratio of two is rounded once.
+std::optional<double> nanometres(std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
+      {{"m", 1e9}, {"mm", 1e6}, {"um", 1e3}, {"nm", 1}, {"in", 25.4e6}}};
+  for (const auto& [known, length] : kUnits) {
+    if (known == name) return length;
+  }
+  return std::nullopt;
 }
 
 std::string listed(const std::array<std::optional<std::string>, 3>& texts) {
@@ -95,6 +94,22 @@ std::optional<LengthUnit> find_length_unit(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<LengthUnit> find_metric_unit(std::string_view text) {
+  const std::optional<LengthUnit> unit = find_length_unit(text);
+  if (unit && unit->name == "in") return LengthUnit{unit->scale * kMillimetresPerInch, "mm"};
+  return unit;
+}
+
+std::optional<double> unit_in(const LengthUnit& unit, std::string_view other) {
+  const std::optional<double> from = nanometres(unit.name), to = nanometres(other);
+  if (!from || !to) return std::nullopt;
+  return unit.scale * *from / *to;
+}
+
+std::optional<double> unit_in(std::string_view unit, std::string_view other) {
+  return unit_in(LengthUnit{1, unit}, other);
+}
+
 CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
   CommonUnit common;
   std::array<std::optional<LengthUnit>, 3> units;
@@ -102,7 +117,7 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
   bool differ = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!texts[axis] || trimmed(*texts[axis]).empty()) continue;
-    units[axis] = find_length_unit(*texts[axis]);
+    units[axis] = find_metric_unit(*texts[axis]);
     if (units[axis] && common.unit.empty()) common.unit = units[axis]->name;
     if (units[axis]) continue;
     differ = differ || (unknown && *unknown != *texts[axis]);
@@ -119,7 +134,7 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
   }
   for (std::size_t axis = 0; axis < 3 && !common.unit.empty(); ++axis) {
     if (!texts[axis]) continue;
-    if (units[axis]) common.scale[axis] = in_unit(*units[axis], common.unit);
+    if (units[axis]) common.scale[axis] = unit_in(*units[axis], common.unit).value_or(1);
     if (!units[axis]) {
       common.notes.push_back("the unit of axis " + std::to_string(axis) + " is not given and taken as '" + common.unit +
                              "'");

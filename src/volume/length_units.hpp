@@ -11,7 +11,8 @@
 
 namespace isoweave {
 
-// A unit that Geometry knows, and how many of it the header's unit is: a centimetre is 10 mm.
+// A unit that meshes and volumes are given in, m, mm, um, nm or in, and how many of it another unit is: a centimetre is
+// 10 mm, a foot 12 in.
 struct LengthUnit {
   double scale = 1;
   std::string_view name;
@@ -20,6 +21,13 @@ struct LengthUnit {
 // Any spelling of a unit of length: capitals, blanks around it, singular or plural, the micro sign in any of its forms.
 // Nothing for pixels and whatever else is no length.
 std::optional<LengthUnit> find_length_unit(std::string_view text);
+
+// The same, with inches as millimetres. Volumes are given in metric units only.
+std::optional<LengthUnit> find_metric_unit(std::string_view text);
+
+// How many of the unit `other` one `unit` is. Nothing unless both names are among those of LengthUnit.
+std::optional<double> unit_in(const LengthUnit& unit, std::string_view other);
+std::optional<double> unit_in(std::string_view unit, std::string_view other);
 
 // What the numbers of three axes are multiplied by, so that all are in `unit`.
 struct CommonUnit {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "volume/length_units.hpp"
 #include "write/mesh_file_sink.hpp"
 
 namespace isoweave {

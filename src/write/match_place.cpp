@@ -1,6 +1,7 @@
 // A mesh in the unit, the space and relative to the offset of another one.
 #include <stdexcept>
 
+#include "volume/length_units.hpp"
 #include "write/mesh_file_sink.hpp"
 
 namespace isoweave {
@@ -53,7 +54,8 @@ std::vector<std::string> match_place(TriangleMesh& mesh, const TriangleMesh& oth
   }
   if (mesh.unit.empty() || other.unit.empty() || mesh.unit == other.unit) return notes;
   const std::optional<double> factor = unit_in(mesh.unit, other.unit);
-  if (!factor) throw std::invalid_argument("expected units mm, um, nm or m, found " + mesh.unit + " and " + other.unit);
+  if (!factor)
+    throw std::invalid_argument("expected units mm, um, nm, m or in, found " + mesh.unit + " and " + other.unit);
   scale(mesh, *factor);
   notes.push_back("converted from " + mesh.unit + " to " + other.unit);
   mesh.unit = other.unit;

@@ -250,16 +250,4 @@ std::string one_line(const std::string& comment) {
   return line;
 }
 
-std::optional<double> unit_in(const std::string& unit, const std::string& other) {
-  constexpr std::array<std::pair<const char*, int>, 4> kPowers{{{"m", 9}, {"mm", 6}, {"um", 3}, {"nm", 0}}};
-  std::optional<int> from;
-  std::optional<int> to;
-  for (const auto& [name, power] : kPowers) {
-    if (unit == name) from = power;
-    if (other == name) to = power;
-  }
-  if (!from || !to) return std::nullopt;
-  return *from >= *to ? std::pow(10.0, *from - *to) : 1 / std::pow(10.0, *to - *from);
-}
-
 }  // namespace isoweave

@@ -146,10 +146,6 @@ std::vector<std::string> comment_lines(const MeshFileOptions& options);
 // The text of a comment as one line: control characters, line ends above all, become blanks.
 std::string one_line(const std::string& comment);
 
-// How long one of the unit is in terms of the other: metres for "m", nanometres for "nm". Nothing for a unit that is
-// not known.
-std::optional<double> unit_in(const std::string& unit, const std::string& other);
-
 std::unique_ptr<MeshSink> open_ply(const MeshTarget& target, const MeshFileOptions& options);
 std::unique_ptr<MeshSink> open_stl(const MeshTarget& target, const MeshFileOptions& options);
 std::unique_ptr<MeshSink> open_obj(const MeshTarget& target, const MeshFileOptions& options);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "measure/geometry.hpp"
+#include "volume/length_units.hpp"
 #include "write/mesh_input.hpp"
 
 namespace isoweave::mesh_io {
@@ -37,19 +38,10 @@ std::string known_space(std::string_view value) {
   return name == "index" ? name : "";
 }
 
+// Numbers are kept as they are: a unit that they would be converted from is not taken.
 std::string known_unit(std::string_view value) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kNames{{
-      {"mm", "mm"},          {"millimeter", "mm"}, {"millimeters", "mm"}, {"millimetre", "mm"},
-      {"millimetres", "mm"}, {"um", "um"},         {"\u00b5m", "um"},     {"\u03bcm", "um"},
-      {"micron", "um"},      {"microns", "um"},    {"micrometer", "um"},  {"micrometers", "um"},
-      {"micrometre", "um"},  {"nm", "nm"},         {"nanometer", "nm"},   {"nanometers", "nm"},
-      {"nanometre", "nm"},   {"m", "m"},           {"meter", "m"},        {"metre", "m"},
-  }};
-  const std::string name = lower_case(value);
-  for (const auto& [written, unit] : kNames) {
-    if (name == written) return std::string(unit);
-  }
-  return "";
+  const std::optional<LengthUnit> unit = find_length_unit(value);
+  return unit && unit->scale == 1 ? std::string(unit->name) : "";
 }
 
 // The farthest that rounding to 32 bits moves a coordinate; infinite where the float is.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "isoweave/error.hpp"
+#include "volume/length_units.hpp"
 #include "write/atomic_folder.hpp"
 #include "write/mesh_file_sink.hpp"
 #include "write/mesh_format.hpp"

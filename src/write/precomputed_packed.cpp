@@ -9,6 +9,7 @@
 
 #include "isoweave/error.hpp"
 #include "measure/geometry.hpp"
+#include "volume/length_units.hpp"
 #include "write/atomic_folder.hpp"
 #include "write/mesh_format.hpp"
 #include "write/mesh_levels.hpp"

@@ -32,8 +32,8 @@ struct UnitOf3mf {
 constexpr std::array<UnitOf3mf, 6> kUnits{{{"micron", "um", 1},
                                            {"millimeter", "mm", 1},
                                            {"centimeter", "mm", 10},
-                                           {"inch", "mm", 25.4},
-                                           {"foot", "mm", 304.8},
+                                           {"inch", "in", 1},
+                                           {"foot", "in", 12},
                                            {"meter", "m", 1}}};
 
 class PackageReader {
@@ -113,7 +113,8 @@ class PackageReader {
     double factor = found->factor;
     if (ours && model.description.find("UNIT=nm") != std::string::npos && model.unit == "micron") factor = 1000;
     if (!ours) place_.take("UNIT", found->unit);
-    if (!ours && factor != 1) mesh_.mesh().notes.push_back("is in units of " + model.unit + ", read as mm");
+    if (!ours && factor != 1)
+      mesh_.mesh().notes.push_back("is in units of " + model.unit + ", read as " + std::string(found->unit));
     Placement placement;
     for (const std::size_t n : {0U, 4U, 8U}) placement.linear.at(n) = factor;
     return placement;

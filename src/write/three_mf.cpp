@@ -32,6 +32,7 @@ constexpr std::string_view kRelationships =
 // The format's name for the unit; there is none below a micron.
 std::string_view unit_name(const std::string& unit) {
   if (unit == "m") return "meter";
+  if (unit == "in") return "inch";
   return unit == "um" || unit == "nm" ? "micron" : "millimeter";
 }
 

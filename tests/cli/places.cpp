@@ -64,6 +64,20 @@ TEST(CliPlaces, SpaceAndUnitGoThroughSimplifyInEveryFormat) {
   EXPECT_NE(text.out.find("space                                RAS\n"), std::string::npos) << text.out;
 }
 
+TEST(CliPlaces, InchesStayInches) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.obj", "# UNIT=inches\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  std::string before = "a.obj";
+  for (const std::string name : {"b.3mf", "b.glb", "b.ply", "c.3mf", "b.vtp"}) {
+    succeed(folder, {"simplify", before, "-o", name, "--error", "1mm"});
+    EXPECT_EQ(check(folder, name)["unit"], "in") << name;
+    EXPECT_EQ(check(folder, name)["area"], 1) << name;
+    before = name;
+  }
+  const Result left = succeed(folder, {"simplify", "b.ply", "-o", "d.ply", "--triangles", "1"});
+  EXPECT_NE(left.err.find(" within an error of 0.07071 in keeps"), std::string::npos) << left.err;
+}
+
 TEST(CliPlaces, AMetricLengthWithoutAUnitSaysWhatIsAssumed) {
   const files::Folder folder;
   succeed(folder, {"mesh", "generate:gyroid:16x16x16", "--iso", "0", "--error", "0", "-o", "a.ply"});
@@ -71,6 +85,7 @@ TEST(CliPlaces, AMetricLengthWithoutAUnitSaysWhatIsAssumed) {
   const std::vector<std::string> simplify{"simplify", "a.ply", "-o", "b.ply"};
   for (const auto& [stop, said] : {std::pair<std::vector<std::string>, bool>{{"--error", "0.1mm"}, true},
                                    {{"--lods", "0.1,200um"}, true},
+                                   {{"--error", "0.01inches"}, true},
                                    {{"--error", "0.1", "--max-distance", "1mm"}, true},
                                    {{"--error", "0.1vox"}, false},
                                    {{"--error", "0.1"}, false}}) {

@@ -82,20 +82,20 @@ TEST(Read3mf, KeepsOrConvertsUnits) {
   for (const auto& [name, unit, side] : {std::tuple("micron", "um", 1.0F),
                                          {"millimeter", "mm", 1.0F},
                                          {"centimeter", "mm", 10.0F},
-                                         {"inch", "mm", 25.4F},
-                                         {"foot", "mm", 304.8F},
+                                         {"inch", "in", 1.0F},
+                                         {"foot", "in", 12.0F},
                                          {"meter", "m", 1.0F}}) {
     const TriangleMesh mesh = of(name);
     EXPECT_EQ(mesh.unit, unit) << name;
     EXPECT_EQ(mesh.vertices[1], (Point{side, 0, 0})) << name;
-    EXPECT_EQ(has_note(mesh, "units of " + std::string(name) + ", read as mm"), side != 1) << name;
+    EXPECT_EQ(has_note(mesh, "units of " + std::string(name) + ", read as " + unit), side != 1) << name;
   }
   EXPECT_EQ(refusal(model(object("1"), "<item objectid=\"1\"/>", "unit=\"furlong\"")),
             "expected a unit of 3MF, found 'furlong'");
 }
 
 TEST(Read3mf, KeepsItsOwnUnits) {
-  for (const std::string unit : {"nm", "um", "mm", "m", ""}) {
+  for (const std::string unit : {"nm", "um", "mm", "m", "in", ""}) {
     const files::Folder folder;
     write_mesh(folder / "a.3mf", meshes::tetrahedron(), {.comments = {}, .unit = unit, .space = "RAS"});
     const TriangleMesh mesh = read_mesh(folder / "a.3mf");

@@ -42,7 +42,8 @@ TEST(MeshPlace, OtherNamesOfUnitsAndSpacesAreKnown) {
                                    {"\u03bcm", "um"},
                                    {"Micrometers", "um"},
                                    {"NM", "nm"},
-                                   {"meter", "m"}}) {
+                                   {"meter", "m"},
+                                   {"inches", "in"}}) {
     MeshPlace place;
     place.take("UNIT", text);
     EXPECT_EQ(placed_by(place).unit, unit);
@@ -69,7 +70,7 @@ TEST(MeshPlace, WhatIsNotKnownOrContradictsIsNoted) {
 TEST(MeshPlace, EveryFormatKeepsSpaceAndUnit) {
   const files::Folder folder;
   for (const char* name : meshes::kFileNames) {
-    for (const char* unit : {"mm", "um", "nm", "m", ""}) {
+    for (const char* unit : {"mm", "um", "nm", "m", "in", ""}) {
       for (const char* space : {"LPS", "RAS", "index", ""}) {
         TriangleMesh mesh = meshes::cube();
         mesh.unit = unit;

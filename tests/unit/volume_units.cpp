@@ -1,4 +1,5 @@
 // Units of length in every spelling, and axes whose units differ.
+#include "isoweave/pipeline.hpp"
 #include "volume/length_units.hpp"
 #include "volume_helpers.hpp"
 
@@ -25,7 +26,8 @@ TEST(LengthUnits, EverySpelling) {
   for (const std::string text : {"nm", "nanometer", "nanometre", "nanometers"}) EXPECT_EQ(found(text), "1 nm") << text;
   for (const std::string text : {"m", "meter", "metres", "METER"}) EXPECT_EQ(found(text), "1 m") << text;
   for (const std::string text : {"cm", "centimeter", "centimetres"}) EXPECT_EQ(found(text), "10 mm") << text;
-  for (const std::string text : {"inch", "inches", "in", "Inch"}) EXPECT_EQ(found(text), "25.4 mm") << text;
+  for (const std::string text : {"inch", "inches", "in", "Inch"}) EXPECT_EQ(found(text), "1 in") << text;
+  for (const std::string text : {"ft", "foot", "feet"}) EXPECT_EQ(found(text), "12 in") << text;
   for (const std::string text :
        {"angstrom", "Angstroms", "\xc3\x85", "\xc3\xa5", "\xe2\x84\xab", "\\u00C5", "\xc5", "\xc3\x85ngstr\xc3\xb6m"}) {
     EXPECT_EQ(found(text), "0.1 nm") << text;
@@ -70,6 +72,36 @@ TEST(LengthUnits, AnUnknownUnitBesideAKnownOneIsAConflict) {
   EXPECT_EQ(common("pixel", "um", "um").unit, "");
   EXPECT_FALSE(common("furlong", "furlong", "chain").conflict.empty());
   EXPECT_TRUE(common("pixel", "pixel", "").conflict.empty());
+}
+
+TEST(LengthUnits, RatiosAreRoundedOnce) {
+  EXPECT_EQ(unit_in("in", "mm"), 25.4);
+  EXPECT_EQ(unit_in("mm", "in"), 1 / 25.4);
+  EXPECT_EQ(unit_in("um", "m"), 1e-6);
+  EXPECT_EQ(unit_in("m", "nm"), 1e9);
+  EXPECT_FALSE(unit_in("", "mm"));
+  EXPECT_FALSE(unit_in("mm", "furlong"));
+}
+
+TEST(ParseLength, ConvertsToTheUnitOfTheInput) {
+  const auto parsed = [](const char* text, const char* unit) {
+    const Length length = parse_length(text, unit);
+    EXPECT_FALSE(length.voxels);
+    return length.value;
+  };
+  EXPECT_EQ(parsed("0.05", "um"), 0.05);
+  EXPECT_EQ(parsed("500nm", "um"), 0.5);
+  EXPECT_EQ(parsed("500 nm", ""), 0.0005);
+  EXPECT_EQ(parsed("2\u00b5m", "nm"), 2000);
+  EXPECT_EQ(parsed("1cm", "mm"), 10);
+  EXPECT_EQ(parsed("1in", "mm"), 25.4);
+  EXPECT_EQ(parsed("2ft", "in"), 24);
+  EXPECT_EQ(parsed("25.4mm", "in"), 1);
+  EXPECT_TRUE(parse_length("0.2vox", "").voxels);
+  for (const char* text : {"", "mm", "-1mm", "1 furlong", "inf", "1px", "1e999"}) {
+    EXPECT_THROW(parse_length(text, "mm"), std::invalid_argument) << text;
+  }
+  EXPECT_THROW(parse_length("1mm", "furlong"), std::invalid_argument);
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ std::string model_of(const std::string& path) {
 TEST(Write3mf, SaysUnitAndSpace) {
   const files::Folder folder;
   const std::vector<std::pair<std::string, std::string>> units{
-      {"", "millimeter"}, {"mm", "millimeter"}, {"um", "micron"}, {"nm", "micron"}, {"m", "meter"}};
+      {"", "millimeter"}, {"mm", "millimeter"}, {"um", "micron"}, {"nm", "micron"}, {"m", "meter"}, {"in", "inch"}};
   for (const auto& [unit, name] : units) {
     MeshFileOptions options = full_options();
     options.unit = unit;
