@@ -95,6 +95,10 @@ class MeshSink {
   // was opened to keep its parts.
   virtual std::string mark() { throw std::logic_error("this mesh cannot be continued later"); }
 
+  // To be called when no mark will be gone on from: removes the parts that were kept for that. finish() leaves them, so
+  // that a process that dies right behind it can be gone on from as well.
+  virtual void forget_marks() {}
+
   // What a user should know of the finished mesh, one line each: how far coordinates were rounded, say.
   virtual std::vector<std::string> notes() const { return {}; }
 
@@ -139,8 +143,8 @@ struct MeshFileOptions {
   bool normals = false;               // STL, 3MF and neuroglancer have no place for them and ignore them
   std::vector<std::string> comments;  // one line each, into the file where the format has a place for them
 
-  // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process; they
-  // leave it when the mesh is finished. Empty: beside the target, and nothing is kept.
+  // An existing folder in which the unfinished mesh is kept as *.part files, whatever happens to the process;
+  // forget_marks() removes them from it. Empty: beside the target, and nothing is kept.
   std::string parts{};
   std::string mark{};  // with the same path and options as before: go on from here, forgetting what came after it
 

@@ -71,6 +71,7 @@ class VolumeSweep {
     engine_->wait_for_sink();
     for (MeshSink* sink : sinks_) sink->finish();
     if (saves()) folder_->clear();
+    for (MeshSink* sink : sinks_) sink->forget_marks();
     finishing.lap(report_.seconds_write);
     total.lap(report_.seconds_total);
     report_.peak_bytes = peak_process_bytes();

@@ -71,6 +71,25 @@ std::uint32_t crc_of_file(OutputDescriptor& file) {
   return crc;
 }
 
+std::string overwritten_name(const std::string& part) { return part + ".before"; }
+
+// Of what is written to take the place of a file.
+std::string new_name(const std::string& path) { return path + ".new"; }
+
+// A part that has become the mesh already, under a second name, must not be written to: it goes on as a copy.
+void own_part(const std::string& path, std::uint64_t size) {
+  const std::string name = new_name(path);
+  const int from = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (from < 0) cannot_write(path, "cannot be opened", errno);
+  OutputDescriptor part(from, path, size);
+  const int to = ::open(name.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
+  if (to < 0) cannot_write(name, "cannot be created", errno);
+  OutputDescriptor copy(to, name);
+  copy.append(part);
+  copy.close();
+  if (::rename(name.c_str(), path.c_str()) != 0) cannot_write(path, "cannot be replaced", errno);
+}
+
 OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) bad_part(path, mark, std::generic_category().message(errno));
@@ -79,7 +98,9 @@ OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) 
   if (::fstat(fd, &status) != 0) cannot_write(path, "cannot be looked up", errno);
   const auto found = static_cast<std::uint64_t>(status.st_size);
   if (found < mark.size) bad_part(path, mark, std::to_string(found) + " bytes");
-  return file;
+  if (status.st_nlink == 1) return file;
+  own_part(path, found);
+  return open_part_again(path, mark);
 }
 
 std::string name_of(const std::string& path) {
@@ -188,7 +209,8 @@ OutputDescriptor::OutputDescriptor(OutputDescriptor&& other) noexcept
       buffer_(std::move(other.buffer_)),
       checksum_(other.checksum_),
       keeps_overwritten_(other.keeps_overwritten_),
-      overwritten_(std::move(other.overwritten_)) {}
+      overwritten_(std::move(other.overwritten_)),
+      is_checked_(other.is_checked_) {}
 
 OutputDescriptor::~OutputDescriptor() {
   if (fd_ >= 0) ::close(fd_);
@@ -197,6 +219,7 @@ OutputDescriptor::~OutputDescriptor() {
 void OutputDescriptor::fail(const char* what, int error) const { cannot_write(path_, what, error); }
 
 void OutputDescriptor::write(std::span<const std::byte> bytes) {
+  is_checked_ = false;
   if (bytes.size() > kBufferBytes - buffer_.size()) flush();
   if (bytes.size() >= kBufferBytes) {
     write_now(bytes);
@@ -225,6 +248,7 @@ void OutputDescriptor::write_now(std::span<const std::byte> bytes) {
 
 void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (offset > size_ || bytes.size() > size_ - offset) throw std::invalid_argument("overwrite past the end of a file");
+  is_checked_ = false;
   if (checksum_) replace_in_checksum(offset, bytes);
   flush();
   if (keeps_overwritten_) save_overwritten(offset, bytes.size());
@@ -259,6 +283,7 @@ void OutputDescriptor::read_back(std::uint64_t offset, std::span<std::byte> byte
 }
 
 void OutputDescriptor::append(OutputDescriptor& source) {
+  is_checked_ = false;
   source.flush();
   flush();
   std::uint64_t done = append_in_kernel(source);
@@ -297,8 +322,8 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
   overwritten_.insert(overwritten_.end(), head.begin(), head.end());
   overwritten_.resize(overwritten_.size() + static_cast<std::size_t>(count));
   read_back(offset, std::span(overwritten_).last(static_cast<std::size_t>(count)));
-  const std::string name = overwritten_path();
-  const std::string unfinished = unfinished_path();
+  const std::string name = overwritten_name(path_);
+  const std::string unfinished = new_name(name);  // a process was killed as it wrote that
   const int fd = ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
   if (fd < 0) cannot_write(unfinished, "cannot be created", errno);
   OutputDescriptor file(fd, unfinished);
@@ -309,7 +334,7 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
 }
 
 void OutputDescriptor::restore_overwritten() {
-  const std::string name = overwritten_path();
+  const std::string name = overwritten_name(path_);
   const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0 && errno == ENOENT) return forget_overwritten();
   if (fd < 0) cannot_write(name, "cannot be opened", errno);
@@ -328,8 +353,9 @@ void OutputDescriptor::restore_overwritten() {
 }
 
 void OutputDescriptor::forget_overwritten() const {
-  ::unlink(overwritten_path().c_str());
-  ::unlink(unfinished_path().c_str());
+  const std::string name = overwritten_name(path_);
+  ::unlink(name.c_str());
+  ::unlink(new_name(name).c_str());
 }
 
 void OutputDescriptor::verify() {
@@ -378,7 +404,7 @@ bool OutputDescriptor::link_as(const std::string& name) const {
   return ::linkat(AT_FDCWD, descriptor_name(fd_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
 
-void OutputDescriptor::close() {
+void OutputDescriptor::check() {
   sync();
   struct stat status {};
   if (::fstat(fd_, &status) != 0) fail("cannot be looked up", errno);
@@ -387,6 +413,11 @@ void OutputDescriptor::close() {
                       std::to_string(status.st_size));
   }
   verify();
+  is_checked_ = true;
+}
+
+void OutputDescriptor::close() {
+  if (!is_checked_) check();
   // Whatever close says, the descriptor is gone afterwards.
   if (::close(std::exchange(fd_, -1)) != 0) fail("cannot close", errno);
 }
@@ -402,32 +433,36 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  if (temporary_.empty()) name_file();
-  file_.close();
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    if (errno != EXDEV) cannot_write(path_, "cannot be renamed into place", errno);
-    copy_into_place();
+  file_.check();
+  if (temporary_.empty() || kept_) {
+    const bool linked = link_file();
+    if (!linked && kept_) return copy_into_place();
+    if (!linked) cannot_write(path_, "cannot be given a name", errno);
   }
-  if (kept_) file_.forget_overwritten();
+  kept_ = false;
+  file_.close();
+  if (!temporary_.empty() && ::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    cannot_write(path_, "cannot be renamed into place", errno);
+  }
   temporary_.clear();
   sync_folder(path_, target_);
 }
 
-// A name can be given to a file, but not in place of another file's: that takes a second step.
-void AtomicFile::name_file() {
-  file_.sync();
+// Gives the file the target's name, or a temporary one beside it where the target is there: a name cannot take another
+// file's place. False when a file system allows neither, as it does for a part file that lies elsewhere.
+bool AtomicFile::link_file() {
+  std::string name = target_;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    std::string name = temporary_name(target_);
     if (file_.link_as(name)) {
-      temporary_ = std::move(name);
-      return;
+      temporary_ = name == target_ ? "" : std::move(name);
+      return true;
     }
-    if (errno != EEXIST) cannot_write(path_, "cannot be given a name", errno);
+    if (errno != EEXIST) return false;
+    name = temporary_name(target_);
   }
   throw CannotWrite(path_ + ": no free temporary name in '" + folder_of(target_) + "'");
 }
 
-// A part file may lie on another file system than the target.
 void AtomicFile::copy_into_place() {
   AtomicFile copy(path_);
   OutputDescriptor part = open_part_again(temporary_, PartMark{file_.size(), *file_.checksum()});
@@ -435,7 +470,6 @@ void AtomicFile::copy_into_place() {
   copy.file_.keep_checksum(0);
   copy.append(part);
   copy.commit();
-  ::unlink(temporary_.c_str());
 }
 
 bool try_lock(int fd, const std::string& path) {
@@ -473,7 +507,12 @@ OutputDescriptor open_part(const PartFile& part) {
   return file;
 }
 
-void remove_part(const std::string& path) { ::unlink(path.c_str()); }
+void remove_part(const std::string& path) {
+  ::unlink(path.c_str());
+  for (const std::string& name : {overwritten_name(path), new_name(path), new_name(overwritten_name(path))}) {
+    ::unlink(name.c_str());
+  }
+}
 
 int open_scratch(const std::string& path) { return open_scratch_in(folder_of(checked_target(path)), path); }
 

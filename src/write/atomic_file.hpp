@@ -66,8 +66,11 @@ class OutputDescriptor {
   // Gives a file without a name this one. False, with errno set, when that cannot be done.
   bool link_as(const std::string& name) const;
 
-  // Flushes, makes the data durable, compares the size on disk and the checksum, if one is kept, with what was written,
-  // and closes.
+  // Flushes, makes the data durable, and compares the size on disk and the checksum, if one is kept, with what was
+  // written.
+  void check();
+
+  // Closes what is checked; checks it before, where it is not.
   void close();
 
   std::uint64_t size() const { return size_; }
@@ -79,8 +82,6 @@ class OutputDescriptor {
   void replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes);
   void save_overwritten(std::uint64_t offset, std::uint64_t count);
   void pwrite_now(std::uint64_t offset, std::span<const std::byte> bytes);
-  std::string overwritten_path() const { return path_ + ".before"; }
-  std::string unfinished_path() const { return overwritten_path() + ".new"; }  // a process was killed as it wrote that
   [[noreturn]] void fail(const char* what, int error) const;
 
   int fd_;
@@ -90,6 +91,7 @@ class OutputDescriptor {
   std::optional<std::uint32_t> checksum_;  // of all size_ bytes
   bool keeps_overwritten_ = false;
   std::vector<std::byte> overwritten_;  // as in the file beside: offset, count, bytes; and again
+  bool is_checked_ = false;             // nothing was written since
 };
 
 // How far a part file had come.
@@ -129,11 +131,12 @@ class AtomicFile {
   // Bytes written so far.
   std::uint64_t size() const { return file_.size(); }
 
-  // Completes the file: flush, fsync, check of the size, rename, fsync of the folder.
+  // Completes the file: flush, fsync, check of the size, its name, fsync of the folder. A part file stays beside it
+  // under the name of the part.
   void commit();
 
  private:
-  void name_file();
+  bool link_file();
   void copy_into_place();
 
   std::string path_;
@@ -152,7 +155,7 @@ OutputDescriptor open_part(const PartFile& part);
 // is closed, however the process ends. False when somebody else holds it; CannotWrite where there are no locks.
 bool try_lock(int fd, const std::string& path);
 
-// Removes a part file that is no longer needed.
+// Removes a part file that is no longer needed, and what is kept beside it.
 void remove_part(const std::string& path);
 
 // Opens a scratch file beside `path`, already without a name: the system frees it however the process ends.

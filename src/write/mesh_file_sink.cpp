@@ -207,12 +207,12 @@ void MeshFileSink::finish() {
   complete();
   if (atomic_) atomic_->commit();
   if (stream_) stream_->copy_to(target_.descriptor, path());
-  if (target_.kind != MeshTarget::Kind::kLevel) remove_parts();
   state_ = State::kFinished;
 }
 
-void MeshFileSink::remove_parts() const {
+void MeshFileSink::forget_marks() {
   if (options_.parts.empty()) return;
+  if (atomic_) remove_part(part_path(kMeshPart));
   for (const std::string& name : side_names_) remove_part(part_path(name));
 }
 

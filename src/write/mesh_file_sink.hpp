@@ -69,6 +69,7 @@ class MeshFileSink : public MeshSink {
   void append(const MeshPiece& piece) final;
   void finish() final;
   std::string mark() final;
+  void forget_marks() final;
   std::array<double, 3> offset() const final { return options_.offset; }
 
  protected:
@@ -97,9 +98,6 @@ class MeshFileSink : public MeshSink {
 
   // Writes what can only be written at the end, and checks the file against the counts.
   virtual void complete() = 0;
-
-  // Removes the files that were kept. finish() does, but for a level, which others may have to wait for.
-  void remove_parts() const;
 
   // Throws CannotWrite when the file is not as long as its counts say, or does not begin with `header`.
   void check_written(std::uint64_t expected_bytes, std::span<const std::byte> header);

@@ -20,6 +20,7 @@ class LevelSink final : public MeshSink {
   void append(const MeshPiece& piece) override { file_->level(level_).append(piece); }
   void finish() override { file_->finish(level_); }
   std::string mark() override { return file_->level(level_).mark(); }
+  void forget_marks() override { file_->level(level_).forget_marks(); }
   std::array<double, 3> offset() const override { return file_->level(level_).offset(); }
   std::vector<std::string> notes() const override {
     return file_->is_last(level_) ? file_->notes() : std::vector<std::string>{};
@@ -90,7 +91,6 @@ void LevelFile::finish(std::size_t level) {
   levels_[level].finish();
   if (++finished_ < levels_.size()) return;
   write();
-  for (LevelParts& parts : levels_) parts.remove_parts();
 }
 
 std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,

@@ -29,7 +29,6 @@ class LevelParts final : public MeshFileSink {
 
   const Bounds& bounds() const { return bounds_; }
   using MeshFileSink::options;
-  using MeshFileSink::remove_parts;
   using MeshFileSink::triangles;
   using MeshFileSink::vertices;
 

@@ -84,6 +84,42 @@ TEST_F(SavedState, TheOneBeforeServesWhenTheNewestIsDamaged) {
   EXPECT_EQ(resume().digest, whole_);
 }
 
+// What a process leaves that dies between the names of two meshes.
+class DiesAtTheEnd final : public MeshSink {
+ public:
+  explicit DiesAtTheEnd(MeshSink& sink) : sink_(sink) {}
+  void append(const MeshPiece& piece) override { sink_.append(piece); }
+  void finish() override { throw CannotWrite("the process dies"); }
+  std::string mark() override { return sink_.mark(); }
+
+ private:
+  MeshSink& sink_;
+};
+
+TEST_F(SavedState, LevelsGoOnWhenOnlyTheFirstHasItsName) {
+  const files::Folder folder, fine, coarse, meshes;
+  options_.levels = {{0.1, true}};
+  const auto run = [&](const Checkpoint* resume, bool dies) {
+    RunControl control = saving();
+    control.checkpoint.folder = folder.path();
+    control.resume = resume;
+    const auto mark = [&](std::size_t level) { return resume == nullptr ? "" : resume->marks.at(level); };
+    const auto first = open_mesh_file(meshes / "fine.ply", {false, {}, fine.path(), mark(0)});
+    const auto second = open_mesh_file(meshes / "coarse.ply", {false, {}, coarse.path(), mark(1)});
+    DiesAtTheEnd dying(*second);
+    const std::vector<MeshSink*> sinks{first.get(), dies ? &dying : second.get()};
+    return mesh_volume(*generate_volume(surface_.volume), sinks, options_, control);
+  };
+  EXPECT_THROW(run(nullptr, true), CannotWrite);
+  EXPECT_EQ(meshes.entries().size(), 1U);
+  const Checkpoint checkpoint = read_checkpoint(folder.path());
+  const MeshReport report = run(&checkpoint, false);
+  EXPECT_EQ(report.digest, whole_);
+  EXPECT_EQ(check_mesh(read_mesh(meshes / "coarse.ply")).digest, whole_);
+  EXPECT_EQ(check_mesh(read_mesh(meshes / "fine.ply")).digest, report.levels.at(0).digest);
+  EXPECT_TRUE(fine.entries().empty() && coarse.entries().empty());
+}
+
 TEST_F(SavedState, DamagedFilesAreRefusedWhereverTheDamageIs) {
   for (const std::size_t at : {0U, 8U, 30U, 500U, 5000U}) {
     damage("state-0", at);
