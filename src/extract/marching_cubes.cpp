@@ -185,6 +185,13 @@ std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_
   return layers;
 }
 
+// Numbers in a slab are of 32 bits.
+void require_numbers(std::size_t layers, std::uint64_t count, const char* what) {
+  if (count < std::numeric_limits<std::uint32_t>::max()) return;
+  throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
+                   ", expected fewer than 2^32: choose thinner slabs");
+}
+
 // Turns the counts of rows into the places where their vertices and triangles begin, and makes room for those.
 void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
   rows_of_slab_.resize(layers * rows_);
@@ -197,10 +204,8 @@ void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
     scan_one(row.vertices, vertices);
     scan_one(row.triangles, triangles);
   }
-  if (vertices + front_size_ >= std::numeric_limits<std::uint32_t>::max()) {
-    throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(vertices) +
-                     " vertices, expected fewer than 2^32: choose thinner slabs");
-  }
+  require_numbers(layers, vertices + front_size_, "vertices");
+  require_numbers(layers, triangles, "triangles");
   piece.positions.resize(vertices);
   piece.ids.resize(vertices);
   piece.normals.resize(options_.normals ? vertices : 0);

@@ -10,6 +10,7 @@
 #include "measure/angles.hpp"
 #include "measure/check_around.hpp"
 #include "measure/geometry.hpp"
+#include "parallel/float_environment.hpp"
 
 namespace isoweave {
 namespace {
@@ -247,6 +248,7 @@ class Checker {
 }  // namespace
 
 MeshCheck check_mesh(const TriangleMesh& mesh) {
+  const StandardFloats floats;
   measure::require_indices_in_range(mesh);
   return Checker(mesh).run();
 }

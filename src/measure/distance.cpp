@@ -9,6 +9,7 @@
 #include "measure/geometry.hpp"
 #include "measure/splitmix64.hpp"
 #include "measure/triangle_tree.hpp"
+#include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave {
@@ -134,6 +135,7 @@ TriangleMesh at_offset(TriangleMesh mesh, const std::array<double, 3>& offset) {
 }  // namespace
 
 MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options) {
+  const StandardFloats floats;
   if (a.offset != b.offset) {
     const std::array<double, 3> offset = common_offset(a, b);
     return compare_meshes(at_offset(a, offset), at_offset(b, offset), options);

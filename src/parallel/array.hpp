@@ -40,6 +40,7 @@ class Array {
 
   // Takes memory for so many elements, at least as many as there are.
   void reserve(std::size_t capacity) {
+    if (capacity > (~std::size_t{0} - kHugePage) / sizeof(T)) throw std::bad_array_new_length();
     const std::size_t bytes = capacity * sizeof(T);
     bytes < kHugePage ? take_from_heap((bytes + 63) / 64 * 64) : map((bytes + kHugePage - 1) / kHugePage * kHugePage);
   }

@@ -10,7 +10,10 @@ namespace isoweave {
 // How many threads a pass may use. Passes give the same result for any number.
 class Executor {
  public:
-  // 0: one per processor. 1: everything runs in the calling thread.
+  static constexpr int kMostThreads = 4096;
+
+  // 0: one per processor. 1: everything runs in the calling thread. Throws std::invalid_argument for others than 0 to
+  // kMostThreads.
   explicit Executor(int threads = 0);
 
   int threads() const { return threads_; }

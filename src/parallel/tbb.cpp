@@ -8,7 +8,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
+#include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 
 #ifdef ISOWEAVE_TSAN
@@ -35,14 +38,28 @@ struct Executor::Arena {
   tbb::task_arena tasks;
 };
 
+namespace {
+
+int checked_threads(int threads) {
+  if (threads < 0 || threads > Executor::kMostThreads) {
+    throw std::invalid_argument("threads: expected 0 to " + std::to_string(Executor::kMostThreads) + ", found " +
+                                std::to_string(threads));
+  }
+  return threads > 0 ? threads : std::min(tbb::this_task_arena::max_concurrency(), Executor::kMostThreads);
+}
+
+}  // namespace
+
 Executor::Executor(int threads)
-    : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()),
-      arena_(threads_ > 1 ? std::make_shared<Arena>(threads_) : nullptr) {}
+    : threads_(checked_threads(threads)), arena_(threads_ > 1 ? std::make_shared<Arena>(threads_) : nullptr) {}
 
 void Executor::run(std::int64_t count, std::int64_t grain, void* body, BlockFunction call) const {
   if (count <= 0) return;
   const std::int64_t blocks = (count + grain - 1) / grain;
-  const auto run_block = [&](std::int64_t block) { call(body, block * grain, std::min(count, (block + 1) * grain)); };
+  const auto run_block = [&](std::int64_t block) {
+    const StandardFloats floats;  // of this worker
+    call(body, block * grain, std::min(count, (block + 1) * grain));
+  };
   if (threads_ == 1 || blocks == 1) {
     for (std::int64_t block = 0; block < blocks; ++block) run_block(block);
     return;

@@ -144,7 +144,8 @@ std::string surface_text(const VolumeInfo& volume, const MeshOptions& options) {
   return volume_text(volume) + ", " + iso_text(options);
 }
 
-RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options, const std::array<double, 3>& offset) {
+RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options, const std::array<double, 3>& offset,
+                        bool measured) {
   RunIdentity identity;
   identity.volume = volume_text(volume);
   if (options.values != nullptr) identity.volume += ", values" + file_text(options.values->info());
@@ -154,6 +155,7 @@ RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options, co
          std::to_string(static_cast<int>(options.quality)) + ", space " +
          std::to_string(static_cast<int>(options.space)) + normals_text(options.normals);
   if (options.values != nullptr) text += ", values";
+  if (!measured) text += ", not measured";
   if (offset != std::array<double, 3>{0, 0, 0}) text += ", offset" + numbers_text(offset);
   if (options.drop_specks) text += ", no specks";
   if (options.smooth > 0) text += ", smooth " + std::to_string(options.smooth);

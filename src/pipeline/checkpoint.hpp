@@ -19,9 +19,9 @@ struct RunIdentity {
 // What the surface that is extracted depends on.
 std::string surface_text(const VolumeInfo& volume, const MeshOptions& options);
 
-// offset: of the output.
+// offset: of the output. measured: as RunControl::measure; a state of a run without has no components to go on with.
 RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options,
-                        const std::array<double, 3>& offset = {0, 0, 0});
+                        const std::array<double, 3>& offset = {0, 0, 0}, bool measured = true);
 
 // What was read of a file that somebody wrote meanwhile may be of two volumes: throws BadInput when the volume is not
 // as it was when the run began.

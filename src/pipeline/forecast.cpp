@@ -6,6 +6,7 @@
 
 #include "extract/rules.hpp"
 #include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 #include "pipeline/forecast_reader.hpp"
 #include "pipeline/forecast_tile.hpp"
@@ -88,7 +89,7 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : volume_(volume), rows_(volume), info_(volume.info()), options_(options) {
+      : volume_(volume), rows_(volume), info_(checked_volume(volume.info())), options_(options) {
     control_.threads = control.threads;
     control_.measure = true;
     control_.stop = control.stop;
@@ -496,6 +497,7 @@ void check_reader(SliceSource& volume, const MeshOptions& options, const RunCont
 }
 
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  const StandardFloats floats;
   return Forecaster(volume, options, control).run();
 }
 

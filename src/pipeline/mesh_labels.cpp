@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/label_sweep.hpp"
 #include "pipeline/slab_plan.hpp"
@@ -90,6 +91,9 @@ class LabelsSweep {
     check_options(options, control);
     zone_options(volume_, options);  // finds out now what is wrong with them
     warn_of_floats(map.info().type, labels);
+    std::vector<MeshSink*> sinks;
+    for (const LabelSink& label : labels) sinks.push_back(label.sink);
+    require_different(sinks);
     make_lanes(labels);
   }
 
@@ -288,6 +292,8 @@ void add_layer(LabelsReport& report, LabelsReport&& layer) {
 
 LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
                          const RunControl& control) {
+  const StandardFloats floats;
+  checked_volume(volume.info());
   return LabelsSweep(volume, labels, options, control).run();
 }
 

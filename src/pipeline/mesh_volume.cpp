@@ -8,6 +8,7 @@
 #include "device/cuda_engine.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pipeline/component_slabs.hpp"
 #include "pipeline/device_slabs.hpp"
@@ -112,7 +113,6 @@ class VolumeSweep {
   double error() const { return length_in(volume_, options_.error); }
 
   std::unique_ptr<SlabEngine> make_engine(ComponentFinder* finder) const {
-    check_sinks(sinks_.size(), level_errors_.size());
     check_components();
     if (finder != nullptr) {
       return std::make_unique<ComponentSlabs>(field_.info(), field_.rule(), *finder, executor_);
@@ -183,7 +183,7 @@ class VolumeSweep {
     const SlabGoal goal = beside_zone(slab_goal(simplifies_, report_.device == Device::kCuda), held);
     SlabPlan plan;
     plan.layers = std::min(isoweave::next_slab(field_.info(), goal, options_.slab, recent_layers_, per_layer),
-                           engine_->layers_left());
+                           engine_->most_layers());
     plan.ahead = slices_ahead(field_.info(), goal, plan.layers);
     plan.most_vertices = options_.slab > 0 ? ~std::uint64_t{0} : goal.most_vertices;
     plan.most_vertices = std::min(plan.most_vertices, engine_->room_for_vertices(control_.memory));
@@ -438,7 +438,7 @@ class VolumeSweep {
   const RunControl& control_;
   const std::array<double, 3> offset_;  // of the sinks
   const RunIdentity identity_ =
-      identity_of(volume_, options_, offset_);  // when the run begins: a file may change meanwhile
+      identity_of(volume_, options_, offset_, control_.measure);  // when the run begins: a file may change meanwhile
   const std::uint64_t resident_ = control_.memory > 0 ? resident_process_bytes() : 0;
   const std::uint64_t reader_;  // bytes that the source may hold
   const Executor executor_;
@@ -473,6 +473,7 @@ class VolumeSweep {
 
 ComponentChoice choose_components(SliceSource& volume, const MeshOptions& options, const ComponentRule& rule,
                                   const RunControl& control) {
+  const StandardFloats floats;
   if (control.device == Device::kCuda) {
     throw std::invalid_argument(
         "a CUDA device: expected a run without components to be dropped, which takes processors");
@@ -522,6 +523,8 @@ MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& o
 
 MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
                        const RunControl& control) {
+  const StandardFloats floats;
+  check_sinks(sinks, options.levels.size());
   return VolumeSweep(volume, sinks, options, control).run();
 }
 

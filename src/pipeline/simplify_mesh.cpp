@@ -8,6 +8,7 @@
 #include <string>
 
 #include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
 #include "pipeline/final_output.hpp"
 #include "pipeline/mesh_surface.hpp"
 #include "pipeline/slab_plan.hpp"
@@ -179,7 +180,8 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
 
 MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
                          const RunControl& control) {
-  check_sinks(sinks.size(), options.levels.size());
+  const StandardFloats floats;
+  check_sinks(sinks, options.levels.size());
   if (!mesh.values.empty() && mesh.values.size() != mesh.vertices.size()) {
     throw std::invalid_argument("values of a mesh: expected one for each of " + std::to_string(mesh.vertices.size()) +
                                 " vertices, found " + std::to_string(mesh.values.size()));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@
 #include "isoweave/error.hpp"
 #include "pipeline/world.hpp"
 #include "slab/lattice.hpp"
+#include "volume/geometry.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -56,6 +58,7 @@ double length_in(const VolumeInfo& volume, const Length& length) {
 }
 
 const VolumeInfo& checked_volume(const VolumeInfo& volume) {
+  require_usable(volume);
   if (!Lattice::fits(volume.dims)) {
     throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + std::to_string(volume.dims[0]) + " x " +
                    std::to_string(volume.dims[1]) + " x " + std::to_string(volume.dims[2]));
@@ -251,10 +254,20 @@ void refuse_components(const std::string& path) {
   throw BadInput(path + ": the volume has changed: expected the surface that components were chosen in, found another");
 }
 
-void check_sinks(std::size_t sinks, std::size_t levels) {
-  if (sinks == levels + 1) return;
-  throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +
-                              std::to_string(sinks));
+void require_different(std::span<MeshSink* const> sinks) {
+  std::set<const MeshSink*> seen;
+  for (const MeshSink* sink : sinks) {
+    if (sink == nullptr) throw std::invalid_argument("expected a sink for each mesh, found none");
+    if (!seen.insert(sink).second) throw std::invalid_argument("expected a sink for each mesh, found one for two");
+  }
+}
+
+void check_sinks(std::span<MeshSink* const> sinks, std::size_t levels) {
+  if (sinks.size() != levels + 1) {
+    throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +
+                                std::to_string(sinks.size()));
+  }
+  require_different(sinks);
 }
 
 std::vector<CostBits> level_costs(std::span<const double> errors, double a0) {

@@ -103,7 +103,10 @@ std::vector<CostBits> level_costs(std::span<const double> errors, double a0);
 // Throws BadInput: the surface is not the one that components were chosen in.
 [[noreturn]] void refuse_components(const std::string& path);
 
-// Throws std::invalid_argument unless there is a sink for each level and one more.
-void check_sinks(std::size_t sinks, std::size_t levels);
+// Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
+void require_different(std::span<MeshSink* const> sinks);
+
+// Throws std::invalid_argument unless there is a sink for each level and one more, all different.
+void check_sinks(std::span<MeshSink* const> sinks, std::size_t levels);
 
 }  // namespace isoweave

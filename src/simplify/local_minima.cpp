@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <mutex>
 #include <span>
 #include <thread>
@@ -58,18 +59,27 @@ class LocalMinima::Spare {
 
   // Waits for something to do. False when nobody is at work any more.
   bool take(std::vector<Index>& todo) {
+    if (failed()) return false;
     std::unique_lock lock(mutex_);
     if (--working_ == 0) changed_.notify_all();
     ++waiting_;
     wanted_ = true;
-    changed_.wait(lock, [&] { return !vertices_.empty() || working_ == 0; });
+    changed_.wait(lock, [&] { return !vertices_.empty() || working_ == 0 || failed(); });
     --waiting_;
     ++working_;
-    if (vertices_.empty()) return false;
+    if (vertices_.empty() || failed()) return false;
     todo.swap(vertices_);
     wanted_ = waiting_ > 0;
     return true;
   }
+
+  // A worker has thrown. It may hold vertices for ever: the others end as soon as they see it.
+  void fail() {
+    failed_.store(true, std::memory_order_relaxed);
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  }
+  bool failed() const { return failed_.load(std::memory_order_relaxed); }
 
  private:
   std::mutex mutex_;
@@ -78,16 +88,21 @@ class LocalMinima::Spare {
   std::size_t working_ = 0;
   std::size_t waiting_ = 0;
   std::atomic<bool> wanted_{false};  // somebody waits, and nothing is there
+  std::atomic<bool> failed_{false};
 };
 
 // A worker's time at work, however it ends.
 struct LocalMinima::Shift {
   explicit Shift(Spare& where) : spare(where) { spare.enter(); }
-  ~Shift() { spare.leave(); }
+  ~Shift() {
+    if (std::uncaught_exceptions() > exceptions) spare.fail();
+    spare.leave();
+  }
   Shift(const Shift&) = delete;
   Shift& operator=(const Shift&) = delete;
 
   Spare& spare;
+  const int exceptions = std::uncaught_exceptions();
 };
 
 // Serves pairs. It holds both ends of one that it looks at, all their neighbours when it decides the edge, and the
@@ -144,7 +159,7 @@ class LocalMinima::Worker {
       todo_.pop_back();
       if (!visit(top)) later_.push_back(top);
       release();
-      if (stop != nullptr && stop->load(std::memory_order_relaxed)) {
+      if (spare_->failed() || (stop != nullptr && stop->load(std::memory_order_relaxed))) {
         todo_.clear();
         later_.clear();
         return;
@@ -306,7 +321,10 @@ class LocalMinima::Worker {
   // The first turn of a vertex, unless it is incomplete. Others may hold it, to wait for it.
   void begin_turns(Index v) {
     if (zone_.states[v] == VertexState::kIncomplete) return;
-    while (!hold(v)) std::this_thread::yield();
+    while (!hold(v)) {
+      if (spare_->failed()) return;
+      std::this_thread::yield();
+    }
     give_turn(zone_, v);
     follow(v);
     release();
@@ -372,7 +390,7 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
     const Shift shift(spare);
     for (std::size_t m = 0; m < stretches.size(); ++m) {
       Stretch& stretch = stretches[(number + m) % stretches.size()];
-      for (std::size_t place = stretch.next++; place < stretch.end; place = stretch.next++) {
+      for (std::size_t place = stretch.next++; place < stretch.end && !spare.failed(); place = stretch.next++) {
         worker.settle(zone_.unsettled(place), stop);
         serve_place(place, worker, stop);
       }

@@ -19,8 +19,6 @@ namespace {
 
 using Slices = std::vector<PlacedSlice>;
 
-double length_of(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
-
 // Notes slices that lie beside the line from the first to the last.
 void note_line(VolumeInfo& info, const Slices& slices, const Vector3& step) {
   constexpr double kBeside = 1e-2;

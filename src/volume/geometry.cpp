@@ -1,6 +1,8 @@
 #include "volume/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -9,8 +11,6 @@
 
 namespace isoweave {
 namespace {
-
-double length_of(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
 
 Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -35,7 +35,42 @@ Vector3 any_normal(const Vector3& a) {
   return normal_of(a, other);
 }
 
+bool all_finite(std::span<const double> numbers) {
+  return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+}
+
 }  // namespace
+
+double length_of(const Vector3& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (!(largest > 0) || !std::isfinite(largest)) return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  const int exponent = std::ilogb(largest);
+  double sum = 0;
+  for (const double component : v) {
+    const double scaled = std::scalbn(component, -exponent);
+    sum += scaled * scaled;
+  }
+  return std::scalbn(std::sqrt(sum), exponent);
+}
+
+void require_usable(const VolumeInfo& volume) {
+  const auto refuse = [&](const std::string& expected, const std::string& found) {
+    throw std::invalid_argument(volume.path + ": expected " + expected + ", found " + found);
+  };
+  const Geometry& geometry = volume.geometry;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string of_axis = " on axis " + std::to_string(axis);
+    if (volume.dims[axis] <= 0) refuse("1 sample or more" + of_axis, std::to_string(volume.dims[axis]));
+    if (!is_usable_step(geometry.spacing[axis])) {
+      refuse("a sample spacing from 1e-30 to 1e30" + of_axis, number_text(geometry.spacing[axis]));
+    }
+  }
+  if (!all_finite(geometry.origin)) refuse("a finite origin", "another");
+  if (!all_finite(geometry.direction)) refuse("finite directions of the axes", "others");
+  if (!std::isfinite(volume.slope) || volume.slope == 0)
+    refuse("a finite slope other than 0", number_text(volume.slope));
+  if (!std::isfinite(volume.intercept)) refuse("a finite intercept", number_text(volume.intercept));
+}
 
 Vector3 normal_of(const Vector3& a, const Vector3& b) {
   Vector3 normal = cross(a, b);

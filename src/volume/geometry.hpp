@@ -16,12 +16,20 @@ struct Axes {
   Vector3 origin{0, 0, 0};
 };
 
+// Scaled by a power of two, so that squares neither vanish nor overflow; no formula of a standard library. Infinite or
+// NaN where a component is.
+double length_of(const Vector3& v);
+
 // Splits steps into spacing (their lengths) and unit directions. Throws BadInput naming `path` when a number is not
 // finite, a step has no length, or the axes do not span space. Mirrored axes (negative determinant) are kept.
 void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
 
 // A unit vector orthogonal to `a` and `b`: the missing third axis of a plane image.
 Vector3 normal_of(const Vector3& a, const Vector3& b);
+
+// Throws std::invalid_argument, naming the path, unless steps are usable, the other numbers are finite, and samples
+// have a slope. What was opened from a file is; a caller's own source may not be.
+void require_usable(const VolumeInfo& volume);
 
 // Applies the caller's overrides. Throws std::invalid_argument when they are not usable.
 void apply_overrides(Geometry& geometry, const OpenOptions& options);

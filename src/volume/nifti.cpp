@@ -228,14 +228,14 @@ double apart(const Axes& a, const Axes& b, const std::array<std::int64_t, 3>& di
         if (far) between[row] += static_cast<double>(dims[axis] - 1) * (a.steps[axis][row] - b.steps[axis][row]);
       }
     }
-    largest = std::max(largest, std::hypot(between[0], between[1], between[2]));
+    largest = std::max(largest, length_of(between));
   }
   return largest;
 }
 
 double shortest_step(const Axes& axes) {
   double shortest = HUGE_VAL;
-  for (const Vector3& step : axes.steps) shortest = std::min(shortest, std::hypot(step[0], step[1], step[2]));
+  for (const Vector3& step : axes.steps) shortest = std::min(shortest, length_of(step));
   return shortest;
 }
 

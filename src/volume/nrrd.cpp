@@ -161,7 +161,7 @@ void set_plain_step(VolumeInfo& info, Axes& out, std::size_t n, const NrrdAxis& 
 
 void note_other_spacing(VolumeInfo& info, std::size_t n, const NrrdAxis& axis) {
   constexpr double kRounding = 1e-3;
-  const double taken = std::hypot((*axis.step)[0], (*axis.step)[1], (*axis.step)[2]);
+  const double taken = length_of(*axis.step);
   if (std::isnan(axis.spacing) || std::abs(std::abs(axis.spacing) - taken) <= kRounding * taken) return;
   info.notes.push_back("the spacing of axis " + std::to_string(n) + " is " + rounded_text(taken) +
                        " by its space direction, which is taken, and " + rounded_text(axis.spacing) + " by spacings");

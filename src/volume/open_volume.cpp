@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "parallel/float_environment.hpp"
 #include "volume/dicom_file.hpp"
 #include "volume/dicom_series.hpp"
 #include "volume/external_files.hpp"
@@ -187,6 +188,7 @@ OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
 }  // namespace
 
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
+  const StandardFloats floats;
   OpenedVolume volume = open_any(path, options);
   refuse_array_options(volume.info, options);
   if (!volume.unit_conflict.empty() && !options.spacing) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isoweave/mesh.hpp"
+#include "parallel/float_environment.hpp"
 #include "volume/formats.hpp"
 #include "write/mesh_input.hpp"
 #include "write/mesh_words.hpp"
@@ -124,6 +125,7 @@ void note_missing_triangles(TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::string& path) {
+  const StandardFloats floats;
   MeshInput input(path);
   if (input.size() == 0) input.fail("is empty, expected a mesh file");
   const std::string head = input.head(kHeadBytes);

@@ -157,6 +157,30 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
   EXPECT_EQ(resume().digest, whole_);
 }
 
+TEST_F(SavedState, OfARunThatMeasuredNothingIsRefusedByOneThatDoes) {
+  const files::Folder folder;
+  std::atomic<bool> stop = false;
+  RunControl control = saving();
+  control.checkpoint.folder = folder.path();
+  control.measure = false;
+  control.stop = &stop;
+  control.progress = [&](const Progress&) { stop = true; };
+  const auto run = [&](const Checkpoint* resume) {
+    control.resume = resume;
+    const std::string mark = resume == nullptr ? "" : resume->marks.at(0);
+    const auto sink = open_mesh_file(folder_ / "b.obj", {false, {}, folder.path(), mark});
+    return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
+  };
+  EXPECT_THROW(run(nullptr), Interrupted);
+  const Checkpoint checkpoint = read_checkpoint(folder.path());
+  control.stop = nullptr;
+  control.measure = true;
+  expect_refused<BadInput>([&] { run(&checkpoint); }, "the task has changed");
+  control.measure = false;
+  run(&checkpoint);
+  EXPECT_EQ(check_mesh(read_mesh(folder_ / "b.obj")).digest, whole_);
+}
+
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
   writer.list(std::string("isoweave state 8\n"));

@@ -1,0 +1,30 @@
+// The state of the processor that floating-point results depend on.
+#pragma once
+
+#include <cfenv>
+#include <cfloat>
+
+#ifdef __FAST_MATH__
+#error "isoweave: results depend on IEEE 754; expected a compiler without -ffast-math"
+#endif
+static_assert(FLT_EVAL_METHOD == 0, "results depend on rounding to the type of each operation");
+
+namespace isoweave {
+
+// Rounding to nearest and small numbers as they are, as long as it lives; then what the caller had. A host program may
+// have set another rounding, or that small numbers are taken for 0.
+class StandardFloats {
+ public:
+  StandardFloats() {
+    std::fegetenv(&found_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~StandardFloats() { std::fesetenv(&found_); }
+  StandardFloats(const StandardFloats&) = delete;
+  StandardFloats& operator=(const StandardFloats&) = delete;
+
+ private:
+  std::fenv_t found_{};
+};
+
+}  // namespace isoweave
