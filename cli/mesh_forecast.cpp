@@ -7,8 +7,8 @@
 #include "isoweave/error.hpp"
 #include "output.hpp"
 #include "pipeline/memory_cap.hpp"
-#include "pipeline/sweep.hpp"
 #include "report.hpp"
+#include "system/process_memory.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -56,7 +56,7 @@ CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptio
   forecast.peak_bytes += files + watch_memory(arguments.watch);
   forecast.least_bytes += files + watch_memory(arguments.watch);
   // A run with that cap looks at the volume, too.
-  forecast.least_bytes = std::max(forecast.least_bytes, with_slack(peak_process_bytes()));
+  forecast.least_bytes = std::max(forecast.least_bytes, with_slack(system::peak_bytes()));
   const std::uint64_t page = arguments.page.given() ? with_slack(page_memory(triangles)) : 0;
   const bool page_decides = page > forecast.least_bytes;
   forecast.least_bytes = std::max(forecast.least_bytes, page);

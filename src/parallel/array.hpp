@@ -3,8 +3,6 @@
 // in place, as two copies of the largest would be the peak of a run.
 #pragma once
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
@@ -12,6 +10,8 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+
+#include "system/pages.hpp"
 
 namespace isoweave {
 
@@ -40,17 +40,16 @@ class Array {
 
   // Takes memory for so many elements, at least as many as there are.
   void reserve(std::size_t capacity) {
-    if (capacity > (~std::size_t{0} - kHugePage) / sizeof(T)) throw std::bad_array_new_length();
+    constexpr std::size_t kPage = system::kHugePage;
+    if (capacity > (~std::size_t{0} - kPage) / sizeof(T)) throw std::bad_array_new_length();
     const std::size_t bytes = capacity * sizeof(T);
-    bytes < kHugePage ? take_from_heap((bytes + 63) / 64 * 64) : map((bytes + kHugePage - 1) / kHugePage * kHugePage);
+    bytes < kPage ? take_from_heap((bytes + 63) / 64 * 64) : take_pages((bytes + kPage - 1) / kPage * kPage);
   }
 
  private:
-  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
-
   struct Free {
-    std::size_t mapped = 0;  // bytes; 0: from the heap
-    void operator()(T* memory) const { mapped > 0 ? void(munmap(memory, mapped)) : std::free(memory); }
+    std::size_t paged = 0;  // bytes; 0: from the heap
+    void operator()(T* memory) const { paged > 0 ? system::free_pages(memory, paged) : std::free(memory); }
   };
 
   void take_from_heap(std::size_t bytes) {
@@ -59,20 +58,17 @@ class Array {
     move_to(memory, bytes, 0);
   }
 
-  void map(std::size_t bytes) {
-    const std::size_t mapped = data_.get_deleter().mapped;
-    void* const memory = mapped > 0 ? mremap(data_.get(), mapped, bytes, MREMAP_MAYMOVE)
-                                    : mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    if (mapped > 0) static_cast<void>(data_.release());  // its pages have moved
-    madvise(memory, bytes, MADV_HUGEPAGE);               // a wish: small pages do as well
-    move_to(static_cast<T*>(memory), bytes, bytes);
+  void take_pages(std::size_t bytes) {
+    const std::size_t paged = data_.get_deleter().paged;
+    void* const pages = paged > 0 ? system::grow_pages(data_.get(), paged, bytes) : system::take_pages(bytes);
+    if (paged > 0) static_cast<void>(data_.release());  // its pages have moved
+    move_to(static_cast<T*>(pages), bytes, bytes);
   }
 
   // Takes the elements along unless the memory has them already.
-  void move_to(T* memory, std::size_t bytes, std::size_t mapped) {
+  void move_to(T* memory, std::size_t bytes, std::size_t paged) {
     if (data_ != nullptr) std::memcpy(memory, data_.get(), size_ * sizeof(T));
-    data_ = std::unique_ptr<T, Free>(memory, Free{mapped});
+    data_ = std::unique_ptr<T, Free>(memory, Free{paged});
     capacity_ = bytes / sizeof(T);
   }
 

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "system/file_facts.hpp"
 #include "volume/input_file.hpp"
 #include "write/atomic_file.hpp"
 
@@ -108,10 +109,10 @@ std::string levels_text(std::span<const Length> levels) {
 std::string file_text(const VolumeInfo& volume) {
   const std::string& path = volume.header.empty() ? volume.path : volume.header;
   std::string part = volume.part.empty() ? "" : ", " + volume.part;
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return part;
-  return part + ", " + std::to_string(status.st_size) + " bytes changed at " + std::to_string(status.st_mtim.tv_sec) +
-         "." + std::to_string(status.st_mtim.tv_nsec);
+  const std::optional<system::FileFacts> facts = system::facts_of_file(path);
+  if (!facts) return part;
+  return part + ", " + std::to_string(facts->bytes) + " bytes changed at " + std::to_string(facts->seconds) + "." +
+         std::to_string(facts->nanoseconds);
 }
 
 std::string volume_text(const VolumeInfo& volume) {

@@ -16,6 +16,7 @@
 #include "pipeline/sweep.hpp"
 #include "simplify/count_target.hpp"
 #include "slab/memory_model.hpp"
+#include "system/process_memory.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -469,7 +470,7 @@ class Forecaster {
   const VolumeInfo info_;
   const MeshOptions& options_;
   RunControl control_;
-  const std::uint64_t resident_ = resident_process_bytes();
+  const std::uint64_t resident_ = system::resident_bytes();
   double error_ = 0;             // length
   double tile_error_ = 0;        // of tiles
   std::int64_t slices_ = 0;      // that are looked at

@@ -12,6 +12,7 @@
 #include "pipeline/label_sweep.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
+#include "system/process_memory.hpp"
 #include "volume/labels.hpp"
 #include "volume/samples.hpp"
 
@@ -109,7 +110,7 @@ class LabelsSweep {
     require_unchanged(volume_, options_, identity_);
     finish_labels();
     total.lap(report_.total.seconds_total);
-    report_.total.peak_bytes = peak_process_bytes();
+    report_.total.peak_bytes = system::peak_bytes();
     return std::move(report_);
   }
 

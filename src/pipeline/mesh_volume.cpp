@@ -18,6 +18,7 @@
 #include "pipeline/surface_field.hpp"
 #include "pipeline/sweep.hpp"
 #include "slab/memory_model.hpp"
+#include "system/process_memory.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
@@ -75,7 +76,7 @@ class VolumeSweep {
     for (MeshSink* sink : sinks_) sink->forget_marks();
     finishing.lap(report_.seconds_write);
     total.lap(report_.seconds_total);
-    report_.peak_bytes = peak_process_bytes();
+    report_.peak_bytes = system::peak_bytes();
     return std::move(report_);
   }
 
@@ -439,7 +440,7 @@ class VolumeSweep {
   const std::array<double, 3> offset_;  // of the sinks
   const RunIdentity identity_ =
       identity_of(volume_, options_, offset_, control_.measure);  // when the run begins: a file may change meanwhile
-  const std::uint64_t resident_ = control_.memory > 0 ? resident_process_bytes() : 0;
+  const std::uint64_t resident_ = control_.memory > 0 ? system::resident_bytes() : 0;
   const std::uint64_t reader_;  // bytes that the source may hold
   const Executor executor_;
   SurfaceField field_;

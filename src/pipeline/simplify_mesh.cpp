@@ -14,6 +14,7 @@
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"
 #include "simplify/count_target.hpp"
+#include "system/process_memory.hpp"
 
 namespace isoweave {
 namespace {
@@ -102,7 +103,7 @@ class MeshRun {
     for (MeshSink* sink : sinks_) sink->finish();
     clock_.lap(report_.seconds_write);
     total_.lap(report_.seconds_total);
-    report_.peak_bytes = peak_process_bytes();
+    report_.peak_bytes = system::peak_bytes();
     return report_;
   }
 

@@ -29,12 +29,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// Largest resident memory of the process so far.
-std::uint64_t peak_process_bytes();
-
-// Resident memory of the process now.
-std::uint64_t resident_process_bytes();
-
 // Cube root by Newton's method: additions, multiplications and divisions only, so equal on every machine.
 double cube_root(double x);
 
