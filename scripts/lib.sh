@@ -66,3 +66,35 @@ quietly() {
   fi
   rm -f "$log"
 }
+
+# Where CUDA's compiler goes: outside any clone, so that the next clone has it.
+cuda_folder=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/cuda-13.0
+
+# The CUDA compiler: the environment's, the system's, NVIDIA's, ours.
+find_nvcc() {
+  if [ -n "${CUDACXX:-}" ]; then
+    echo "$CUDACXX"
+  else
+    PATH=$PATH:/usr/local/cuda/bin:$cuda_folder/bin command -v nvcc
+  fi
+}
+
+# Installs CUDA's compiler, without a driver and without root, where none is found; anew when the list of packages changes.
+install_nvcc() {
+  local list=$root/scripts/cuda-packages.txt unpacked
+  if [ -e "$cuda_folder" ] && ! cmp -s "$list" "$cuda_folder/packages.txt"; then rm -rf "$cuda_folder"; fi
+  if find_nvcc > /dev/null; then return; fi
+  install_packages python3-pip
+  say "installing CUDA's compiler into $cuda_folder"
+  mkdir -p "$(dirname "$cuda_folder")"
+  unpacked=$(mktemp -d -p "$(dirname "$cuda_folder")")
+  # Debian's Python, which Debian's pip belongs to.
+  quietly /usr/bin/python3 -m pip install --no-deps --require-hashes --only-binary :all: --target "$unpacked" -r "$list" \
+    || { rm -rf "$unpacked"; fail "could not install CUDA's compiler"; }
+  # The names that a toolkit has beside those of the packages.
+  ln -s lib "$unpacked/nvidia/cu13/lib64"
+  ln -s libcudart.so.13 "$unpacked/nvidia/cu13/lib/libcudart.so"
+  cp "$list" "$unpacked/nvidia/cu13/packages.txt"
+  mv -T "$unpacked/nvidia/cu13" "$cuda_folder"
+  rm -rf "$unpacked"
+}
