@@ -1,4 +1,5 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 

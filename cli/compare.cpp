@@ -1,4 +1,5 @@
 // isoweave compare: distances between two meshes, both ways.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -1,9 +1,9 @@
 // Which components of a surface are kept.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "cli_app.hpp"
 #include "isoweave/components.hpp"
 #include "isoweave/pipeline.hpp"
 

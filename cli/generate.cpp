@@ -1,6 +1,7 @@
 // isoweave generate: test volumes from formulas.
 #include "isoweave/generate.hpp"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "isoweave/error.hpp"

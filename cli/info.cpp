@@ -1,4 +1,5 @@
 // isoweave info: what a volume is, from one pass over it.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>

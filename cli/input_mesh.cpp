@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "isoweave/weld.hpp"
 #include "output.hpp"
 

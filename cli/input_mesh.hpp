@@ -1,11 +1,11 @@
 // Meshes as verbs read them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli_app.hpp"
 #include "isoweave/mesh.hpp"
 
 namespace isoweave::cli {

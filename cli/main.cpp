@@ -1,4 +1,5 @@
 // The command line: picks the verb, and turns whatever ends it into one line and an exit code.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <sstream>

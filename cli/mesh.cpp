@@ -1,4 +1,5 @@
 // isoweave mesh: volume in, simplified surface out.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>

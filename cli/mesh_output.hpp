@@ -1,11 +1,11 @@
 // Where a mesh goes: the options that mesh and simplify share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include "cli_app.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
 #include <initializer_list>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli_app.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/pipeline.hpp"
 #include "isoweave/volume.hpp"

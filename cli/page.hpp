@@ -2,13 +2,13 @@
 // its sources; builds without the viewer refuse to make one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli_app.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 #include "mesh_output.hpp"

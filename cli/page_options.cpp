@@ -1,4 +1,5 @@
 // What is asked of a page, and what is refused before any work is done.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
 

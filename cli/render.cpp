@@ -1,6 +1,7 @@
 // isoweave render: a picture of a mesh as PNG.
 #include "isoweave/render.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -1,4 +1,5 @@
 // isoweave simplify: the same simplifier on a mesh that exists already.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <memory>

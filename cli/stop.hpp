@@ -1,12 +1,12 @@
 // When simplification stops: at an error, at several, or at a number of triangles.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "cli_app.hpp"
 #include "isoweave/pipeline.hpp"
 
 namespace isoweave::cli {

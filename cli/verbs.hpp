@@ -1,7 +1,7 @@
 // One function per verb: it describes the verb's options and what is to be done with them.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli_app.hpp"
 
 namespace isoweave::cli {
 

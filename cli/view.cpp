@@ -1,4 +1,5 @@
 // isoweave view: a page for a mesh, or for a report and its mesh.
+#include <CLI/CLI.hpp>
 #include <cctype>
 #include <filesystem>
 #include <fstream>

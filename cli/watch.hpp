@@ -2,12 +2,12 @@
 // for a browser; builds without the viewer or without cpp-httplib refuse it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include "cli_app.hpp"
 #include "isoweave/pipeline.hpp"
 #include "isoweave/volume.hpp"
 

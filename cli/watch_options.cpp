@@ -1,4 +1,5 @@
 // What is asked of --watch, and what is refused before any work is done.
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 
 #include "options.hpp"

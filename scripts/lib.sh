@@ -47,7 +47,7 @@ install_packages() {
 build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libtiff-dev libpng-dev libcharls-dev libopenjp2-7-dev libhdf5-dev libzstd-dev libblosc-dev liblz4-dev liblzma-dev
   libmeshoptimizer-dev libdraco-dev libcpp-httplib-dev pkgconf)
-test_packages=(libgtest-dev libgdcm-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind
+test_packages=(ccache libgtest-dev libgdcm-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind
   python3-numpy python3-nibabel python3-pydicom python3-tifffile python3-pil python3-vtk9 teem-apps
   python3-h5py python3-numcodecs python3-zarr draco chromium)
 
@@ -65,4 +65,36 @@ quietly() {
     return 1
   fi
   rm -f "$log"
+}
+
+# Where CUDA's compiler goes: outside any clone, so that the next clone has it.
+cuda_folder=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/cuda-13.0
+
+# The CUDA compiler: the environment's, the system's, NVIDIA's, ours.
+find_nvcc() {
+  if [ -n "${CUDACXX:-}" ]; then
+    echo "$CUDACXX"
+  else
+    PATH=$PATH:/usr/local/cuda/bin:$cuda_folder/bin command -v nvcc
+  fi
+}
+
+# Installs CUDA's compiler, without a driver and without root, where none is found; anew when the list of packages changes.
+install_nvcc() {
+  local list=$root/scripts/cuda-packages.txt unpacked
+  if [ -e "$cuda_folder" ] && ! cmp -s "$list" "$cuda_folder/packages.txt"; then rm -rf "$cuda_folder"; fi
+  if find_nvcc > /dev/null; then return; fi
+  install_packages python3-pip
+  say "installing CUDA's compiler into $cuda_folder"
+  mkdir -p "$(dirname "$cuda_folder")"
+  unpacked=$(mktemp -d -p "$(dirname "$cuda_folder")")
+  # Debian's Python, which Debian's pip belongs to.
+  quietly /usr/bin/python3 -m pip install --no-deps --require-hashes --only-binary :all: --target "$unpacked" -r "$list" \
+    || { rm -rf "$unpacked"; fail "could not install CUDA's compiler"; }
+  # The names that a toolkit has beside those of the packages.
+  ln -s lib "$unpacked/nvidia/cu13/lib64"
+  ln -s libcudart.so.13 "$unpacked/nvidia/cu13/lib/libcudart.so"
+  cp "$list" "$unpacked/nvidia/cu13/packages.txt"
+  mv -T "$unpacked/nvidia/cu13" "$cuda_folder"
+  rm -rf "$unpacked"
 }

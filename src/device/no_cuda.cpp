@@ -1,6 +1,4 @@
 // In place of cuda_engine.cu where there is no CUDA compiler.
-#ifndef ISOWEAVE_HAS_CUDA
-
 #include "device/cuda_engine.hpp"
 #include "isoweave/error.hpp"
 
@@ -13,5 +11,3 @@ std::unique_ptr<DeviceEngine> make_cuda_engine(const BulkOptions&) {
 }
 
 }  // namespace isoweave
-
-#endif

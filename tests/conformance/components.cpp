@@ -1,4 +1,5 @@
 // Runs that drop components make the mesh of a surface that never had them.
+// Threads: *DroppedOnesHaveNeverBeen/noise*
 #include <gtest/gtest.h>
 
 #include "component_scenes.hpp"

@@ -1,4 +1,5 @@
 // Runs to a number of triangles stop where the reference queue would.
+// Threads: Limits.*:CountsHeld.*
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // A guaranteed distance holds, and changes nothing about who decides what: every schedule, slab and number of threads
 // gives the mesh of the reference queue.
+// Threads: none, schedules.cpp has the same loops
 #include <gtest/gtest.h>
 
 #include "oracle.hpp"

@@ -1,4 +1,5 @@
 // The meshes of the labels of a map out of one sweep are those of a run on each label's mask.
+// Threads: *GiveTheMeshesOfRunsOnTheMasks/Open*:*GiveTheMeshesOfRunsOnTheMasks/SmoothOpen*
 #include <gtest/gtest.h>
 
 #include <functional>

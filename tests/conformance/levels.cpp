@@ -1,4 +1,5 @@
 // Levels out of one sweep are the meshes of runs with their errors.
+// Threads: none, mesh_pieces.cpp has levels
 #include <gtest/gtest.h>
 
 #include "surfaces.hpp"

@@ -1,5 +1,6 @@
 // Normals that count: costs and places depend on them, and every schedule, slab and number of threads still gives the
 // mesh of the reference queue.
+// Threads: none, schedules.cpp has the same loops
 #include <gtest/gtest.h>
 
 #include "oracle.hpp"

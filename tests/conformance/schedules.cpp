@@ -1,4 +1,5 @@
 // One digest per surface: every schedule, slab thickness and number of threads gives the mesh of the reference queue.
+// Threads: *EverySchedule*ClosedAnisotropic*:*Topology*ClosedAnisotropic*
 #include <gtest/gtest.h>
 
 #include <bit>

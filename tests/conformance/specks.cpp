@@ -1,4 +1,5 @@
 // Components that have shrunk to a tetrahedron vanish at a cost of their own, the same ones in every schedule.
+// Threads: none, schedules.cpp has the same loops
 #include <gtest/gtest.h>
 
 #include "oracle.hpp"

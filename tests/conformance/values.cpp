@@ -1,4 +1,5 @@
 // Values of another volume: what the vertices get, and that it does not depend on how the run is carried out.
+// Threads: none, schedules.cpp has the same loops
 #include <gtest/gtest.h>
 
 #include "isoweave/error.hpp"

@@ -1,4 +1,5 @@
 // What a calling program may get wrong is std::invalid_argument, and nothing is computed.
+// Threads: none, what is refused starts none
 #include <gtest/gtest.h>
 
 #include <cmath>

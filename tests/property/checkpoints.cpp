@@ -1,4 +1,5 @@
 // A run that is cut off and resumed makes the mesh of a run that is not.
+// Threads: Sweep.*
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Hosts whose processor rounds otherwise, or takes small numbers for 0.
+// Threads: none, surfaces.cpp has the same runs
 #include <gtest/gtest.h>
 
 #include <cfenv>

@@ -1,4 +1,5 @@
 // Forecasts and caps.
+// Threads: none, a forecast is a run that surfaces.cpp has
 #include <gtest/gtest.h>
 
 #include "pipeline/slab_plan.hpp"

@@ -1,4 +1,5 @@
 // A sink with room for pieces gets the mesh that one without gets, vertex by vertex and triangle by triangle.
+// Threads: none, mesh_pieces.cpp and surfaces.cpp have the same runs
 #include <gtest/gtest.h>
 
 #include <span>

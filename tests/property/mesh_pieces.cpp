@@ -1,5 +1,7 @@
 // A mesh gives the same result whatever the pieces in which it is taken in, and the report says what the result is,
 // also where the mesh is not a manifold.
+// Threads: *MeshPieces.*Levels/box*:*MeshPieces.*LockTheSame*/box*
+// Threads: *MeshPieces.*Levels/noiseOpen:*MeshPieces.*LockTheSame*/noiseOpen
 #include <gtest/gtest.h>
 
 #include <algorithm>

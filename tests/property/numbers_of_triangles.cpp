@@ -1,4 +1,5 @@
 // What runs to a number of triangles report, and where they stop when the number is out of reach.
+// Threads: none, counts.cpp has the same runs
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Meshes as input: what is not an oriented manifold stays where it is, the rest is simplified.
+// Threads: none, mesh_pieces.cpp has the same runs
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // What users are promised about a surface, on volumes with known answers and on volumes made to break things.
+// Threads: Sweep.*
 #include "surfaces.hpp"
 
 #include <gtest/gtest.h>

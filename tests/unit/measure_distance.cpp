@@ -1,3 +1,5 @@
+
+// Threads: MeasureDistance.*
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // Orientations against integers, pairs of triangles against the theorem of separating axes, whole meshes against all
 // pairs. Small integers as coordinates make most cases touching, coplanar or both.
+// Threads: MeasureSelfIntersections.*
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Pieces of a mesh: together they are the mesh, and each says what is still to come.
+// Threads: none, mesh_pieces.cpp has the same loops
 #include "pipeline/mesh_surface.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Every vertex has one owner, who meets all triangles that name it, in their order.
+// Threads: VertexOwners.*
 #include <gtest/gtest.h>
 
 #include <random>

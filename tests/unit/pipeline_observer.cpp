@@ -1,4 +1,5 @@
 // What an observer of the sweep sees: the mesh, and between two slabs a surface without seams that ends at the front.
+// Threads: none, the sweep calls its observer by one thread, and schedules.cpp has its loops
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,4 +1,5 @@
 // A sink that works beside the caller gets everything in order, and its errors come back.
+// Threads: OverlappedSink.*
 #include <gtest/gtest.h>
 
 #include <chrono>

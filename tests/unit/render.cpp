@@ -1,4 +1,5 @@
 // The rasteriser on triangles small enough to say which pixels they cover.
+// Threads: RenderMesh.*
 #include "isoweave/render.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Keys column by column, and which vertex has all of its own by when.
+// Threads: KeyCountdown.*
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // The order in which the zone holds a piece.
+// Threads: PieceOrders.*
 #include <gtest/gtest.h>
 
 #include <limits>

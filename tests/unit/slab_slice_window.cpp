@@ -1,4 +1,5 @@
 // The ring that slices are read into, ahead of whoever needs them.
+// Threads: SliceWindow.*
 #include <gtest/gtest.h>
 
 #include <atomic>

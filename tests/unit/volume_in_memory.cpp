@@ -1,4 +1,5 @@
 // Volumes whose samples are in memory already.
+// Threads: none, surfaces.cpp has the same runs
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,4 +1,5 @@
 // Volumes in gzip and out of pipes, and what is said of files that are no volume.
+// Threads: none, the thread here only feeds a pipe
 #include <sys/stat.h>
 
 #include <thread>

@@ -1,4 +1,5 @@
 // Masks made smooth: sides, reads, and what becomes of the surface.
+// Threads: SmoothedMask.*
 #include <gtest/gtest.h>
 
 #include <cmath>
