@@ -23,7 +23,7 @@ using golden::read_rows;
 using golden::renew_rows;
 using golden::Row;
 
-const std::string kFile = ISOWEAVE_GOLDEN_FILE;
+constexpr const char* kFile = ISOWEAVE_GOLDEN_FILE;
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::istringstream in(text);
@@ -125,11 +125,12 @@ using MakeMeshes = std::function<void(std::span<MeshSink* const>)>;
 
 std::vector<std::string> digests_of(const Row& row, std::size_t levels, const MakeMeshes& make, Meshes& meshes) {
   std::vector<MeshInMemory> sinks(levels);
-  std::vector<MeshSink*> pointers;
-  for (MeshInMemory& sink : sinks) pointers.push_back(&sink);
+  std::vector<MeshSink*> pointers(levels);
+  std::ranges::transform(sinks, pointers.begin(), [](MeshInMemory& sink) { return &sink; });
   make(pointers);
-  std::vector<std::string> digests;
-  for (const MeshInMemory& sink : sinks) digests.push_back(digest_text(check_mesh(sink.copy()).digest));
+  std::vector<std::string> digests(levels);
+  std::ranges::transform(sinks, digests.begin(),
+                         [](const MeshInMemory& sink) { return digest_text(check_mesh(sink.copy()).digest); });
   meshes[row.name] = sinks.back().copy();
   return digests;
 }

@@ -35,7 +35,6 @@ struct Options {
   std::uint64_t triangles = 0;  // to stop at; 0: no such number
   bool drop_specks = false;
   bool normals_count = false;
-  bool has_normals = false, has_values = false;
 };
 
 // What is left, and what was done.
