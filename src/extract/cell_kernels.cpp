@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "extract/cell_cases.hpp"
+#include "parallel/instruction_sets.hpp"
 
 namespace isoweave {
 
@@ -72,9 +73,6 @@ std::span<const CellKernels* const> all_cell_kernels() {
   return kAll;
 }
 
-const CellKernels& cell_kernels() {
-  static const CellKernels& best = *all_cell_kernels().back();
-  return best;
-}
+const CellKernels& cell_kernels() { return newest_of(all_cell_kernels()); }
 
 }  // namespace isoweave

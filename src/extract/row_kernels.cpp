@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "parallel/instruction_sets.hpp"
+
 namespace isoweave {
 
 const RowKernels& portable_row_kernels();
@@ -20,9 +22,6 @@ std::span<const RowKernels* const> all_row_kernels() {
   return kAll;
 }
 
-const RowKernels& row_kernels() {
-  static const RowKernels& best = *all_row_kernels().back();
-  return best;
-}
+const RowKernels& row_kernels() { return newest_of(all_row_kernels()); }
 
 }  // namespace isoweave

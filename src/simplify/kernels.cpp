@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "parallel/instruction_sets.hpp"
+
 namespace isoweave {
 
 const Kernels& portable_kernels();
@@ -20,9 +22,6 @@ std::span<const Kernels* const> all_kernels() {
   return kAll;
 }
 
-const Kernels& kernels() {
-  static const Kernels& best = *all_kernels().back();
-  return best;
-}
+const Kernels& kernels() { return newest_of(all_kernels()); }
 
 }  // namespace isoweave

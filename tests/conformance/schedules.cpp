@@ -145,52 +145,6 @@ TEST(Ties, EqualUpperHalvesLeaveTheOrderToTheLower) {
   }
 }
 
-// The meshes that the rules give, on every machine: who changes a rule changes these, and says why.
-TEST(Golden, DigestsOfTheRules) {
-  struct Golden {
-    bool closed;
-    Quality quality;
-    std::uint64_t triangles;
-    const char* digest;
-  };
-  const std::array<Golden, 6> all{{
-      {true, Quality::kFast, 5944, "f9fe2c4830c71895"},
-      {true, Quality::kNormal, 6558, "6a24ae79ac274b99"},
-      {true, Quality::kFine, 6866, "a8506cd99d7c1a7b"},
-      {false, Quality::kFast, 5473, "f0e63b65e540b714"},
-      {false, Quality::kNormal, 6138, "a1df8bc5f626495d"},
-      {false, Quality::kFine, 6463, "a87ec349979e8c03"},
-  }};
-  for (const Golden& golden : all) {
-    SurfaceCase surface;
-    surface.volume.kind = "noise";
-    surface.volume.dims = {26, 24, 22};
-    surface.volume.spacing = {1, 1.25, 0.75};
-    surface.closed = golden.closed;
-    surface.quality = golden.quality;
-    surface.error = 0.3;
-    const SurfaceRun run = sweep(surface, Schedule::kAutomatic, 2, 6);
-    EXPECT_EQ(run.report.triangles, golden.triangles) << digest_text(run.report.digest);
-    EXPECT_EQ(digest_text(run.report.digest), golden.digest);
-  }
-}
-
-// Several columns wide, which the zone holds one after the other, and a slab each its own.
-TEST(Golden, DigestOfAWideVolume) {
-  SurfaceCase surface;
-  surface.volume.kind = "noise";
-  surface.volume.dims = {100, 60, 24};
-  surface.volume.type = SampleType::kUint8;
-  surface.volume.seed = 3;
-  surface.closed = true;
-  surface.error = 0.3;
-  for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{7}, kWholeVolume}) {
-    const SurfaceRun run = sweep(surface, Schedule::kAutomatic, 3, slab);
-    EXPECT_EQ(run.report.triangles, 56050u) << slab;
-    EXPECT_EQ(digest_text(run.report.digest), "dc36dfebc427ba45") << slab;
-  }
-}
-
 // Where the walk around a vertex starts is chance: no sum may depend on it.
 void turn_starts(Zone& zone, std::mt19937& random) {
   for (Index v = 0; v < zone.vertices.size(); ++v) {
