@@ -126,7 +126,7 @@ void run_check(const CheckArguments& arguments) {
 void add_check_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
-  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   add_weld_option(*verb, arguments->weld);
   verb->add_flag("--self-intersections", arguments->self_intersections,
                  "Count the pairs of triangles that meet beyond what they share, exactly");

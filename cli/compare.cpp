@@ -59,7 +59,7 @@ void write_distances(const CompareArguments& arguments, TriangleMesh& a, const T
 }
 
 TriangleMesh read_surface(const std::string& path) {
-  TriangleMesh mesh = read_mesh(path);
+  TriangleMesh mesh = read_named_mesh(path);
   if (mesh.triangles.empty()) throw BadInput(path + ": expected a mesh with triangles, found none");
   print_mesh_warnings(path, mesh);
   return mesh;

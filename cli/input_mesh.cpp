@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "isoweave/weld.hpp"
+#include "options.hpp"
 #include "output.hpp"
 
 namespace isoweave::cli {
@@ -12,8 +13,10 @@ void add_weld_option(CLI::App& verb, bool& weld) {
                 "Make one vertex of all that have equal coordinates; normals and values are those of the first");
 }
 
+TriangleMesh read_named_mesh(const std::string& path) { return read_mesh(input_file(path)); }
+
 InputMesh read_input_mesh(const std::string& path, bool weld) {
-  InputMesh input{read_mesh(path)};
+  InputMesh input{read_named_mesh(path)};
   if (weld) input.welded = weld_vertices(input.mesh);
   return input;
 }

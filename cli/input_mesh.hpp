@@ -10,12 +10,18 @@
 
 namespace isoweave::cli {
 
+inline constexpr const char* kMeshInputHelp =
+    "Mesh to read: PLY, STL, OBJ, OFF, VTP, VTK, GLB, glTF or 3MF, in gzip too; - is standard input";
+
 void add_weld_option(CLI::App& verb, bool& weld);
 
 struct InputMesh {
   TriangleMesh mesh;
   std::uint64_t welded = 0;  // vertices that --weld has taken away
 };
+
+// The mesh that a user names.
+TriangleMesh read_named_mesh(const std::string& path);
 
 InputMesh read_input_mesh(const std::string& path, bool weld);
 

@@ -178,6 +178,8 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
 }
 
+std::string input_file(const std::string& path) { return path == kStandardInput ? "/dev/stdin" : path; }
+
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   if (!input.path.starts_with(kGeneratePrefix)) return std::nullopt;
   if (!input.raw.empty()) throw std::invalid_argument("--raw does not go with a generated volume");
@@ -237,7 +239,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   }
   options.uneven_slices = parse_uneven(input.even_spacing);
   options.external = input.external;
-  return open_volume(input.path == kStandardInput ? "/dev/stdin" : input.path, options);
+  return open_volume(input_file(input.path), options);
 }
 
 // One end of a range, or what it is when it is left out.

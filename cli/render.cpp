@@ -128,7 +128,7 @@ void run_render(const RenderArguments& arguments) {
   check_different({arguments.path, arguments.output});
   check_output(arguments.output);
   exit_on_signal();
-  TriangleMesh mesh = read_mesh(arguments.path);
+  TriangleMesh mesh = read_named_mesh(arguments.path);
   if (mesh.triangles.empty()) throw BadInput(arguments.path + ": expected a mesh with triangles, found none");
   if (!arguments.quiet) print_mesh_warnings(arguments.path, mesh);
   if (arguments.colour_by.empty()) {
@@ -148,7 +148,7 @@ void run_render(const RenderArguments& arguments) {
 void add_render_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("render", "A picture of a mesh as PNG, without a display");
   const auto arguments = std::make_shared<RenderArguments>();
-  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   verb->add_option("-o,--output", arguments->output, "Picture to write: .png")->required();
   verb->add_option("--size", arguments->size, "Pixels: WxH")->capture_default_str();
   verb->add_option("--view", arguments->view, "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION")

@@ -177,7 +177,7 @@ void run_simplify(const SimplifyArguments& arguments) {
 void add_simplify_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
   const auto arguments = std::make_shared<SimplifyArguments>();
-  verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->input, kMeshInputHelp)->required();
   add_output_options(*verb, arguments->output);
   add_stop_options(*verb, arguments->stop);
   add_weld_option(*verb, arguments->weld);

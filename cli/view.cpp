@@ -32,8 +32,10 @@ struct ViewArguments {
   bool quiet = false;
 };
 
-// No mesh begins like this.
+// No mesh begins like this. A pipe, which can be read once, is taken for a mesh.
 bool is_json(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
   std::ifstream file(path, std::ios::binary);
   char c = ' ';
   while (std::isspace(static_cast<unsigned char>(c)) != 0 && file.get(c)) continue;
@@ -68,7 +70,7 @@ void run_view(ViewArguments arguments) {
   check_page(arguments.page, "view");
   RunControl control;
   control.threads = parse_threads(arguments.threads);
-  if (!arguments.page.given()) arguments.page.path = arguments.input + ".html";
+  if (!arguments.page.given()) arguments.page.path = (arguments.input == "-" ? "stdin" : arguments.input) + ".html";
 
   exit_on_signal();
   const bool reported = is_json(arguments.input);
@@ -76,7 +78,7 @@ void run_view(ViewArguments arguments) {
   const std::string mesh_path = reported ? mesh_of(report, arguments.input) : arguments.input;
   check_different(
       {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
-  PageContents contents{read_mesh(mesh_path)};
+  PageContents contents{read_named_mesh(mesh_path)};
   if (!arguments.quiet) print_mesh_warnings(mesh_path, contents.mesh);
   if (report.contains("levels")) {
     for (const Json& level : report["levels"]) contents.finer.push_back(read_mesh(mesh_of(level, arguments.input)));
@@ -86,7 +88,7 @@ void run_view(ViewArguments arguments) {
         "No surface from before simplification was given: there is no before and after, and no "
         "error to show (isoweave view --before MESH, or --html of the run itself).";
   } else {
-    contents.full = read_mesh(arguments.before);
+    contents.full = read_named_mesh(arguments.before);
     for (const std::string& note : match_place(*contents.full, contents.mesh)) {
       if (!arguments.quiet) print_note(arguments.before + ": " + note);
     }

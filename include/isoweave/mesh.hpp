@@ -32,7 +32,8 @@ struct TriangleMesh {
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
 // vertex), OBJ (v and f), OFF, VTP and legacy VTK (polygons and strips), GLB and glTF (where the nodes place them; what
 // isoweave wrote as stored, without the node's unit and axes, and of several levels the finest; not compressed), and
-// 3MF (all that is to be built, at its place); told by content, then by name.
+// 3MF (all that is to be built, at its place); told by content, then by name; in gzip, too, and out of pipes, which are
+// kept in a file without a name in $TMPDIR (CannotWrite where there is no room).
 // Polygons are cut into triangles. Throws BadInput for what is missing, truncated, out of range or not understood. OBJ
 // normals are kept if numbered like the vertices, those of PLY, OFF, VTP, VTK and GLB always. Values: the number that a
 // PLY, VTP or VTK file has for each vertex, as docs/formats.md says; `notes` say what is not kept. Where a file has

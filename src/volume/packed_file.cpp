@@ -22,16 +22,18 @@ std::uint64_t most_bytes(const InputFile& stored) {
 
 bool is_gzip(std::string_view head) { return head.starts_with("\x1f\x8b"); }
 
-FilePtr unpacked(const FilePtr& file) { return is_gzip(file->head(2)) ? std::make_shared<PackedFile>(file) : file; }
+FilePtr unpacked(const FilePtr& file, std::string_view wanted) {
+  return is_gzip(file->head(2)) ? std::make_shared<PackedFile>(file, wanted) : file;
+}
 
-PackedFile::PackedFile(FilePtr stored)
+PackedFile::PackedFile(FilePtr stored, std::string_view wanted)
     : InputFile(stored->path(), most_bytes(*stored)), stored_(std::move(stored)), stream_(from_start()) {
   head_.resize(kLargestHeader);
   head_.resize(stream_->read(std::as_writable_bytes(std::span(head_))));
   position_ = head_.size();
   whole_ = ended_ = head_.size() < kLargestHeader;
   if (whole_) set_size(head_.size());
-  if (head_.empty()) bad_input(path(), "a volume file", "an empty file in gzip");
+  if (head_.empty()) bad_input(path(), wanted, "an empty file in gzip");
 }
 
 std::unique_ptr<InflateStream> PackedFile::from_start() const {

@@ -17,7 +17,7 @@ bool is_gzip(std::string_view head);
 class PackedFile final : public InputFile {
  public:
   // Throws BadInput when the first bytes cannot be inflated, or there are none.
-  explicit PackedFile(FilePtr stored);
+  explicit PackedFile(FilePtr stored, std::string_view wanted = kVolumeFile);
 
   std::uint64_t exact_size() const override;
   bool jumps() const override { return false; }
@@ -40,6 +40,6 @@ class PackedFile final : public InputFile {
 };
 
 // What a file holds that may be in gzip.
-FilePtr unpacked(const FilePtr& file);
+FilePtr unpacked(const FilePtr& file, std::string_view wanted = kVolumeFile);
 
 }  // namespace isoweave

@@ -6,6 +6,7 @@
 
 #include "isoweave/mesh.hpp"
 #include "volume/formats.hpp"
+#include "volume/header_text.hpp"
 #include "write/mesh_input.hpp"
 #include "write/mesh_words.hpp"
 
@@ -17,14 +18,13 @@ using mesh_io::MeshInput;
 constexpr std::size_t kHeadBytes = 4096;
 constexpr std::size_t kLongestKeyword = 40;
 
+// Whatever the case, and before ".gz".
 bool has_ending(const std::string& path, std::string_view ending) {
-  if (path.size() < ending.size()) return false;
-  const std::string_view tail = std::string_view(path).substr(path.size() - ending.size());
-  for (std::size_t i = 0; i < ending.size(); ++i) {
-    const char c = tail[i] >= 'A' && tail[i] <= 'Z' ? static_cast<char>(tail[i] - 'A' + 'a') : tail[i];
-    if (c != ending[i]) return false;
-  }
-  return true;
+  constexpr std::string_view kPacked = ".gz";
+  const std::string name = lower_case(path);
+  std::string_view stem = name;
+  if (stem.ends_with(kPacked)) stem.remove_suffix(kPacked.size());
+  return stem.ends_with(ending);
 }
 
 // The first statement after comments and empty lines is one that begins OBJ files.
@@ -125,7 +125,6 @@ void note_missing_triangles(TriangleMesh& mesh) {
 
 TriangleMesh read_mesh(const std::string& path) {
   MeshInput input(path);
-  if (input.size() == 0) input.fail("is empty, expected a mesh file");
   const std::string head = input.head(kHeadBytes);
   const bool named_obj = has_ending(path, ".obj");
   std::optional<TriangleMesh> told = read_by_content(input, head, named_obj);

@@ -33,7 +33,7 @@ enum CellType : std::uint64_t {
 
 class VtkReader {
  public:
-  explicit VtkReader(MeshInput& input) : input_(input), file_(open_file(input.path())), mesh_(input) {}
+  explicit VtkReader(MeshInput& input) : input_(input), file_(input.file()), mesh_(input) {}
 
   TriangleMesh read() {
     for (auto words = file_.next_words(); !words.empty(); words = file_.next_words()) take_line(words);

@@ -26,7 +26,7 @@ struct VtpPiece {
 
 class VtpReader {
  public:
-  explicit VtpReader(MeshInput& input) : input_(input), file_(open_file(input.path())), tags_(file_), mesh_(input) {}
+  explicit VtpReader(MeshInput& input) : input_(input), file_(input.file()), tags_(file_), mesh_(input) {}
 
   TriangleMesh read() {
     check_end();

@@ -343,6 +343,7 @@ void put_meshes(Seeds& seeds) {
     sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
     sink->finish();
     seeds.put(name, get(folder / ("a." + name)));
+    seeds.put("mesh_gzip", gzipped(get(folder / ("a." + name))));
   }
   mesh.offset = {500000.1, 4649776.7, 120.3};
   mesh.unit = "m";
