@@ -163,7 +163,7 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
       "DICOM slices at uneven distances: resample (read slices at an even one, interpolated), mean (as they "
       "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
-                  "Which array of an HDF5 or VTK file or of a Zarr or N5 folder, by its path or name in it");
+                  "Which array of an HDF5, NPZ or VTK file or of a Zarr or N5 folder, by its path or name in it");
   verb.add_option("--level", input.level,
                   "Which of the sizes of an image in OME-Zarr, N5 or Imaris, 0 being the full one");
   verb.add_option("--channel", input.channel, "Which channel of a stack or array, from 0");

@@ -1,4 +1,6 @@
-// Seeds of meshes in packages and scenes: VTP, legacy VTK, 3MF, GLB.
+// Seeds in packages and scenes: meshes in VTP, legacy VTK, 3MF and GLB, arrays in NPZ.
+#include "foreign_meshes.hpp"
+#include "header_helpers.hpp"
 #include "seeds.hpp"
 
 namespace isoweave::fuzz {
@@ -52,6 +54,26 @@ void put_legacy(Seeds& seeds) {
                        "4\nVECTORS v float\n1 2 3 4 5 6 7 8 9 10 11 12\nCOLOR_SCALARS c 1\n0 0.25 0.5 1\n");
 }
 
+// Arrays of NumPy in an archive: one, and two of which one has three axes.
+void put_archives(Seeds& seeds) {
+  const std::string samples(60, '\7');
+  const std::string volume = testing::npy_header("<i2", "(5, 2, 3)") + samples;
+  const std::string plane = testing::npy_header("<f8", "(2, 3)") + samples.substr(0, 48);
+  seeds.put("npz", foreign::zip_of({{"ct.npy", volume}}));
+  seeds.put("npz", foreign::zip_of({{"affine.npy", plane}, {"ct.npy", volume}}));
+  const std::string text = testing::npy_header("<f2", "(2, 5, 2, 3)", true) + samples + samples;
+  const std::string packed = testing::deflated(text, -15);
+  const ZipEntry entry{"v.npy", true, zip_crc(0, text), packed.size(), text.size(), 0};
+  std::string archive;
+  const auto append = [&archive](const std::vector<std::byte>& bytes) {
+    archive.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  append(zip_header(entry));
+  archive += packed;
+  append(zip_directory({&entry, 1}, archive.size()));
+  seeds.put("npz", archive);
+}
+
 void put_models(Seeds& seeds) {
   seeds.put(
       "3mf_model",
@@ -86,6 +108,7 @@ void put_scenes(Seeds& seeds) {
 void put_packages(Seeds& seeds) {
   put_vtp(seeds);
   put_legacy(seeds);
+  put_archives(seeds);
   put_models(seeds);
   put_scenes(seeds);
 }
