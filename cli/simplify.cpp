@@ -28,6 +28,7 @@ Examples:
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
+  ReadMeshOptions reading;
   std::string input, quality = "normal";
   StopOptions stop;
   ComponentOptions components;
@@ -133,7 +134,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   }
 
   exit_on_signal();
-  InputMesh input = read_input_mesh(arguments.input, arguments.weld);
+  InputMesh input = read_input_mesh(arguments.input, arguments.reading, arguments.weld);
   TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
   const Json place = place_json(mesh);
@@ -186,6 +187,7 @@ void add_simplify_verb(CLI::App& app) {
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);
   verb->footer(kExamples);
+  add_external_option(*verb, arguments->reading);
   verb->callback([arguments] { run_simplify(*arguments); });
 }
 

@@ -86,8 +86,9 @@ class HeaderReader {
   void take_form(std::string_view tag) {
     header_.form = vtk_xml_form(tag, header_.path);
     const std::string& type = header_.form.type;
-    if (type == "PolyData") {
-      bad_input(header_.path, "VTK XML of type ImageData", "'PolyData', a mesh: isoweave simplify takes it");
+    for (const std::string_view mesh : {"PolyData", "PPolyData", "UnstructuredGrid", "PUnstructuredGrid"}) {
+      if (type != mesh) continue;
+      bad_input(header_.path, "VTK XML of type ImageData", quoted(type) + ", a mesh: isoweave simplify takes it");
     }
     if (type != "ImageData" && type != "PImageData") bad_input(header_.path, "VTK XML of type ImageData", quoted(type));
   }

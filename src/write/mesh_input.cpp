@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "isoweave/error.hpp"
+#include "volume/external_files.hpp"
 #include "volume/packed_file.hpp"
 #include "volume/printable.hpp"
 #include "volume/whole_input.hpp"
@@ -16,11 +17,19 @@ constexpr std::string_view kMeshFile = "a mesh file";
 
 }  // namespace
 
-MeshInput::MeshInput(const std::string& path)
+MeshInput::MeshInput(const std::string& path, const ReadMeshOptions& options)
     : path_(path),
+      options_(options),
       file_(jumping_file(unpacked(open_input_file(path, kMeshFile), kMeshFile))),
       size_(file_->size()),
       buffer_(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_))) {}
+
+std::string MeshInput::named_file(const std::string& name) const {
+  OpenOptions options;
+  options.external = options_.external;
+  check_external(options, path_, name);
+  return beside(path_, name);
+}
 
 void MeshInput::fail(const std::string& what) const {
   // Words quoted from the file must not break the line, drive a terminal or fill it.

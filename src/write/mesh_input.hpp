@@ -24,12 +24,15 @@ class MeshInput {
  public:
   // A regular file, or what comes out of a pipe. What is in gzip is inflated into a file without a name, as readers go
   // back and ask how much is left. Throws CannotWrite where there is no room for that.
-  explicit MeshInput(const std::string& path);
+  explicit MeshInput(const std::string& path, const ReadMeshOptions& options = {});
   MeshInput(const MeshInput&) = delete;
   MeshInput& operator=(const MeshInput&) = delete;
 
   const std::string& path() const { return path_; }
   const FilePtr& file() const { return file_; }
+
+  // The path of a file that this one names. Fails where it may name none.
+  std::string named_file(const std::string& name) const;
   std::uint64_t size() const { return size_; }
   std::uint64_t remaining() const { return size_ - position_; }
 
@@ -91,6 +94,7 @@ class MeshInput {
   std::size_t buffered(std::size_t wanted);
 
   std::string path_;
+  ReadMeshOptions options_;
   FilePtr file_;
   std::uint64_t size_;
   std::uint64_t position_ = 0;  // of the next byte to hand out
@@ -173,6 +177,7 @@ void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
 TriangleMesh read_ply(MeshInput& input);
 TriangleMesh read_off(MeshInput& input);
+// PolyData and flat cells of unstructured grids, also of files that name others for their pieces.
 TriangleMesh read_vtp(MeshInput& input);
 TriangleMesh read_vtk(MeshInput& input);
 TriangleMesh read_glb(MeshInput& input);

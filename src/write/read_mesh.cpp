@@ -96,11 +96,13 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
   if (has_ending(path, ".gltf")) input.fail("does not begin with '{'");
   if (has_ending(path, ".vtk")) input.fail("does not begin with the line '# vtk DataFile Version'");
-  if (has_ending(path, ".vtp")) input.fail("does not begin with a '<VTKFile' tag");
+  for (const std::string_view ending : {".vtp", ".pvtp", ".vtu", ".pvtu"}) {
+    if (has_ending(path, ending)) input.fail("does not begin with a '<VTKFile' tag");
+  }
   if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
   if (has_ending(path, ".off")) input.fail("does not begin with a line such as 'OFF' or 'COFF'");
   if (named_obj || looks_like_obj(text_of(head))) return mesh_io::read_obj(input);
-  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTK, GLB, glTF or 3MF file");
+  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
 }
 
 // Programs write 'nan' as the normal of a vertex that has none. Such normals are of no use, and others are made from
@@ -123,8 +125,8 @@ void note_missing_triangles(TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::string& path) {
-  MeshInput input(path);
+TriangleMesh read_mesh(const std::string& path, const ReadMeshOptions& options) {
+  MeshInput input(path, options);
   const std::string head = input.head(kHeadBytes);
   const bool named_obj = has_ending(path, ".obj");
   std::optional<TriangleMesh> told = read_by_content(input, head, named_obj);

@@ -33,9 +33,32 @@ void put_vtp(Seeds& seeds) {
   }
   seeds.put("vtp", head + cells + "</Piece></PolyData><AppendedData encoding=\"raw\">_" + little(36) + points() +
                        "</AppendedData></VTKFile>");
+  seeds.put("pvtp",
+            "<VTKFile type=\"PPolyData\"><PPolyData><Piece Source=\"a_0.vtp\"/><Piece Source=\"a_0.vtp\"/></PPolyData>"
+            "</VTKFile>" +
+                kNext + head + cells + "</Piece></PolyData><AppendedData encoding=\"raw\">_" + little(36) + points() +
+                "</AppendedData></VTKFile>");
   const std::string base64 = "JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAA==";
   seeds.put("vtp", head + cells + "</Piece></PolyData><AppendedData encoding=\"base64\">_" + base64 +
                        "</AppendedData></VTKFile>");
+}
+
+// Triangle, pixel and line.
+void put_vtu(Seeds& seeds) {
+  const auto array = [](const std::string& attributes, const std::string& numbers) {
+    return "<DataArray " + attributes + " format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  const std::string grid =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"3\"><Points>" +
+      array("type=\"Float64\" NumberOfComponents=\"3\"", "0 0 0 1 0 0 0 1 0 1 1 0") + "</Points><Cells>" +
+      array("type=\"Int32\" Name=\"connectivity\"", "0 1 2 0 1 2 3 0 1") +
+      array("type=\"Int32\" Name=\"offsets\"", "3 7 9") + array("type=\"UInt8\" Name=\"types\"", "5 8 3") +
+      "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  seeds.put("vtu", grid);
+  seeds.put("pvtp",
+            "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"a_1.vtu\"/></PUnstructuredGrid>"
+            "</VTKFile>" +
+                kNext + kNext + grid);
 }
 
 void put_legacy(Seeds& seeds) {
@@ -100,6 +123,7 @@ void put_scenes(Seeds& seeds) {
   const auto length = static_cast<std::uint32_t>(binary.size());
   seeds.put("glb", "glTF" + little(2) + little(28 + length + 36) + little(length) + "JSON" + binary + little(36) +
                        std::string("BIN\0", 4) + points());
+  seeds.put("gltf", scene + R"(,"uri":"%61.bin"}]})" + kNext + points());
   seeds.put("gltf", scene + R"(,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
 }
 
@@ -107,6 +131,7 @@ void put_scenes(Seeds& seeds) {
 
 void put_packages(Seeds& seeds) {
   put_vtp(seeds);
+  put_vtu(seeds);
   put_legacy(seeds);
   put_archives(seeds);
   put_models(seeds);

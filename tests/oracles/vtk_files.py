@@ -86,7 +86,10 @@ def write_stl(corners, path):
 
 
 def write_vtp(mesh, path, mode, compressor="None", bits=64, big=False, pieces=1):
-    writer = vtk.vtkXMLPolyDataWriter()
+    write_xml(vtk.vtkXMLPolyDataWriter(), mesh, path, mode, compressor, bits, big, pieces)
+
+
+def write_xml(writer, mesh, path, mode, compressor, bits, big, pieces=1):
     writer.SetInputData(mesh)
     writer.SetFileName(path)
     if mode == "Raw":
@@ -159,7 +162,48 @@ class Meshes:
             write_legacy(grid, path, binary, version)
             self.expect(mesh, path)
 
-    def gltf(self):
+    def xml_grid(self):
+        mesh = surface("quads")
+        grid = vtk.vtkUnstructuredGrid()
+        grid.SetPoints(mesh.GetPoints())
+        grid.SetCells(vtk.VTK_QUAD, mesh.GetPolys())
+        path = os.path.join(self.folder, "grid.vtu")
+        for mode, compressor, bits, big in itertools.product(
+                ("Ascii", "Binary", "Appended", "Raw"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64), (False, True)):
+            if mode == "Ascii" and (compressor != "None" or big):
+                continue
+            write_xml(vtk.vtkXMLUnstructuredGridWriter(), grid, path, mode, compressor, bits, big)
+            self.expect(mesh, path)
+
+    def parts(self, kind):
+        """A file that names one for each piece: the source is cut by VTK's own filter."""
+        whole = surface(kind)
+        cut = vtk.vtkAppendPolyData()
+        for shift in (0, 5, 9):
+            moved = vtk.vtkTransformPolyDataFilter()
+            transform = vtk.vtkTransform()
+            transform.Translate(shift, 0, 0)
+            moved.SetTransform(transform)
+            moved.SetInputData(whole)
+            cut.AddInputConnection(moved.GetOutputPort())
+        cut.Update()
+        for mode in ("Ascii", "Binary", "Appended"):
+            writer = vtk.vtkXMLPPolyDataWriter()
+            writer.SetInputConnection(cut.GetOutputPort())
+            writer.SetNumberOfPieces(2)
+            writer.SetStartPiece(0)
+            writer.SetEndPiece(1)
+            getattr(writer, f"SetDataModeTo{mode}")()
+            path = os.path.join(self.folder, "parts.pvtp")
+            writer.SetFileName(path)
+            assert writer.Write() == 1
+            reader = vtk.vtkXMLPPolyDataReader()
+            reader.SetFileName(path)
+            reader.Update()
+            assert open(path).read().count("<Piece Source") >= 1
+            self.expect(reader.GetOutput(), path)
+
+    def gltf(self, inline):
         """A scene in metres: an actor that is turned, doubled and moved, as one of the nodes."""
         source = vtk.vtkSphereSource()
         mapper = vtk.vtkPolyDataMapper()
@@ -176,8 +220,8 @@ class Meshes:
         window.AddRenderer(renderer)
         exporter = vtk.vtkGLTFExporter()
         exporter.SetRenderWindow(window)
-        exporter.InlineDataOn()
-        path = os.path.join(self.folder, "scene.gltf")
+        exporter.SetInlineData(inline)
+        path = os.path.join(self.folder, f"scene{inline}.gltf")
         exporter.SetFileName(path)
         exporter.Write()
         properties = vtk.vtkMassProperties()
@@ -334,7 +378,11 @@ def main(program, dump):
             meshes.vtp(kind)
             meshes.legacy(kind)
         meshes.grid()
-        meshes.gltf()
+        for inline in (True, False):
+            meshes.gltf(inline)
+        meshes.xml_grid()
+        for kind in ("sphere", "strips"):
+            meshes.parts(kind)
         volumes = Volumes(oracle, dump, folder)
         for kind in (*TYPES, "bit"):
             for cells in (False, True):
