@@ -160,7 +160,7 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
   verb.add_option(
       "--even-spacing", input.even_spacing,
-      "DICOM slices at uneven distances: resample (read slices at an even one, interpolated), mean (as they "
+      "Slices at uneven distances (DICOM, VTK): resample (read slices at an even one, interpolated), mean (as they "
       "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
                   "Which array of an HDF5, NPZ or VTK file or of a Zarr or N5 folder, by its path or name in it");

@@ -40,6 +40,7 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
   if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
   if (name.ends_with(".png")) return "the magic of PNG";
+  if (name.ends_with(".vtr")) return "<VTKFile type=\"RectilinearGrid\">";
   if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
   if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
   if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes, or the elements of a DICOM data set";
@@ -141,7 +142,7 @@ bool is_one_of(std::string_view format, std::initializer_list<std::string_view> 
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
   // The files of VTK and NumPy have arrays with names, and no levels.
-  const bool named = array || is_one_of(info.format, {"vti", "vtk", "npz"});
+  const bool named = array || is_one_of(info.format, {"vti", "vtr", "vtk", "npz"});
   if ((!named && !options.dataset.empty()) || (!array && options.level)) {
     bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
   }

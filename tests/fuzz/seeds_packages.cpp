@@ -1,4 +1,4 @@
-// Seeds in packages and scenes: meshes in VTP, legacy VTK, 3MF and GLB, arrays in NPZ.
+// Seeds in packages and scenes: meshes in VTP, VTU, legacy VTK, 3MF and GLB, volumes in VTR and NPZ.
 #include "foreign_meshes.hpp"
 #include "header_helpers.hpp"
 #include "seeds.hpp"
@@ -77,6 +77,22 @@ void put_legacy(Seeds& seeds) {
                        "4\nVECTORS v float\n1 2 3 4 5 6 7 8 9 10 11 12\nCOLOR_SCALARS c 1\n0 0.25 0.5 1\n");
 }
 
+// A grid whose slices lie at 0, 1 and 3, and one in two pieces.
+void put_grids(Seeds& seeds) {
+  const auto array = [](const std::string& type, const std::string& numbers) {
+    return "<DataArray type=\"" + type + "\" Name=\"s\" format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  const auto piece = [&](const std::string& extent, const std::string& z, const std::string& samples) {
+    return "<Piece Extent=\"" + extent + "\"><PointData>" + array("Int16", samples) + "</PointData><Coordinates>" +
+           array("Float32", "0 1") + array("Int32", "0") + array("Float64", z) + "</Coordinates></Piece>";
+  };
+  const std::string head =
+      "<VTKFile type=\"RectilinearGrid\" byte_order=\"BigEndian\"><RectilinearGrid WholeExtent=\"0 1 0 0 0 2\">";
+  const std::string end = "</RectilinearGrid></VTKFile>";
+  seeds.put("vtr", head + piece("0 1 0 0 0 2", "0 1 3", "1 2 3 4 5 6") + end);
+  seeds.put("vtr", head + piece("0 1 0 0 0 1", "5 4", "1 2 3 4") + piece("0 1 0 0 1 2", "4 3", "3 4 5 6") + end);
+}
+
 // Arrays of NumPy in an archive: one, and two of which one has three axes.
 void put_archives(Seeds& seeds) {
   const std::string samples(60, '\7');
@@ -133,6 +149,7 @@ void put_packages(Seeds& seeds) {
   put_vtp(seeds);
   put_vtu(seeds);
   put_legacy(seeds);
+  put_grids(seeds);
   put_archives(seeds);
   put_models(seeds);
   put_scenes(seeds);

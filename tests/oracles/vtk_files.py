@@ -327,6 +327,32 @@ class Volumes:
             assert writer.Write() == 1
             self.expect(path, values, first)
 
+    def vtr(self, kind, cells):
+        data, values = image(kind, cells, grid=True)
+        first = np.array(ORIGIN) + np.array(SPACING) * (0.5 if cells else 0)
+        path = os.path.join(self.folder, f"{kind}{cells}.vtr")
+        for mode, compressor, bits, big in itertools.product(
+                ("Ascii", "Binary", "Appended", "Raw"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64), (False, True)):
+            if mode == "Ascii" and (compressor != "None" or big):
+                continue
+            write_xml(vtk.vtkXMLRectilinearGridWriter(), data, path, mode, compressor, bits, big)
+            self.expect(path, values, first)
+
+    def uneven_slices(self):
+        """Of slices at 0, 1, 3, 4 and 5 six are made, one of them between two."""
+        data, values = image("float32", grid=True)
+        places = np.array([0, 1, 3, 4, 5]) * SPACING[2] + ORIGIN[2]
+        data.SetZCoordinates(numpy_to_vtk(places, deep=True))
+        made = np.insert(values, 2, (values[1].astype(float) + values[2]) / 2, axis=0)
+        for writer, name in ((vtk.vtkXMLRectilinearGridWriter(), "u.vtr"), (vtk.vtkRectilinearGridWriter(), "u.vtk")):
+            path = os.path.join(self.folder, name)
+            writer.SetInputData(data)
+            writer.SetFileName(path)
+            if name == "u.vtk":
+                writer.SetFileTypeToBinary()
+            assert writer.Write() == 1
+            self.expect(path, made, np.array(ORIGIN))
+
     def pieces(self):
         """In one file and in several; a source that can be cut is needed for that."""
         source = vtk.vtkRTAnalyticSource()
@@ -392,6 +418,10 @@ def main(program, dump):
             volumes.legacy(kind, cells, grid, active=True)
         volumes.legacy("uint8", False, grid=False, active=False)
         volumes.legacy("uint16", True, grid=False, active=False)
+        for kind in ("int16", "float64", "uint8"):
+            for cells in (False, True):
+                volumes.vtr(kind, cells)
+        volumes.uneven_slices()
         volumes.pieces()
     oracle.finish()
 
