@@ -78,7 +78,8 @@ constexpr auto kUnread = std::to_array<Unread>({
     {0, "glTF"sv, "a mesh in GLB", kMesh},
     {0, "OFF\n"sv, "a mesh in OFF", kMesh},
     {0, "OFF "sv, "a mesh in OFF", kMesh},
-    {0, "ncaa\n"sv, "VFF", "--raw ...:big reads the samples behind its header"},
+    {0, "ncaa\n"sv, "VFF",
+     "--raw ...:big:skip=N reads the samples behind its header, by size= and bits=, from behind the form feed"},
 });
 
 std::string sentence(std::string_view what, std::string_view way) {
