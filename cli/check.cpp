@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kListedPairs = 10;
 
 struct CheckArguments {
+  ReadMeshOptions reading;
   std::string path, threads = "all";
   bool self_intersections = false, json = false, weld = false;
 };
@@ -107,7 +108,7 @@ void tell_input(const CheckArguments& arguments, const InputMesh& input, const M
 void run_check(const CheckArguments& arguments) {
   const int threads = parse_threads(arguments.threads);
   exit_on_signal();
-  const InputMesh input = read_input_mesh(arguments.path, arguments.weld);
+  const InputMesh input = read_input_mesh(arguments.path, arguments.reading, arguments.weld);
   const TriangleMesh& mesh = input.mesh;
   const MeshCheck check = check_mesh(mesh);
   Json json = check_json(check, arguments.path);
@@ -127,10 +128,11 @@ void run_check(const CheckArguments& arguments) {
 void add_check_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
-  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   add_weld_option(*verb, arguments->weld);
   verb->add_flag("--self-intersections", arguments->self_intersections,
                  "Count the pairs of triangles that meet beyond what they share, exactly");
+  add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_check(*arguments); });

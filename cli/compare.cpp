@@ -21,6 +21,7 @@ namespace {
 constexpr std::int64_t kMostBins = 1'000'000;
 
 struct CompareArguments {
+  ReadMeshOptions reading;
   std::string a, b, samples = "500000", threads = "all", voxel, histogram, distances;
   bool json = false;
 };
@@ -59,8 +60,8 @@ void write_distances(const CompareArguments& arguments, TriangleMesh& a, const T
   write_mesh(arguments.distances, a, options);
 }
 
-TriangleMesh read_surface(const std::string& path) {
-  TriangleMesh mesh = read_mesh(path);
+TriangleMesh read_surface(const std::string& path, const ReadMeshOptions& options) {
+  TriangleMesh mesh = read_named_mesh(path, options);
   if (mesh.triangles.empty()) throw BadInput(path + ": expected a mesh with triangles, found none");
   print_mesh_warnings(path, mesh);
   return mesh;
@@ -93,8 +94,8 @@ void run_compare(const CompareArguments& arguments) {
   check_different({arguments.a, arguments.distances});
   check_different({arguments.b, arguments.distances});
   exit_on_signal();
-  TriangleMesh a = read_surface(arguments.a);
-  TriangleMesh b = read_surface(arguments.b);
+  TriangleMesh a = read_surface(arguments.a, arguments.reading);
+  TriangleMesh b = read_surface(arguments.b, arguments.reading);
   const std::vector<std::string> notes = match(b, a, arguments);
   const MeshDistance distance = compare_meshes(a, b, options);
   if (!arguments.distances.empty()) write_distances(arguments, a, b, options.threads);
@@ -136,6 +137,7 @@ void add_compare_verb(CLI::App& app) {
   verb->add_option("--histogram", arguments->histogram, "Counts the distances in so many equal parts, both ways");
   verb->add_option("--distances", arguments->distances,
                    "Write A as PLY with the distance to B at each vertex, as the property quality");
+  add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_compare(*arguments); });

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "isoweave/weld.hpp"
+#include "options.hpp"
 #include "output.hpp"
 
 namespace isoweave::cli {
@@ -14,8 +15,18 @@ void add_weld_option(CLI::App& verb, bool& weld) {
                 "Make one vertex of all that have equal coordinates; normals and values are those of the first");
 }
 
-InputMesh read_input_mesh(const std::string& path, bool weld) {
-  InputMesh input{read_mesh(path)};
+void add_external_option(CLI::App& verb, ReadMeshOptions& options) {
+  verb.add_flag_callback(
+      "--no-external", [&options] { options.external = false; },
+      "Refuse a mesh file that names other files: for files from strangers");
+}
+
+TriangleMesh read_named_mesh(const std::string& path, const ReadMeshOptions& options) {
+  return read_mesh(input_file(path), options);
+}
+
+InputMesh read_input_mesh(const std::string& path, const ReadMeshOptions& options, bool weld) {
+  InputMesh input{read_named_mesh(path, options)};
   if (weld) input.welded = weld_vertices(input.mesh);
   return input;
 }

@@ -10,6 +10,9 @@
 
 namespace isoweave::cli {
 
+inline constexpr const char* kMeshInputHelp =
+    "Mesh to read: PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF, in gzip too; - is standard input";
+
 void add_weld_option(CLI::App& verb, bool& weld);
 
 struct InputMesh {
@@ -17,7 +20,12 @@ struct InputMesh {
   std::uint64_t welded = 0;  // vertices that --weld has taken away
 };
 
-InputMesh read_input_mesh(const std::string& path, bool weld);
+void add_external_option(CLI::App& verb, ReadMeshOptions& options);
+
+// The mesh that a user names.
+TriangleMesh read_named_mesh(const std::string& path, const ReadMeshOptions& options);
+
+InputMesh read_input_mesh(const std::string& path, const ReadMeshOptions& options, bool weld);
 
 // Notes on a mesh that was read, for the user, one line each.
 std::vector<std::string> mesh_warnings(const std::string& path, const TriangleMesh& mesh);

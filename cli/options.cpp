@@ -161,10 +161,10 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
   verb.add_option(
       "--even-spacing", input.even_spacing,
-      "DICOM slices at uneven distances: resample (read slices at an even one, interpolated), mean (as they "
+      "Slices at uneven distances (DICOM, VTK): resample (read slices at an even one, interpolated), mean (as they "
       "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
-                  "Which array of an HDF5 or VTK file or of a Zarr or N5 folder, by its path or name in it");
+                  "Which array of an HDF5, NPZ or VTK file or of a Zarr or N5 folder, by its path or name in it");
   verb.add_option("--level", input.level,
                   "Which of the sizes of an image in OME-Zarr, N5 or Imaris, 0 being the full one");
   verb.add_option("--channel", input.channel, "Which channel of a stack or array, from 0");
@@ -178,6 +178,8 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
       "Refuse a header that names other files, and links out of a folder: for files from strangers");
   verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
 }
+
+std::string input_file(const std::string& path) { return path == kStandardInput ? "/dev/stdin" : path; }
 
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   if (!input.path.starts_with(kGeneratePrefix)) return std::nullopt;
@@ -238,7 +240,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   }
   options.uneven_slices = parse_uneven(input.even_spacing);
   options.external = input.external;
-  return open_volume(input.path == kStandardInput ? "/dev/stdin" : input.path, options);
+  return open_volume(input_file(input.path), options);
 }
 
 // One end of a range, or what it is when it is left out.

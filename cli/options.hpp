@@ -49,6 +49,9 @@ T parse_choice(std::string_view option, std::string_view text,
 
 Quality parse_quality(std::string_view text);
 
+// The file that a user names: "-" is standard input.
+std::string input_file(const std::string& path);
+
 // Where a volume comes from: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
 struct InputOptions {
   std::string path;

@@ -36,6 +36,7 @@ constexpr std::int64_t kMostPixels = 16384;
 constexpr std::int64_t kMostSamples = 8;
 
 struct RenderArguments {
+  ReadMeshOptions reading;
   std::string path, output, size = "1200x900", view = "35,20", background = "white", colour = "#decdb4", colour_by,
                             range;
   std::string shading = "smooth", samples = "3", threads = "all";
@@ -129,7 +130,7 @@ void run_render(const RenderArguments& arguments) {
   check_different({arguments.path, arguments.output});
   check_output(arguments.output);
   exit_on_signal();
-  TriangleMesh mesh = read_mesh(arguments.path);
+  TriangleMesh mesh = read_named_mesh(arguments.path, arguments.reading);
   if (mesh.triangles.empty()) throw BadInput(arguments.path + ": expected a mesh with triangles, found none");
   if (!arguments.quiet) print_mesh_warnings(arguments.path, mesh);
   if (arguments.colour_by.empty()) {
@@ -149,7 +150,7 @@ void run_render(const RenderArguments& arguments) {
 void add_render_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("render", "A picture of a mesh as PNG, without a display");
   const auto arguments = std::make_shared<RenderArguments>();
-  verb->add_option("MESH", arguments->path, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   verb->add_option("-o,--output", arguments->output, "Picture to write: .png")->required();
   verb->add_option("--size", arguments->size, "Pixels: WxH")->capture_default_str();
   verb->add_option("--view", arguments->view, "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION")
@@ -165,6 +166,7 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--shading", arguments->shading, "smooth or flat")->capture_default_str();
   verb->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the triangles");
   verb->add_option("--samples", arguments->samples, "Samples along each side of a pixel")->capture_default_str();
+  add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);

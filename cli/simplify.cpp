@@ -29,6 +29,7 @@ Examples:
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
+  ReadMeshOptions reading;
   std::string input, quality = "normal";
   StopOptions stop;
   ComponentOptions components;
@@ -134,7 +135,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   }
 
   exit_on_signal();
-  InputMesh input = read_input_mesh(arguments.input, arguments.weld);
+  InputMesh input = read_input_mesh(arguments.input, arguments.reading, arguments.weld);
   TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
   const Json place = place_json(mesh);
@@ -178,7 +179,7 @@ void run_simplify(const SimplifyArguments& arguments) {
 void add_simplify_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
   const auto arguments = std::make_shared<SimplifyArguments>();
-  verb->add_option("MESH", arguments->input, "Mesh to read: PLY, STL, OBJ, OFF, VTP, GLB or 3MF")->required();
+  verb->add_option("MESH", arguments->input, kMeshInputHelp)->required();
   add_output_options(*verb, arguments->output);
   add_stop_options(*verb, arguments->stop);
   add_weld_option(*verb, arguments->weld);
@@ -187,6 +188,7 @@ void add_simplify_verb(CLI::App& app) {
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);
   verb->footer(kExamples);
+  add_external_option(*verb, arguments->reading);
   verb->callback([arguments] { run_simplify(*arguments); });
 }
 

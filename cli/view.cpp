@@ -28,13 +28,17 @@ Examples:
 The report is one that mesh or simplify wrote (--report); the page shows the mesh that it names.)";
 
 struct ViewArguments {
+  ReadMeshOptions reading;
   std::string input, before, threads = "all";
   PageOptions page;
   bool quiet = false;
 };
 
-// No mesh begins like this.
-bool is_json(const std::string& path) {
+// A scene of glTF begins like this as well, and is told by its name. A pipe, which can be read once, is taken for a
+// mesh.
+bool is_report(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || path.ends_with(".gltf")) return false;
   std::ifstream file(path, std::ios::binary);
   char c = ' ';
   while (std::isspace(static_cast<unsigned char>(c)) != 0 && file.get(c)) continue;
@@ -69,15 +73,15 @@ void run_view(ViewArguments arguments) {
   check_page(arguments.page, "view");
   RunControl control;
   control.threads = parse_threads(arguments.threads);
-  if (!arguments.page.given()) arguments.page.path = arguments.input + ".html";
+  if (!arguments.page.given()) arguments.page.path = (arguments.input == "-" ? "stdin" : arguments.input) + ".html";
 
   exit_on_signal();
-  const bool reported = is_json(arguments.input);
+  const bool reported = is_report(arguments.input);
   Json report = reported ? read_report(arguments.input) : Json::object();
   const std::string mesh_path = reported ? mesh_of(report, arguments.input) : arguments.input;
   check_different(
       {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
-  PageContents contents{read_mesh(mesh_path)};
+  PageContents contents{read_named_mesh(mesh_path, arguments.reading)};
   if (!arguments.quiet) print_mesh_warnings(mesh_path, contents.mesh);
   if (report.contains("levels")) {
     for (const Json& level : report["levels"]) contents.finer.push_back(read_mesh(mesh_of(level, arguments.input)));
@@ -87,7 +91,7 @@ void run_view(ViewArguments arguments) {
         "No surface from before simplification was given: there is no before and after, and no "
         "error to show (isoweave view --before MESH, or --html of the run itself).";
   } else {
-    contents.full = read_mesh(arguments.before);
+    contents.full = read_named_mesh(arguments.before, arguments.reading);
     for (const std::string& note : match_place(*contents.full, contents.mesh)) {
       if (!arguments.quiet) print_note(arguments.before + ": " + note);
     }
@@ -110,6 +114,7 @@ void add_view_verb(CLI::App& app) {
   verb->add_option("-o,--output", arguments->page.path, "Page to write (default: the name and .html)");
   verb->add_option("--before", arguments->before, "Mesh before simplification, to compare with");
   add_page_triangles(*verb, arguments->page);
+  add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all")->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);

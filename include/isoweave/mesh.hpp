@@ -29,16 +29,21 @@ struct TriangleMesh {
   std::vector<std::string> notes{};  // things a user should know, one line each: what a file has and is not kept
 };
 
+struct ReadMeshOptions {
+  bool external = true;  // whether a file may name others; false, for files from strangers: BadInput
+};
+
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
-// vertex), OBJ (v and f), OFF, VTP and legacy VTK (polygons and strips), GLB and glTF (where the nodes place them; what
-// isoweave wrote as stored, without the node's unit and axes, and of several levels the finest; not compressed), and
-// 3MF (all that is to be built, at its place); told by content, then by name.
-// Polygons are cut into triangles. Throws BadInput for what is missing, truncated, out of range or not understood. OBJ
-// normals are kept if numbered like the vertices, those of PLY, OFF, VTP, VTK and GLB always. Values: the number that a
-// PLY, VTP or VTK file has for each vertex, as docs/formats.md says; `notes` say what is not kept. Where a file has
-// more than 32 bits, and rounding to 32 would move a vertex by more than a thousandth of the root of twice the mean
-// triangle area, the mesh gets an offset: the one that the file names, or one near its middle.
-TriangleMesh read_mesh(const std::string& path);
+// vertex), OBJ (v and f), OFF, VTP, VTU and legacy VTK (polygons and strips, PVTP and PVTU with the files they name),
+// GLB and glTF (where the nodes place them; what isoweave wrote as stored, without the node's unit and axes, and of
+// several levels the finest; not compressed), and 3MF (all that is to be built, at its place); told by content, then by
+// name; in gzip, too, and out of pipes, which are kept in a file without a name in $TMPDIR (CannotWrite where there is
+// no room). Polygons are cut into triangles. Throws BadInput for what is missing, truncated, out of range or not
+// understood. OBJ normals are kept if numbered like the vertices, those of PLY, OFF, VTP, VTK and GLB always. Values:
+// the number that a PLY, VTP or VTK file has for each vertex, as docs/formats.md says; `notes` say what is not kept.
+// Where a file has more than 32 bits, and rounding to 32 would move a vertex by more than a thousandth of the root of
+// twice the mean triangle area, the mesh gets an offset: the one that the file names, or one near its middle.
+TriangleMesh read_mesh(const std::string& path, const ReadMeshOptions& options = {});
 
 // Makes the coordinates relative to another offset, rounded to 32 bits anew.
 void move_to_offset(TriangleMesh& mesh, const std::array<double, 3>& offset);

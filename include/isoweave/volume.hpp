@@ -114,7 +114,7 @@ RawLayout parse_raw_layout(std::string_view text);
 // Reads "foot_256x256x256_uint8.raw" as a layout; nothing if the name does not say one.
 std::optional<RawLayout> raw_layout_from_name(std::string_view path);
 
-// What becomes of slices that are not evenly spaced (DICOM):
+// What becomes of slices that are not evenly spaced (DICOM, rectilinear grids of VTK):
 //   refuse    BadInput, which names the distances
 //   resample  slices at an even distance, linear between the two nearest ones, on the way; a note says so
 //   mean      slices as they are, at their mean distance: not where they were
@@ -128,23 +128,23 @@ struct OpenOptions {
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
   std::string series;                            // UID of a DICOM series, where there are several; "none": without UID
-  std::string dataset;                           // path or name of an array in the file or folder (HDF5, Zarr, N5, VTK)
-  std::optional<std::int64_t> level;             // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
-  std::optional<std::int64_t> channel;           // index along the axis of channels; none: the first
-  std::optional<std::int64_t> time;              // index along the axis of time; none: the first
-  SliceAxis slices_from = SliceAxis::kSlices;    // where not kSlices, the axis of slices must have one sample
+  std::string dataset;                  // path or name of an array in the file or folder (HDF5, Zarr, N5, VTK, NPZ)
+  std::optional<std::int64_t> level;    // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
+  std::optional<std::int64_t> channel;  // index along the axis of channels; none: the first
+  std::optional<std::int64_t> time;     // index along the axis of time; none: the first
+  SliceAxis slices_from = SliceAxis::kSlices;  // where not kSlices, the axis of slices must have one sample
   UnevenSlices uneven_slices = UnevenSlices::kResample;
   bool external = true;  // whether a header may name other files; false, for files from strangers: BadInput
 };
 
 // Opens a volume; the format is told by its content, then by its name: NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, NPY,
-// PVM, TIFF, VTK, HDF5, raw and others, in gzip too, or out of a pipe. A folder of Zarr, OME-Zarr or N5 is an array of
-// chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of one file per slice: TIFF, PNG or, with
-// options.raw, samples alone, in the order of the numbers in their names; DICOM by position. A DICOM file stands for
-// the series it belongs to, a folder of DICOM for those below it too. docs/formats.md says what is read of each. Only
-// headers are read here, and their claims compared with the sizes of files. Throws BadInput when there is no file, no
-// slice, no known format or none of this build, or the header is wrong; CannotWrite when there is no room for a pipe's
-// content.
+// NPZ, PVM, TIFF, VTK, HDF5, raw and others, in gzip too, or out of a pipe. A folder of Zarr, OME-Zarr or N5 is an
+// array of chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of one file per slice: TIFF, PNG
+// or, with options.raw, samples alone, in the order of the numbers in their names; DICOM by position. A DICOM file
+// stands for the series it belongs to, a folder of DICOM for those below it too. docs/formats.md says what is read of
+// each. Only headers are read here, and their claims compared with the sizes of files. Throws BadInput when there is no
+// file, no slice, no known format or none of this build, or the header is wrong; CannotWrite when there is no room for
+// a pipe's content.
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
 
 // A box of samples: [first, end) along each axis.

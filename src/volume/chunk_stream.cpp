@@ -8,6 +8,7 @@
 
 #include "volume/band_stream.hpp"
 #include "volume/chunked_array.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/input_file.hpp"
 
 namespace isoweave {
@@ -221,6 +222,7 @@ OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice) {
       static_cast<std::uint64_t>(std::min(depth, info.dims[2])) * info.slice_bytes() + 2 * chunk_bytes(array);
   if (!stored) volume.constant = array.fill;
   volume.samples = std::make_unique<ChunkStream>(array, info, choice, depth);
+  if (array.is_half) read_halves(volume);
   return volume;
 }
 

@@ -31,6 +31,7 @@ struct ChunkedArray {
   std::vector<std::int64_t> chunk;
   std::vector<std::size_t> stored_order;  // axes as a chunk is stored, the slowest first
   SampleType type = SampleType::kUint8;
+  bool is_half = false;  // the samples are the bits of 16-bit floats
   bool big_endian = false;
   std::array<std::byte, 8> fill{};  // one sample as it would be stored
   std::vector<Codec> codecs;        // in the order in which they are undone

@@ -12,13 +12,14 @@
 
 namespace isoweave {
 
-// Where slices lie along the normal of their planes, ascending; lengths in millimetres.
+// Where slices lie along the normal of their planes, ascending.
 struct SlicePlaces {
   std::string path;  // of all of them, for messages
   std::vector<double> depths;
   std::function<std::string(std::size_t)> name;  // of a slice, for messages about several
   std::function<std::string(std::size_t)> file;  // its whole path
   double rounding = 0;                           // of the depths, where they are written in few digits
+  std::string unit = " mm";                      // of the depths, behind lengths in messages
 };
 
 // Slices at an even distance, the first and the last of them in the places of the first and the last that there are.

@@ -43,6 +43,11 @@ inline constexpr std::size_t kMrcHeadBytes = 1024;
 bool is_npy(std::string_view head);
 OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options);
 
+// Of an archive: by the first name in it, or by its own.
+bool is_npz(std::string_view head, std::string_view path);
+// The dataset of the options is the name of an array.
+OpenedVolume open_npz(const FilePtr& file, const OpenOptions& options);
+
 bool is_amira(std::string_view head);
 OpenedVolume open_amira(const FilePtr& file);
 

@@ -110,7 +110,7 @@ std::string text_of(const Hdf5Dataset& dataset) {
   return text + " " + dataset.type_text + ")";
 }
 
-constexpr std::string_view kReadTypes = "integers of 8 to 64 bits or floats of 32 or 64 bits";
+constexpr std::string_view kReadTypes = "integers of 8 to 64 bits or floats of 16 to 64 bits";
 
 // The one that is taken when none is named: the only one of three axes or more whose samples can be read.
 std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::string& path) {
@@ -323,7 +323,7 @@ OpenedVolume describe_volume(const Hdf5Dataset& dataset, const FoundDataset& fou
   VolumeInfo& info = volume.info;
   info.path = path;
   info.format = "hdf5";
-  info.type = *dataset.type;
+  info.type = dataset.type->type;
   info.dims = choice.dims(axes);
   info.part = "dataset " + found.name;
   for (const std::string& part : {found.place ? found.place->part : std::string(), choice.part}) {
@@ -371,6 +371,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   check_stored(volume.info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
   volume.held_bytes = 2 * static_cast<std::uint64_t>(depth) * volume.info.slice_bytes();
   volume.samples = std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth);
+  if (dataset.type->is_half) read_halves(volume);
   if (found.place && !found.place->slope.empty()) {
     scale_samples(volume, scaling_of(*found.place, axes, choice, path));
   }

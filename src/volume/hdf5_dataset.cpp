@@ -28,7 +28,8 @@ bool is_ieee(const Hdf5Functions& h5, hid_t type, std::size_t bytes) {
   Fields fields{};
   if (h5.tget_fields(type, &fields[0], &fields[1], &fields[2], &fields[3], &fields[4]) < 0) return false;
   const std::size_t bias = h5.tget_ebias(type);
-  return (bytes == 4 && fields == Fields{31, 23, 8, 0, 23} && bias == 127) ||
+  return (bytes == 2 && fields == Fields{15, 10, 5, 0, 10} && bias == 15) ||
+         (bytes == 4 && fields == Fields{31, 23, 8, 0, 23} && bias == 127) ||
          (bytes == 8 && fields == Fields{63, 52, 11, 0, 52} && bias == 1023);
 }
 
@@ -45,13 +46,9 @@ std::optional<Number> plain_number(const Hdf5Functions& h5, hid_t type) {
   return Number{kind, bytes, kind == H5T_INTEGER && h5.tget_sign(type) == H5T_SGN_2, order == H5T_ORDER_BE};
 }
 
-std::optional<SampleType> sample_type_of(const Number& number) {
-  if (number.kind == H5T_FLOAT) return number.bytes == 4 ? SampleType::kFloat32 : SampleType::kFloat64;
-  if (number.bytes == 1) return number.is_signed ? SampleType::kInt8 : SampleType::kUint8;
-  if (number.bytes == 2) return number.is_signed ? SampleType::kInt16 : SampleType::kUint16;
-  if (number.bytes == 4) return number.is_signed ? SampleType::kInt32 : SampleType::kUint32;
-  if (number.bytes == 8) return number.is_signed ? SampleType::kInt64 : SampleType::kUint64;
-  return std::nullopt;
+// "int16", "float32", ...
+std::string name_of(const Number& number) {
+  return (number.kind == H5T_FLOAT ? "float" : number.is_signed ? "int" : "uint") + std::to_string(8 * number.bytes);
 }
 
 // What a type is called in messages, where it is no number that machines have.
@@ -80,12 +77,9 @@ void take_type(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
   found.type_text = type < 0 ? "of another kind" : text_of_class(h5, type);
   const std::optional<Number> number = type < 0 ? std::nullopt : plain_number(h5, type);
   if (!number) return;
-  found.type = sample_type_of(*number);
+  found.type_text = name_of(*number);
+  found.type = parse_stored_type(found.type_text);
   found.big_endian = number->big_endian;
-  found.type_text = std::string(number->kind == H5T_FLOAT ? "float"
-                                : number->is_signed       ? "int"
-                                                          : "uint") +
-                    std::to_string(8 * number->bytes);
 }
 
 bool take_shape(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
@@ -167,7 +161,7 @@ std::optional<std::vector<double>> read_plain(const Hdf5Functions& h5, hid_t typ
   const std::optional<Number> number = plain_number(h5, type);
   const hssize_t count = h5.sget_simple_extent_npoints(space);
   if (!number || count < 1 || count > most) return std::nullopt;
-  const std::optional<SampleType> known = sample_type_of(*number);
+  const std::optional<SampleType> known = parse_sample_type(name_of(*number));
   if (!known) return std::nullopt;
   std::vector<std::byte> values(static_cast<std::size_t>(count) * number->bytes);
   if (read(values.data()) < 0) return std::nullopt;

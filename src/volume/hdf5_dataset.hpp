@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volume/array_places.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/hdf5_library.hpp"
 
 namespace isoweave {
@@ -13,7 +14,7 @@ namespace isoweave {
 struct Hdf5Dataset {
   std::string name;                 // its path in the file
   std::vector<std::int64_t> shape;  // from the slowest axis to the fastest
-  std::optional<SampleType> type;   // nothing: of a kind that is not read
+  std::optional<StoredType> type;   // nothing: of a kind that is not read
   bool big_endian = false;
   std::string type_text;  // for messages
 };

@@ -108,7 +108,9 @@ std::size_t axes_of_range(const std::vector<std::int64_t>& shape, std::size_t va
 }
 
 void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes& image, const Hdf5Dataset& dataset) {
-  if (!dataset.type || *dataset.type == SampleType::kFloat32 || *dataset.type == SampleType::kFloat64) return;
+  const bool is_real = !dataset.type || dataset.type->is_half || dataset.type->type == SampleType::kFloat32 ||
+                       dataset.type->type == SampleType::kFloat64;
+  if (is_real) return;
   const std::vector<double> least = values_in(file, "min"), most = values_in(file, "max");
   const bool empty =
       least == most && std::adjacent_find(least.begin(), least.end(), std::not_equal_to<>()) == least.end();
@@ -121,8 +123,8 @@ void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes&
               std::to_string(most.size()));
   }
   place.scaled_axes = axes_of_range(dataset.shape, least.size(), file.path);
-  const auto [low, high] = valid_range(image, *dataset.type);
-  const double largest_sample = std::ldexp(1.0, 8 * static_cast<int>(sample_bytes(*dataset.type)));
+  const auto [low, high] = valid_range(image, dataset.type->type);
+  const double largest_sample = std::ldexp(1.0, 8 * static_cast<int>(sample_bytes(dataset.type->type)));
   for (std::size_t n = 0; n < least.size(); ++n) {
     place.slope.push_back((most[n] - least[n]) / (high - low));
     place.intercept.push_back(least[n] - low * place.slope.back());

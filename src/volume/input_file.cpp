@@ -62,7 +62,7 @@ std::string DescriptorFile::system_path() const {
   return unnamed_ ? "/proc/self/fd/" + std::to_string(descriptor_) : path();
 }
 
-FilePtr open_file(const std::string& path) {
+FilePtr open_file(const std::string& path, std::string_view wanted) {
   // Without O_NONBLOCK, opening a named pipe would wait for a writer.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) bad_input(path, std::string("cannot be opened: ") + std::strerror(errno));
@@ -74,9 +74,9 @@ FilePtr open_file(const std::string& path) {
   }
   ::close(descriptor);
   if (!known) bad_input(path, std::string("cannot be examined: ") + std::strerror(error));
-  if (S_ISDIR(status.st_mode)) bad_input(path, "a volume file", "a directory");
+  if (S_ISDIR(status.st_mode)) bad_input(path, wanted, "a directory");
   if (!S_ISREG(status.st_mode)) bad_input(path, "a regular file", "a device, pipe or socket");
-  bad_input(path, "a volume file", "an empty file");
+  bad_input(path, wanted, "an empty file");
 }
 
 std::string beside(const std::string& header_path, const std::string& name) {

@@ -81,8 +81,11 @@ class DescriptorFile final : public InputFile {
   bool unnamed_;
 };
 
+// What messages say was expected where a file is empty or none.
+inline constexpr std::string_view kVolumeFile = "a volume file";
+
 // Throws BadInput when the path is missing, not a regular file, not readable or empty.
-FilePtr open_file(const std::string& path);
+FilePtr open_file(const std::string& path, std::string_view wanted = kVolumeFile);
 
 // The path of `name` as written in the header `header_path`: relative to the header's folder.
 std::string beside(const std::string& header_path, const std::string& name);

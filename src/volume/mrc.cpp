@@ -11,6 +11,7 @@
 
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/header_fields.hpp"
 #include "volume/header_text.hpp"
 #include "volume/volumes_in_row.hpp"
@@ -22,6 +23,7 @@ constexpr std::int32_t kImodStamp = 1146047817;
 constexpr std::int32_t kImodSignedBytes = 1;
 constexpr std::int32_t kImodTurnedOrigin = 4;
 constexpr std::int32_t kStackOfVolumes = 401;  // space group
+constexpr std::int32_t kHalfMode = 12;         // 16-bit floats
 
 struct MrcHeader {
   bool swapped = false;
@@ -110,13 +112,11 @@ SampleType sample_type_of(const MrcHeader& header, VolumeInfo& info) {
     case 2:
       return SampleType::kFloat32;
     case 6:
+    case kHalfMode:
       return SampleType::kUint16;
     case 3:
     case 4:
       name = " (complex numbers)";
-      break;
-    case 12:
-      name = " (16-bit floats)";
       break;
     case 16:
       name = " (RGB)";
@@ -127,7 +127,7 @@ SampleType sample_type_of(const MrcHeader& header, VolumeInfo& info) {
     default:
       break;
   }
-  bad_input(info.path, "the MRC mode 0, 1, 2 or 6 (8- or 16-bit integers or 32-bit floats)",
+  bad_input(info.path, "the MRC mode 0, 1, 2, 6 or 12 (8- or 16-bit integers, 16- or 32-bit floats)",
             std::to_string(header.mode) + name);
 }
 
@@ -236,6 +236,7 @@ OpenedVolume open_mrc(const FilePtr& file, const OpenOptions& options) {
   const std::uint64_t begin = kMrcHeadBytes + static_cast<std::uint64_t>(header->extended);
   volume.samples = samples_in(file, begin + before, checked_volume_bytes(info));
   volume.swap_bytes = header->swapped;
+  if (header->mode == kHalfMode) read_halves(volume);
   return volume;
 }
 

@@ -10,20 +10,15 @@
 #include "volume/array_axes.hpp"
 #include "volume/band_stream.hpp"
 #include "volume/formats.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/header_text.hpp"
+#include "volume/npy_array.hpp"
 #include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-
-struct NpyHeader {
-  std::string type;  // "<i2"
-  bool first_fastest = false;
-  std::vector<ArrayAxis> axes;
-  std::uint64_t data = 0;  // byte of the first sample
-};
 
 // The dictionary of a header: texts, truth values and tuples of whole numbers between braces.
 class NpyDictionary {
@@ -106,7 +101,9 @@ class NpyDictionary {
   int keys_ = 0;
 };
 
-NpyHeader read_header(const FilePtr& file) {
+}  // namespace
+
+NpyHeader read_npy_header(const FilePtr& file) {
   constexpr std::size_t kBeforeLength = 8;
   const std::string head = file->head(kLargestHeader);
   const int version = head.size() > kMagic.size() ? head[kMagic.size()] : 0;
@@ -125,19 +122,22 @@ NpyHeader read_header(const FilePtr& file) {
   return header;
 }
 
-// "<i2": the byte order, the kind and the bytes of a number.
-SampleType sample_type_of(const std::string& type, std::string_view path) {
-  if (type.size() == 3) {
-    const std::string bits = std::to_string(8 * (type[2] - '0'));
-    std::optional<SampleType> found;
-    if (type[1] == 'u') found = parse_sample_type("uint" + bits);
-    if (type[1] == 'i') found = parse_sample_type("int" + bits);
-    if (type[1] == 'f') found = parse_sample_type("float" + bits);
-    if (type.substr(1) == "b1") found = SampleType::kUint8;
-    if (found) return *found;
-  }
-  bad_input(path, "integers of 8 to 64 bits, floats of 32 or 64 bits, or truth values",
-            "numbers of type " + quoted(type));
+std::optional<StoredType> npy_type(const NpyHeader& header) {
+  const std::string& type = header.type;
+  if (type.size() != 3) return std::nullopt;
+  const std::string bits = std::to_string(8 * (type[2] - '0'));
+  if (type[1] == 'u') return parse_stored_type("uint" + bits);
+  if (type[1] == 'i') return parse_stored_type("int" + bits);
+  if (type[1] == 'f') return parse_stored_type("float" + bits);
+  return type.substr(1) == "b1" ? std::optional(StoredType{}) : std::nullopt;
+}
+
+namespace {
+
+StoredType stored_type_of(const NpyHeader& header, std::string_view path) {
+  if (const std::optional<StoredType> type = npy_type(header)) return *type;
+  bad_input(path, "integers of 8 to 64 bits, floats of 16 to 64 bits, or truth values",
+            "numbers of type " + quoted(header.type));
 }
 
 bool is_swapped(const std::string& type) {
@@ -227,15 +227,13 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const NpyHeader& hea
 
 bool is_npy(std::string_view head) { return head.starts_with(kMagic); }
 
-OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options) {
-  const NpyHeader header = read_header(file);
+OpenedVolume open_npy_array(const FilePtr& file, const NpyHeader& header, const OpenOptions& options) {
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "npy";
-  if (!options.dataset.empty() || options.level)
-    bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", "NPY");
-  info.type = sample_type_of(header.type, info.path);
+  const StoredType type = stored_type_of(header, info.path);
+  info.type = type.type;
   const AxisChoice choice = choose_axes(header.axes, options, info.path);
   check_whole(file, header, info.type);
   info.dims = choice.dims(header.axes);
@@ -245,7 +243,15 @@ OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options) {
   checked_volume_bytes(info);
   volume.samples = samples_of(file, header, choice, info);
   volume.swap_bytes = is_swapped(header.type);
+  if (type.is_half) read_halves(volume);
   return volume;
+}
+
+OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options) {
+  const NpyHeader header = read_npy_header(file);
+  if (!options.dataset.empty() || options.level)
+    bad_input(file->path(), "HDF5, Zarr or N5 for --dataset and --level", "NPY");
+  return open_npy_array(file, header, options);
 }
 
 }  // namespace isoweave

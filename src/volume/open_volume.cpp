@@ -41,15 +41,18 @@ std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".raw")) return "a layout in the name, as in name_256x256x128_uint8.raw";
   if (name.ends_with(".tif") || name.ends_with(".tiff")) return "the magic of TIFF or BigTIFF";
   if (name.ends_with(".png")) return "the magic of PNG";
+  if (name.ends_with(".vtr")) return "<VTKFile type=\"RectilinearGrid\">";
   if (name.ends_with(".vti")) return "<VTKFile type=\"ImageData\">";
   if (name.ends_with(".vtk")) return "the line '# vtk DataFile Version'";
   if (name.ends_with(".dcm")) return "DICM behind a preamble of 128 bytes, or the elements of a DICOM data set";
   if (name.ends_with(".am")) return "the line '# AmiraMesh'";
   if (name.ends_with(".npy")) return "the magic of NPY";
+  if (name.ends_with(".npz")) return "a zip archive of NPY files";
   if (name.ends_with(".mgh") || name.ends_with(".mgz")) return "an MGH header of version 1";
   if (is_mrc_name(name)) return "an MRC header with dimensions, mode and axes";
   if (name.ends_with(".h5") || name.ends_with(".hdf5")) return "the magic of HDF5";
-  return "NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, AmiraMesh, FITS, SLC, PVM, TIFF, PNG, DICOM, VTK, HDF5, NPY, or "
+  return "NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, AmiraMesh, FITS, SLC, PVM, TIFF, PNG, DICOM, VTK, HDF5, NPY, NPZ, "
+         "or "
          "raw with a layout";
 }
 
@@ -98,6 +101,7 @@ OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   if (is_metaimage(head)) return open_metaimage(file, options);
   if (is_nifti(head)) return open_nifti(file, options);
   if (is_npy(head)) return open_npy(file, options);
+  if (is_npz(head, file->path())) return open_npz(jumping_file(file), options);
   if (is_mrc(head)) return open_mrc(file, options);
   if (is_amira(head)) return open_amira(file);
   if (is_slc(head)) return open_slc(file);
@@ -138,18 +142,19 @@ bool is_one_of(std::string_view format, std::initializer_list<std::string_view> 
 // Options that choose among what other formats do not have. Readers that have it refuse what is not in the file.
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
-  // VTK's files have arrays with names, and no levels.
-  const bool named = array || is_one_of(info.format, {"vti", "vtk"});
+  // The files of VTK and NumPy have arrays with names, and no levels.
+  const bool named = array || is_one_of(info.format, {"vti", "vtr", "vtk", "npz"});
   if ((!named && !options.dataset.empty()) || (!array && options.level)) {
     bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
   }
-  const bool axes =
-      array || is_one_of(info.format, {"npy", "tiff", "nifti", "nrrd", "metaimage", "analyze", "mgh", "mrc", "fits"});
+  const bool axes = array || is_one_of(info.format, {"npy", "npz", "tiff", "nifti", "nrrd", "metaimage", "analyze",
+                                                     "mgh", "mrc", "fits"});
   if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {
-    bad_input(info.path,
-              "NPY, Analyze, MGH, MRC, FITS, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and "
-              "--slices-from",
-              info.format);
+    bad_input(
+        info.path,
+        "NPY, NPZ, Analyze, MGH, MRC, FITS, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and "
+        "--slices-from",
+        info.format);
   }
 }
 

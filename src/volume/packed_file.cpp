@@ -22,25 +22,35 @@ std::uint64_t most_bytes(const InputFile& stored) {
 
 bool is_gzip(std::string_view head) { return head.starts_with("\x1f\x8b"); }
 
-FilePtr unpacked(const FilePtr& file) { return is_gzip(file->head(2)) ? std::make_shared<PackedFile>(file) : file; }
+FilePtr unpacked(const FilePtr& file, std::string_view wanted) {
+  return is_gzip(file->head(2)) ? std::make_shared<PackedFile>(file, wanted) : file;
+}
 
-PackedFile::PackedFile(FilePtr stored)
-    : InputFile(stored->path(), most_bytes(*stored)), stored_(std::move(stored)), stream_(from_start()) {
+PackedFile::PackedFile(const FilePtr& stored, std::string_view wanted)
+    : InputFile(stored->path(), most_bytes(*stored)), from_start_([stored] {
+        return std::make_unique<InflateStream>(std::make_unique<FileStream>(stored, 0, stored->size()), stored->path());
+      }) {
+  read_head();
+  if (head_.empty()) bad_input(path(), wanted, "an empty file in gzip");
+}
+
+PackedFile::PackedFile(const std::string& path, std::uint64_t bytes, Opener open)
+    : InputFile(path, bytes), from_start_(std::move(open)), is_size_said_(true) {
+  read_head();
+}
+
+void PackedFile::read_head() {
+  stream_ = from_start_();
   head_.resize(kLargestHeader);
   head_.resize(stream_->read(std::as_writable_bytes(std::span(head_))));
   position_ = head_.size();
   whole_ = ended_ = head_.size() < kLargestHeader;
   if (whole_) set_size(head_.size());
-  if (head_.empty()) bad_input(path(), "a volume file", "an empty file in gzip");
-}
-
-std::unique_ptr<InflateStream> PackedFile::from_start() const {
-  return std::make_unique<InflateStream>(std::make_unique<FileStream>(stored_, 0, stored_->size()), path());
 }
 
 std::uint64_t PackedFile::exact_size() const {
-  if (!ended_) {
-    set_size(from_start()->skip(std::numeric_limits<std::uint64_t>::max()));
+  if (!knows_size()) {
+    set_size(from_start_()->skip(std::numeric_limits<std::uint64_t>::max()));
     ended_ = true;
   }
   return size();
@@ -50,7 +60,7 @@ std::uint64_t PackedFile::exact_size() const {
 bool PackedFile::reach(std::uint64_t offset) const {
   if (ended_ && offset >= size()) return false;
   if (offset < position_) {
-    stream_ = from_start();
+    stream_ = from_start_();
     position_ = 0;
   }
   position_ += stream_->skip(offset - position_);

@@ -1,6 +1,7 @@
-// A file in gzip, read as what it holds.
+// A file in gzip, or one that is packed into another one, read as what it holds.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,8 +17,13 @@ bool is_gzip(std::string_view head);
 // before the place that was reached begins again from the start.
 class PackedFile final : public InputFile {
  public:
-  // Throws BadInput when the first bytes cannot be inflated, or there are none.
-  explicit PackedFile(FilePtr stored);
+  using Opener = std::function<std::unique_ptr<ByteStream>()>;
+
+  // A file in gzip. Throws BadInput when the first bytes cannot be inflated, or there are none.
+  explicit PackedFile(const FilePtr& stored, std::string_view wanted = kVolumeFile);
+
+  // What a stream gives, as many bytes as are said.
+  PackedFile(const std::string& path, std::uint64_t bytes, Opener open);
 
   std::uint64_t exact_size() const override;
   bool jumps() const override { return false; }
@@ -25,21 +31,22 @@ class PackedFile final : public InputFile {
   void check_end(std::uint64_t offset) const override;
 
  protected:
-  bool knows_size() const override { return ended_; }
+  bool knows_size() const override { return is_size_said_ || ended_; }
 
  private:
-  std::unique_ptr<InflateStream> from_start() const;
+  void read_head();
   bool reach(std::uint64_t offset) const;
 
-  FilePtr stored_;
+  Opener from_start_;
+  bool is_size_said_ = false;
   std::string head_;
   bool whole_ = false;  // head_ is all there is
   mutable bool ended_ = false;
-  mutable std::unique_ptr<InflateStream> stream_;
+  mutable std::unique_ptr<ByteStream> stream_;
   mutable std::uint64_t position_ = 0;  // of the stream
 };
 
 // What a file holds that may be in gzip.
-FilePtr unpacked(const FilePtr& file);
+FilePtr unpacked(const FilePtr& file, std::string_view wanted = kVolumeFile);
 
 }  // namespace isoweave

@@ -43,7 +43,9 @@ struct Gaps {
     widest = static_cast<std::size_t>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
   }
 
-  std::string range() const { return length_text(lengths[narrowest]) + " to " + length_text(lengths[widest]) + " mm"; }
+  std::string range(const std::string& unit) const {
+    return length_text(lengths[narrowest]) + " to " + length_text(lengths[widest]) + unit;
+  }
 };
 
 std::string between_names(const SlicePlaces& places, std::size_t gap) {
@@ -85,12 +87,12 @@ void note_missing(const SlicePlaces& places, const Gaps& gaps, std::vector<std::
     if (lost == 0 || is_another_distance(gaps, n)) continue;
     missing += lost;
     if (++wide > kNamed) continue;
-    where += (wide == 1 ? "" : ", ") + length_text(gaps.lengths[n]) + " mm " + between_names(places, n);
+    where += (wide == 1 ? "" : ", ") + length_text(gaps.lengths[n]) + places.unit + " " + between_names(places, n);
   }
   if (missing == 0) return;
   if (wide > kNamed) where += ", and " + std::to_string(wide - kNamed) + " more gaps";
-  notes.push_back((missing == 1 ? "1 slice seems" : std::to_string(missing) + " slices seem") +
-                  " to be missing: " + where + "; slices are usually " + length_text(gaps.usual) + " mm apart");
+  notes.push_back((missing == 1 ? "1 slice seems" : std::to_string(missing) + " slices seem") + " to be missing: " +
+                  where + "; slices are usually " + length_text(gaps.usual) + places.unit + " apart");
 }
 
 // How far a slice lies at most from where an even distance between the first and the last would put it.
@@ -141,8 +143,8 @@ EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
   // What lies so far apart are several volumes, and nothing can be said of what is between them.
   if (!(gaps.lengths[gaps.widest] <= kWidest * finest)) {
     bad_input(places.path, "slices that lie together, with no gap of more than 32 of them",
-              length_text(gaps.lengths[gaps.widest]) + " mm " + between_names(places, gaps.widest) + ", where " +
-                  length_text(finest) + " mm are usual");
+              length_text(gaps.lengths[gaps.widest]) + places.unit + " " + between_names(places, gaps.widest) +
+                  ", where " + length_text(finest) + places.unit + " are usual");
   }
   const double steps = (places.depths.back() - places.depths.front()) / finest;
   grid.count = std::max<std::int64_t>(std::llround(std::ceil(steps - kRounding)), 1) + 1;
@@ -150,7 +152,7 @@ EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
   return grid;
 }
 
-std::string resampled_text(const EvenGrid& grid) {
+std::string resampled_text(const EvenGrid& grid, const std::string& unit) {
   std::int64_t made = 0;
   std::int64_t first = 0;
   std::int64_t last = 0;
@@ -160,7 +162,8 @@ std::string resampled_text(const EvenGrid& grid) {
     last = n;
   }
   std::string text = "they are read as " + std::to_string(grid.count) + " slices " + length_text(grid.distance()) +
-                     " mm apart, " + std::to_string(made) + " of which " + (made == 1 ? "is" : "are") + " interpolated";
+                     unit + " apart, " + std::to_string(made) + " of which " + (made == 1 ? "is" : "are") +
+                     " interpolated";
   if (made == 1) text += " (number " + std::to_string(first) + ", from 0)";
   if (made > 1) text += " (numbers " + std::to_string(first) + " to " + std::to_string(last) + ", from 0)";
   return text;
@@ -179,24 +182,24 @@ EvenGrid even_grid(const SlicePlaces& places, UnevenSlices uneven, std::vector<s
   if (farthest <= kExact * mean) return as_they_are;
   if (farthest <= slack_at(places, mean)) {
     const bool is_rounded = farthest > kEven * mean;
-    notes.push_back("the slices lie up to " + length_text(farthest) + " mm beside an even distance of " +
-                    length_text(mean) + " mm: less than " +
+    notes.push_back("the slices lie up to " + length_text(farthest) + places.unit + " beside an even distance of " +
+                    length_text(mean) + places.unit + ": less than " +
                     (is_rounded ? "their positions are rounded by" : "a hundredth of it") + ", and taken as even");
     return as_they_are;
   }
   if (uneven == UnevenSlices::kRefuse) {
     bad_input(places.path, "slices at an even distance (--even-spacing resample or mean reads others)",
-              "distances of " + gaps.range() + ", the widest " + between_names(places, gaps.widest));
+              "distances of " + gaps.range(places.unit) + ", the widest " + between_names(places, gaps.widest));
   }
   note_missing(places, gaps, notes);
-  const std::string apart = "the slices are " + gaps.range() + " apart: ";
+  const std::string apart = "the slices are " + gaps.range(places.unit) + " apart: ";
   if (uneven == UnevenSlices::kMean) {
-    notes.push_back(apart + "the mean of " + length_text(mean) + " mm is used, which puts slices up to " +
-                    length_text(farthest) + " mm from where they are");
+    notes.push_back(apart + "the mean of " + length_text(mean) + places.unit + " is used, which puts slices up to " +
+                    length_text(farthest) + places.unit + " from where they are");
     return as_they_are;
   }
   EvenGrid grid = finest_grid(places, gaps);
-  notes.push_back(apart + resampled_text(grid));
+  notes.push_back(apart + resampled_text(grid, places.unit));
   return grid;
 }
 

@@ -11,6 +11,7 @@
 #include "volume/array_axes.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/length_units.hpp"
 #include "volume/stack_description.hpp"
 #include "volume/tiff_file.hpp"
@@ -191,7 +192,7 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
   const std::uint64_t first_directory = TIFFCurrentDirOffset(tiff->handle());
   const TiffPages pages = find_tiff_pages(*tiff);
   if (TIFFSetSubDirectory(tiff->handle(), first_directory) == 0) tiff->refuse("a readable TIFF directory");
-  info.type = pages.kind.type;
+  info.type = pages.kind.type.type;
   info.dims = {pages.kind.width, pages.kind.height, 1};
   note_peculiarities(info, *tiff, pages);
   const bool contiguous = is_contiguous(*tiff, pages, stack);
@@ -207,11 +208,12 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
   if (contiguous) {
     volume.swap_bytes = (TIFFIsBigEndian(tiff->handle()) != 0) != (std::endian::native == std::endian::big);
     volume.samples = contiguous_samples(*tiff, info, images, numbers);
-    return volume;
+  } else {
+    auto samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
+    volume.held_bytes = samples->held_bytes();
+    volume.samples = std::move(samples);
   }
-  auto samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
-  volume.held_bytes = samples->held_bytes();
-  volume.samples = std::move(samples);
+  if (pages.kind.type.is_half) read_halves(volume);
   return volume;
 }
 

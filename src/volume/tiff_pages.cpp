@@ -14,7 +14,7 @@ namespace {
 
 std::string text_of(const TiffPageKind& kind) {
   return std::to_string(kind.width) + " x " + std::to_string(kind.height) + " " +
-         std::string(sample_type_name(kind.type));
+         std::string(stored_type_name(kind.type));
 }
 
 void check_grey(const TiffFile& tiff) {
@@ -38,29 +38,21 @@ void check_grey(const TiffFile& tiff) {
   if (depth != 1) bad_input(path, "pages of depth 1", "depth " + std::to_string(depth));
 }
 
-SampleType sample_type_of(const TiffFile& tiff) {
+StoredType stored_type_of(const TiffFile& tiff) {
   const auto bits = tiff.field<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1);
   const auto format = tiff.field<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
   struct Known {
-    int bits;
     int format;
-    SampleType type;
+    std::string_view name;
   };
-  static constexpr std::array<Known, 10> kKnown{{{8, SAMPLEFORMAT_UINT, SampleType::kUint8},
-                                                 {8, SAMPLEFORMAT_INT, SampleType::kInt8},
-                                                 {16, SAMPLEFORMAT_UINT, SampleType::kUint16},
-                                                 {16, SAMPLEFORMAT_INT, SampleType::kInt16},
-                                                 {32, SAMPLEFORMAT_UINT, SampleType::kUint32},
-                                                 {32, SAMPLEFORMAT_INT, SampleType::kInt32},
-                                                 {64, SAMPLEFORMAT_UINT, SampleType::kUint64},
-                                                 {64, SAMPLEFORMAT_INT, SampleType::kInt64},
-                                                 {32, SAMPLEFORMAT_IEEEFP, SampleType::kFloat32},
-                                                 {64, SAMPLEFORMAT_IEEEFP, SampleType::kFloat64}}};
+  static constexpr std::array<Known, 3> kKnown{
+      {{SAMPLEFORMAT_UINT, "uint"}, {SAMPLEFORMAT_INT, "int"}, {SAMPLEFORMAT_IEEEFP, "float"}}};
   const int meant = format == SAMPLEFORMAT_VOID ? SAMPLEFORMAT_UINT : format;
   for (const Known& known : kKnown) {
-    if (known.bits == bits && known.format == meant) return known.type;
+    const auto type = parse_stored_type(std::string(known.name) + std::to_string(bits));
+    if (known.format == meant && type) return *type;
   }
-  bad_input(tiff.file()->path(), "integers of 8 to 64 bits or floats of 32 or 64 bits",
+  bad_input(tiff.file()->path(), "integers of 8 to 64 bits or floats of 16 to 64 bits",
             std::to_string(bits) + " bits of sample format " + std::to_string(format));
 }
 
@@ -81,7 +73,7 @@ void check_stored(const TiffFile& tiff, const TiffPageKind& kind) {
     stored += bytes;
   }
   const auto ratio = largest_tiff_ratio(tiff.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE));
-  const auto page = static_cast<std::uint64_t>(kind.width * kind.height) * sample_bytes(kind.type);
+  const auto page = static_cast<std::uint64_t>(kind.width * kind.height) * sample_bytes(kind.type.type);
   check_plausible(path, page, std::min(stored, file_bytes), ratio);
 }
 
@@ -89,7 +81,7 @@ TiffPageKind page_kind(const TiffFile& tiff) {
   check_grey(tiff);
   const auto width = tiff.field<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
   const auto height = tiff.field<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
-  return {static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), sample_type_of(tiff)};
+  return {static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), stored_type_of(tiff)};
 }
 
 bool is_slice(const TiffFile& tiff) {

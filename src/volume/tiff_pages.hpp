@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isoweave/volume.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/tiff_file.hpp"
 
 namespace isoweave {
@@ -13,7 +14,7 @@ namespace isoweave {
 struct TiffPageKind {
   std::int64_t width = 0;
   std::int64_t height = 0;
-  SampleType type = SampleType::kUint8;
+  StoredType type;
 
   bool operator==(const TiffPageKind&) const = default;
 };

@@ -10,7 +10,7 @@ namespace isoweave {
 
 TiffPageStream::TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages)
     : tiff_(std::move(tiff)), kind_(kind), pages_(std::move(pages)) {
-  sample_bytes_ = sample_bytes(kind.type);
+  sample_bytes_ = sample_bytes(kind.type.type);
   row_bytes_ = static_cast<std::size_t>(kind.width) * sample_bytes_;
 }
 

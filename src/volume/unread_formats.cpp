@@ -4,6 +4,7 @@
 #include <array>
 
 #include "volume/header_text.hpp"
+#include "volume/zip_file.hpp"
 
 namespace isoweave {
 namespace {
@@ -77,20 +78,17 @@ constexpr auto kUnread = std::to_array<Unread>({
     {0, "glTF"sv, "a mesh in GLB", kMesh},
     {0, "OFF\n"sv, "a mesh in OFF", kMesh},
     {0, "OFF "sv, "a mesh in OFF", kMesh},
-    {0, "ncaa\n"sv, "VFF", "--raw ...:big reads the samples behind its header"},
+    {0, "ncaa\n"sv, "VFF",
+     "--raw ...:big:skip=N reads the samples behind its header, by size= and bits=, from behind the form feed"},
 });
 
 std::string sentence(std::string_view what, std::string_view way) {
   return std::string(what) + (way.empty() ? "" : ": ") + std::string(way);
 }
 
-// By the name of the first file in it, which begins at byte 30.
+// By the name of the first file in it.
 std::string what_zip(std::string_view head) {
-  constexpr std::size_t kLength = 26;
-  constexpr std::size_t kName = 30;
-  std::string_view name;
-  if (head.size() > kName) name = head.substr(kName, static_cast<unsigned char>(head[kLength]));
-  if (name.ends_with(".npy")) return "an NPZ archive of NumPy: numpy.save writes one array as NPY, which is read";
+  const std::string_view name = first_zip_name(head);
   if (name == "[Content_Types].xml" || name.starts_with("3D/")) return sentence("a zip archive, as 3MF is", kMesh);
   if (name.find(".z") != std::string_view::npos || name.find("zarr.json") != std::string_view::npos) {
     return "Zarr in a zip archive: unpacked, the folder is read";
@@ -116,7 +114,7 @@ bool is_mesh_name(std::string_view path) {
 }  // namespace
 
 std::string what_else(std::string_view head, std::string_view path) {
-  if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return what_zip(head);
+  if (is_zip(head)) return what_zip(head);
   for (const Unread& one : kUnread) {
     const bool there = head.size() >= one.at && head.substr(one.at).starts_with(one.magic);
     if (there) return sentence(one.what, one.way);

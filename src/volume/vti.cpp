@@ -1,8 +1,9 @@
-// VTI, VTK's XML image data, and PVTI, which names files for its pieces. Tags are read up to the array that is wanted,
-// where it has all samples; else all of them.
+// VTI and VTR, VTK's XML image data and rectilinear grids, and PVTI and PVTR, which name files for their pieces. Tags
+// are read up to the array that is wanted, where it has all samples; else all of them.
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "volume/external_files.hpp"
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/grid_coordinates.hpp"
 #include "volume/header_text.hpp"
 #include "volume/piece_stream.hpp"
 #include "volume/printable.hpp"
@@ -23,6 +25,7 @@
 namespace isoweave {
 namespace {
 
+constexpr std::string_view kRead = "VTK XML of type ImageData or RectilinearGrid";
 constexpr std::size_t kMostPieces = 4096;
 constexpr std::uint64_t kLargestRatio = 8 * kLzmaRatio;  // of samples to bytes: packed bits
 
@@ -42,6 +45,7 @@ struct ImagePiece {
   std::string extent;
   std::string source;  // PVTI: the file that holds it
   ArrayList points, cells;
+  std::vector<VtkArray> coordinates;  // of a rectilinear grid: x, y, z
 };
 
 struct ImageHeader {
@@ -52,6 +56,9 @@ struct ImageHeader {
   std::string whole_extent, origin, spacing, direction;
   std::size_t times = 1;
   std::vector<ImagePiece> pieces;
+
+  bool is_grid() const { return form.type.ends_with("RectilinearGrid"); }
+  bool is_list() const { return form.type.starts_with('P'); }
 };
 
 class HeaderReader {
@@ -73,10 +80,12 @@ class HeaderReader {
   bool take(std::string_view tag) {
     const std::string_view name = vtk_tag_name(tag);
     if (name == "VTKFile") take_form(tag);
-    if (name == "ImageData" || name == "PImageData") take_image(tag);
+    if (name == header_.form.type) take_image(tag);
     if (name == "Piece") add_piece(tag);
     if (name == "PointData" || name == "CellData") begin_arrays(tag, name == "CellData");
     if (name == "/PointData" || name == "/CellData" || name == "/Piece") arrays_ = nullptr;
+    if (name == "Coordinates" || name == "/Coordinates") in_coordinates_ = name == "Coordinates";
+    if (name == "DataArray" && in_coordinates_) add_coordinates(tag);
     if (name == "DataArray" && arrays_ != nullptr) return add_array(tag);
     if (name != "AppendedData") return true;
     header_.appended = vtk_appended(tag, tags_.position(), *header_.file);
@@ -86,10 +95,14 @@ class HeaderReader {
   void take_form(std::string_view tag) {
     header_.form = vtk_xml_form(tag, header_.path);
     const std::string& type = header_.form.type;
-    if (type == "PolyData") {
-      bad_input(header_.path, "VTK XML of type ImageData", "'PolyData', a mesh: isoweave simplify takes it");
+    for (const std::string_view mesh : {"PolyData", "PPolyData", "UnstructuredGrid", "PUnstructuredGrid"}) {
+      if (type != mesh) continue;
+      bad_input(header_.path, kRead, quoted(type) + ", a mesh: isoweave simplify takes it");
     }
-    if (type != "ImageData" && type != "PImageData") bad_input(header_.path, "VTK XML of type ImageData", quoted(type));
+    for (const std::string_view known : {"ImageData", "PImageData", "RectilinearGrid", "PRectilinearGrid"}) {
+      if (type == known) return;
+    }
+    bad_input(header_.path, kRead, quoted(type));
   }
 
   void take_image(std::string_view tag) {
@@ -112,6 +125,14 @@ class HeaderReader {
     piece.source = xml_attribute(tag, "Source");
   }
 
+  void add_coordinates(std::string_view tag) {
+    constexpr std::size_t kAxes = 3;
+    if (header_.pieces.empty()) bad_input(header_.path, "a piece of a grid before its coordinates", "none");
+    std::vector<VtkArray>& coordinates = header_.pieces.back().coordinates;
+    if (coordinates.size() == kAxes) bad_input(header_.path, "coordinates along three axes", "more");
+    coordinates.push_back(vtk_array(tag, tags_.position(), header_.path));
+  }
+
   void begin_arrays(std::string_view tag, bool cells) {
     if (header_.pieces.empty()) bad_input(header_.path, "a piece of image data before its arrays", "none");
     arrays_ = cells ? &header_.pieces.back().cells : &header_.pieces.back().points;
@@ -127,7 +148,7 @@ class HeaderReader {
     if (again) return true;
     arrays_->all.push_back(array);
     const ImagePiece& piece = header_.pieces.front();
-    return header_.pieces.size() > 1 || arrays_ != &piece.points ||
+    return header_.is_grid() || header_.pieces.size() > 1 || arrays_ != &piece.points ||
            words_of(piece.extent) != words_of(header_.whole_extent) || array.format == VtkArray::Format::kAppended ||
            !would_choose(arrays_->names(), {array.name, array.components}, wanted_);
   }
@@ -136,6 +157,7 @@ class HeaderReader {
   std::string wanted_;
   ImageHeader header_;
   ArrayList* arrays_ = nullptr;  // those that are being read
+  bool in_coordinates_ = false;
 };
 
 template <std::size_t kCount>
@@ -252,14 +274,15 @@ using Headers = std::vector<std::shared_ptr<const ImageHeader>>;
 
 // The headers of the files with pieces: the file itself, or those that it names.
 Headers piece_headers(const std::shared_ptr<const ImageHeader>& header, const OpenOptions& options) {
-  if (header->form.type == "ImageData") return {header};
+  if (!header->is_list()) return {header};
   Headers headers;
   for (const ImagePiece& piece : header->pieces) {
     check_external(options, header->path, piece.source);
     if (piece.source.empty()) bad_input(header->path, "a file as Source of each piece", "none");
     const std::string path = listed_files(header->path, {piece.source}).name(0);
     auto source = std::make_shared<ImageHeader>(HeaderReader(open_file(path), options.dataset).read());
-    if (source->form.type != "ImageData") bad_input(source->path, "VTK XML of type ImageData", source->form.type);
+    const std::string wanted = header->form.type.substr(1);
+    if (source->form.type != wanted) bad_input(source->path, "VTK XML of type " + wanted, source->form.type);
     // A file for each of many pieces would be more than a process may have open.
     source->file.reset();
     headers.push_back(std::move(source));
@@ -285,6 +308,42 @@ const ImagePiece& first_with_samples(const Headers& headers, std::string_view pa
     }
   }
   bad_input(path, "a piece with samples", "none");
+}
+
+// The coordinates of a piece, at their places among those of all points.
+void take_coordinates(const ImageHeader& header, const ImagePiece& piece, const Extent& whole,
+                      GridCoordinates& points) {
+  if (!has_samples(piece, header.path)) return;
+  if (piece.coordinates.size() != points.size()) {
+    bad_input(header.path, "coordinates along three axes", std::to_string(piece.coordinates.size()));
+  }
+  const Region box = box_of(extent_of(piece.extent, header.path), whole, false);
+  for (std::size_t axis = 0; axis < points.size(); ++axis) {
+    const VtkArray& array = piece.coordinates[axis];
+    const auto count = static_cast<std::uint64_t>(box.end[axis] - box.first[axis]);
+    if (box.first[axis] < 0 || static_cast<std::uint64_t>(box.end[axis]) > points.at(axis).size()) {
+      bad_input(header.path, "pieces within the whole extent", quoted(piece.extent));
+    }
+    const PieceSamples stored = open_samples(header, array, count);
+    const std::vector<double> part =
+        read_coordinates(*stored.stream, sample_type_of(array, header.path), stored.swap_bytes, count, header.path);
+    std::copy(part.begin(), part.end(), points.at(axis).begin() + box.first[axis]);
+  }
+}
+
+// Of all points; what no piece gives stays no number.
+GridCoordinates coordinates_of(const Headers& headers, const Extent& whole, const std::string& path) {
+  GridCoordinates points;
+  const Region box = box_of(whole, whole, false);
+  for (std::size_t axis = 0; axis < points.size(); ++axis) {
+    const auto count = static_cast<std::uint64_t>(std::max<std::int64_t>(box.end[axis], 0));
+    if (count > kMostCoordinates) bad_input(path, "at most 2^24 coordinates along an axis", std::to_string(count));
+    points.at(axis).resize(static_cast<std::size_t>(count), std::numeric_limits<double>::quiet_NaN());
+  }
+  for (const auto& header : headers) {
+    for (const ImagePiece& piece : header->pieces) take_coordinates(*header, piece, whole, points);
+  }
+  return points;
 }
 
 // Puts the samples of all pieces together; of one that has them all they are the stream itself.
@@ -316,7 +375,7 @@ OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options) {
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
-  info.format = "vti";
+  info.format = header->is_grid() ? "vtr" : "vti";
   const ImagePiece& first = first_with_samples(headers, info.path);
   const VtkArrayNames points = first.points.names();
   const VtkArrayNames cells = first.cells.names();
@@ -328,9 +387,14 @@ OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options) {
   const VtkArray& like = (choice.cells ? first.cells : first.points).all[choice.array];
   info.type = sample_type_of(like, info.path);
   const Extent whole = extent_of(header->whole_extent, info.path);
-  ImageHeader place = *header;
-  if (place.direction.empty()) place.direction = headers.front()->direction;
-  set_place(info, place, whole, choice.cells);
+  EvenGrid slices;
+  if (header->is_grid()) {
+    slices = place_on_grid(info, coordinates_of(headers, whole, info.path), choice.cells, options);
+  } else {
+    ImageHeader place = *header;
+    if (place.direction.empty()) place.direction = headers.front()->direction;
+    set_place(info, place, whole, choice.cells);
+  }
   check_plausible(info.path, checked_volume_bytes(info), stored_bytes(headers), kLargestRatio);
   std::vector<VolumePiece> pieces;
   for (const auto& source : headers) {
@@ -340,6 +404,7 @@ OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options) {
     }
   }
   open_pieces(volume, std::move(pieces));
+  take_even_slices(volume, slices);
   return volume;
 }
 

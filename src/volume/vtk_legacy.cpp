@@ -1,18 +1,15 @@
-// Volumes in legacy VTK files: structured points, and rectilinear grids whose coordinates are evenly spaced.
+// Volumes in legacy VTK files: structured points, and rectilinear grids whose coordinates are evenly spaced or made so.
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "volume/formats.hpp"
 #include "volume/geometry.hpp"
+#include "volume/grid_coordinates.hpp"
 #include "volume/header_text.hpp"
 #include "volume/printable.hpp"
-#include "volume/samples.hpp"
 #include "volume/vtk_legacy_file.hpp"
 #include "volume/vtk_streams.hpp"
 
@@ -123,51 +120,23 @@ std::unique_ptr<ByteStream> open_samples(const LegacyFile& file, const LegacyArr
   return std::make_unique<BitStream>(std::move(stored), samples);
 }
 
-std::vector<double> coordinates_of(const LegacyFile& file, const LegacyArray& array) {
-  constexpr std::uint64_t kMost = 1 << 24;
-  const SampleType type = file.is_text() ? SampleType::kFloat64 : sample_type_of(array, file.path());
-  if (array.tuples > kMost) bad_input(file.path(), "at most 2^24 coordinates", std::to_string(array.tuples));
-  const auto stream = open_samples(file, array, type);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(array.tuples) * sample_bytes(type));
-  if (stream->read(bytes) < bytes.size()) bad_input(file.path(), "all coordinates", "the end of the file");
-  if (!file.is_text() && std::endian::native == std::endian::little) swap_sample_bytes(bytes, sample_bytes(type));
-  std::vector<double> coordinates;
-  visit_sample_type(type, [&]<class Sample>() {
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Sample)) {
-      Sample sample;
-      std::memcpy(&sample, bytes.data() + at, sizeof(Sample));
-      coordinates.push_back(static_cast<double>(sample));
-    }
-  });
-  return coordinates;
-}
-
-// First coordinate and step. Throws BadInput when one lies farther than a hundredth of a step from where even ones do.
-std::pair<double, double> even_axis(const std::vector<double>& coordinates, char axis, const std::string& path) {
-  if (coordinates.size() < 2) return {coordinates.at(0), 1};
-  const double first = coordinates.front();
-  const double step = (coordinates.back() - first) / static_cast<double>(coordinates.size() - 1);
-  for (std::size_t n = 0; n < coordinates.size(); ++n) {
-    const double even = first + step * static_cast<double>(n);
-    if (std::abs(coordinates[n] - even) <= std::abs(step) / 100) continue;
-    bad_input(path,
-              std::string("evenly spaced ") + axis + "_COORDINATES, " + number_text(even) + " at " + std::to_string(n),
-              number_text(coordinates[n]));
-  }
-  return {first, step};
-}
-
-void set_even_axes(Axes& axes, VolumeInfo& info, const LegacyHeader& header, const LegacyFile& file) {
+// Of the points along each axis.
+GridCoordinates coordinates_of(const LegacyFile& file, const LegacyHeader& header, const VolumeInfo& info) {
+  GridCoordinates points;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const char name = static_cast<char>('X' + axis);
     const auto& array = header.coordinates.at(axis);
     if (!array || array->tuples != static_cast<std::uint64_t>(info.dims[axis])) {
-      bad_input(info.path, std::to_string(info.dims[axis]) + std::string(" ") + name + "_COORDINATES",
+      bad_input(info.path, std::to_string(info.dims[axis]) + " " + static_cast<char>('X' + axis) + "_COORDINATES",
                 array ? std::to_string(array->tuples) : "none");
     }
-    if (info.dims[axis] == 1) info.notes.push_back(std::string("one ") + name + " coordinate: the spacing there is 1");
-    std::tie(axes.origin[axis], axes.steps[axis][axis]) = even_axis(coordinates_of(file, *array), name, info.path);
+    const SampleType type = file.is_text() ? SampleType::kFloat64 : sample_type_of(*array, file.path());
+    const bool swap = !file.is_text() && std::endian::native == std::endian::little;
+    if (array->tuples > kMostCoordinates) {
+      bad_input(info.path, "at most 2^24 coordinates along an axis", std::to_string(array->tuples));
+    }
+    points.at(axis) = read_coordinates(*open_samples(file, *array, type), type, swap, array->tuples, info.path);
   }
+  return points;
 }
 
 void set_dimensions(VolumeInfo& info, const LegacyHeader& header) {
@@ -181,24 +150,30 @@ void set_dimensions(VolumeInfo& info, const LegacyHeader& header) {
 }
 
 // Samples of cells lie between the points; where there is one point only along an axis, in it.
-void set_place(VolumeInfo& info, const LegacyHeader& header, const LegacyFile& file, bool cells) {
-  set_dimensions(info, header);
+void set_even_place(VolumeInfo& info, const LegacyHeader& header, bool cells) {
+  // Version 1 had the name of the spacing.
+  const bool old = !header.fields.contains("SPACING") && header.fields.contains("ASPECT_RATIO");
+  const auto spacing = numbers_of(header.get(old ? "ASPECT_RATIO" : "SPACING", info.path), "SPACING", info.path);
   Axes axes;
-  if (legacy_key({header.get("DATASET", info.path)}) == "STRUCTURED_POINTS") {
-    // Version 1 had the name of the spacing.
-    const bool old = !header.fields.contains("SPACING") && header.fields.contains("ASPECT_RATIO");
-    const auto spacing = numbers_of(header.get(old ? "ASPECT_RATIO" : "SPACING", info.path), "SPACING", info.path);
-    axes.origin = numbers_of(header.get("ORIGIN", info.path), "ORIGIN", info.path);
-    for (std::size_t axis = 0; axis < 3; ++axis) axes.steps[axis][axis] = spacing[axis];
-  } else {
-    set_even_axes(axes, info, header, file);
-  }
-  for (std::size_t axis = 0; cells && axis < 3; ++axis) {
-    if (info.dims[axis] == 1) continue;
+  axes.origin = numbers_of(header.get("ORIGIN", info.path), "ORIGIN", info.path);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    axes.steps[axis][axis] = spacing[axis];
+    if (!cells || info.dims[axis] == 1) continue;
     --info.dims[axis];
-    axes.origin[axis] += axes.steps[axis][axis] / 2;
+    axes.origin[axis] += spacing[axis] / 2;
   }
   set_geometry(info.geometry, axes, info.path);
+}
+
+// The grid that the slices are read on.
+EvenGrid set_place(VolumeInfo& info, const LegacyHeader& header, const LegacyFile& file, bool cells,
+                   const OpenOptions& options) {
+  set_dimensions(info, header);
+  if (legacy_key({header.get("DATASET", info.path)}) != "STRUCTURED_POINTS") {
+    return place_on_grid(info, coordinates_of(file, header, info), cells, options);
+  }
+  set_even_place(info, header, cells);
+  return {};
 }
 
 }  // namespace
@@ -215,7 +190,7 @@ OpenedVolume open_vtk_legacy(const FilePtr& input, const OpenOptions& options) {
   const VtkArrayNames points = file.points.names();
   const VtkArrayNames cells = file.cells.names();
   const VtkChoice choice = choose_vtk_array(points, cells, options.dataset, info.path);
-  set_place(info, header, file, choice.cells);
+  const EvenGrid slices = set_place(info, header, file, choice.cells, options);
   note_vtk_choice(info, points, cells, choice);
   const LegacyArray& array = (choice.cells ? file.cells : file.points).all[choice.array];
   info.type = sample_type_of(array, info.path);
@@ -226,6 +201,7 @@ OpenedVolume open_vtk_legacy(const FilePtr& input, const OpenOptions& options) {
   }
   volume.samples = open_samples(file, array, info.type);
   volume.swap_bytes = !file.is_text() && std::endian::native == std::endian::little;
+  take_even_slices(volume, slices);
   return volume;
 }
 

@@ -69,7 +69,7 @@ std::string temporary_folder() {
 }
 
 // All bytes that `next` gives, as a file. It gives none at the end.
-FilePtr keep(const Source& next, const std::string& path) {
+FilePtr keep(const Source& next, const std::string& path, std::string_view wanted = kVolumeFile) {
   const std::string folder = temporary_folder();
   Descriptor file(create_unnamed(folder, path));
   std::vector<std::byte> buffer(kBufferBytes);
@@ -82,7 +82,7 @@ FilePtr keep(const Source& next, const std::string& path) {
     }
     size += got;
   }
-  if (size == 0) bad_input(path, "a volume file", "nothing before the end of the pipe");
+  if (size == 0) bad_input(path, wanted, "nothing before the end of the pipe");
   return std::make_shared<DescriptorFile>(file.release(), path, size, true);
 }
 
@@ -120,9 +120,9 @@ bool is_pipe(const struct stat& status) { return S_ISFIFO(status.st_mode) || S_I
 
 }  // namespace
 
-FilePtr open_input_file(const std::string& path) {
+FilePtr open_input_file(const std::string& path, std::string_view wanted) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !is_pipe(status)) return open_file(path);
+  if (::stat(path.c_str(), &status) != 0 || !is_pipe(status)) return open_file(path, wanted);
   static KeptPipes kept;
   return kept.get(status, [&] {
     // A socket cannot be opened by its name.
@@ -130,7 +130,7 @@ FilePtr open_input_file(const std::string& path) {
     const Descriptor pipe(standard ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                                    : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (pipe.get() < 0) bad_input(path, std::string("cannot be opened: ") + std::strerror(errno));
-    return keep([&](std::span<std::byte> out) { return read_pipe(pipe.get(), path, out); }, path);
+    return keep([&](std::span<std::byte> out) { return read_pipe(pipe.get(), path, out); }, path, wanted);
   });
 }
 

@@ -1,7 +1,8 @@
-// What a user names as a volume: a file, or a pipe, whose content is kept in a file without a name.
+// What a user names as a volume or a mesh: a file, or a pipe, whose content is kept in a file without a name.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "volume/input_file.hpp"
 
@@ -9,7 +10,7 @@ namespace isoweave {
 
 // A regular file, or all that comes out of a pipe or socket. A pipe can be read once: whoever opens it while what came
 // out of it is still held, gets the same. Throws what open_file throws; CannotWrite when there is no room.
-FilePtr open_input_file(const std::string& path);
+FilePtr open_input_file(const std::string& path, std::string_view wanted = kVolumeFile);
 
 // A file that can be read anywhere: the file itself, or what a packed one holds, as a file without a name.
 FilePtr jumping_file(const FilePtr& file);

@@ -1,5 +1,8 @@
 // Arrays of Zarr 2: .zarray.
+#include <array>
 #include <numeric>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "volume/input_file.hpp"
@@ -9,30 +12,28 @@
 namespace isoweave {
 namespace {
 
-struct StoredType {
-  SampleType type = SampleType::kUint8;
-  bool big_endian = false;
-};
-
-// "<i2": byte order, kind and bytes.
-StoredType type_of(const Json& metadata, const std::string& path) {
-  static constexpr std::array<std::pair<std::string_view, SampleType>, 11> kTypes{{{"b1", SampleType::kUint8},
-                                                                                   {"u1", SampleType::kUint8},
-                                                                                   {"i1", SampleType::kInt8},
-                                                                                   {"u2", SampleType::kUint16},
-                                                                                   {"i2", SampleType::kInt16},
-                                                                                   {"u4", SampleType::kUint32},
-                                                                                   {"i4", SampleType::kInt32},
-                                                                                   {"u8", SampleType::kUint64},
-                                                                                   {"i8", SampleType::kInt64},
-                                                                                   {"f4", SampleType::kFloat32},
-                                                                                   {"f8", SampleType::kFloat64}}};
+// "<i2": byte order, kind and bytes. Tells as well whether the most significant byte comes first.
+std::pair<StoredType, bool> type_of(const Json& metadata, const std::string& path) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypes{{{"b1", "uint8"},
+                                                                                         {"u1", "uint8"},
+                                                                                         {"i1", "int8"},
+                                                                                         {"u2", "uint16"},
+                                                                                         {"i2", "int16"},
+                                                                                         {"u4", "uint32"},
+                                                                                         {"i4", "int32"},
+                                                                                         {"u8", "uint64"},
+                                                                                         {"i8", "int64"},
+                                                                                         {"f2", "float16"},
+                                                                                         {"f4", "float32"},
+                                                                                         {"f8", "float64"}}};
   const std::string text = text_member(metadata, "dtype");
   const std::string_view name = std::string_view(text).substr(text.empty() ? 0 : 1);
   for (const auto& [known, type] : kTypes) {
-    if (known == name && std::string_view("<>|").find(text[0]) != std::string_view::npos) return {type, text[0] == '>'};
+    if (known == name && std::string_view("<>|").find(text[0]) != std::string_view::npos) {
+      return {parse_stored_type(type).value(), text[0] == '>'};
+    }
   }
-  bad_input(path, "a dtype of integers of 8 to 64 bits or floats of 32 or 64 bits",
+  bad_input(path, "a dtype of integers of 8 to 64 bits or floats of 16 to 64 bits",
             text.empty() ? "a structure or none" : isoweave::quoted(text));
 }
 
@@ -62,11 +63,12 @@ ChunkedArray zarr2_array(const ZarrNode& node) {
   array.format = "zarr";
   for (const std::int64_t size : integers_member(metadata, "shape", path)) array.axes.push_back({size, {}});
   array.chunk = integers_member(metadata, "chunks", path);
-  const StoredType stored = type_of(metadata, path);
+  StoredType stored;
+  std::tie(stored, array.big_endian) = type_of(metadata, path);
   array.type = stored.type;
-  array.big_endian = stored.big_endian;
+  array.is_half = stored.is_half;
   array.codecs = codecs_of(metadata, path);
-  array.fill = fill_sample(member(metadata, "fill_value"), array.type, array.big_endian, path);
+  array.fill = fill_sample(member(metadata, "fill_value"), stored, array.big_endian, path);
   array.stored_order.resize(array.axes.size());
   const std::string order = text_member(metadata, "order");
   if (order == "F") {

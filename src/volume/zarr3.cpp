@@ -142,17 +142,18 @@ ChunkedArray zarr3_array(const ZarrNode& node) {
   if (grid.name != "regular") bad_input(path, "chunk_grid regular", isoweave::quoted(grid.name));
   array.chunk = integers_member(grid.configuration, "chunk_shape", path);
   const std::string type = text_member(metadata, "data_type");
-  const std::optional<SampleType> known = parse_sample_type(type == "bool" ? "uint8" : type);
+  const std::optional<StoredType> known = parse_stored_type(type == "bool" ? "uint8" : type);
   if (!known) {
-    bad_input(path, "data_type of integers of 8 to 64 bits or floats of 32 or 64 bits",
+    bad_input(path, "data_type of integers of 8 to 64 bits or floats of 16 to 64 bits",
               type.empty() ? "another kind" : isoweave::quoted(type));
   }
-  array.type = *known;
+  array.type = known->type;
+  array.is_half = known->is_half;
   array.stored_order.resize(array.axes.size());
   std::iota(array.stored_order.begin(), array.stored_order.end(), std::size_t{0});
   take_keys(array, named(member(metadata, "chunk_key_encoding")));
   take_codecs(array, named_list(member(metadata, "codecs"), "codecs", path));
-  array.fill = fill_sample(member(metadata, "fill_value"), array.type, array.big_endian, path);
+  array.fill = fill_sample(member(metadata, "fill_value"), *known, array.big_endian, path);
   name_axes(array.axes, member(metadata, "dimension_names"));
   return array;
 }

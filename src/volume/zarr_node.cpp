@@ -34,9 +34,9 @@ ZarrNode zarr3_node(const std::string& folder, const std::string& header) {
   return node;
 }
 
-[[noreturn]] void refuse_fill(const Json& value, SampleType type, const std::string& path) {
+[[noreturn]] void refuse_fill(const Json& value, const StoredType& type, const std::string& path) {
   const std::string text = value.is_string() ? value.get<std::string>() : std::string(value.type_name());
-  bad_input(path, "a fill value of " + std::string(sample_type_name(type)), isoweave::quoted(text));
+  bad_input(path, "a fill value of " + std::string(stored_type_name(type)), isoweave::quoted(text));
 }
 
 // "0x7fc00000": the bits of a sample.
@@ -87,6 +87,14 @@ std::optional<Sample> sample_of(const Json& value) {
   return static_cast<Sample>(number);
 }
 
+// The bits of a half, given as they are or as a number.
+std::optional<std::uint16_t> half_in(const Json& value) {
+  const std::string text = value.is_string() ? value.get<std::string>() : std::string();
+  if (text.starts_with("0x")) return sample_of_bits<std::uint16_t>(text);
+  const std::optional<float> number = sample_of<float>(value);
+  return number ? half_of(*number) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<ZarrNode> open_node(const std::string& folder) {
@@ -125,11 +133,17 @@ ChunkedArray array_of(const ZarrNode& node) {
   return array;
 }
 
-std::array<std::byte, 8> fill_sample(const Json* value, SampleType type, bool big_endian, const std::string& path) {
+std::array<std::byte, 8> fill_sample(const Json* value, const StoredType& type, bool big_endian,
+                                     const std::string& path) {
   std::array<std::byte, 8> bytes{};
   if (value == nullptr || value->is_null()) return bytes;
-  visit_sample_type(type, [&]<class Sample>() {
-    const std::optional<Sample> sample = sample_of<Sample>(*value);
+  visit_sample_type(type.type, [&]<class Sample>() {
+    std::optional<Sample> sample;
+    if constexpr (std::is_same_v<Sample, std::uint16_t>) {
+      sample = type.is_half ? half_in(*value) : sample_of<Sample>(*value);
+    } else {
+      sample = sample_of<Sample>(*value);
+    }
     if (!sample) refuse_fill(*value, type, path);
     std::memcpy(bytes.data(), &*sample, sizeof(Sample));
     const bool swap = big_endian != (std::endian::native == std::endian::big);

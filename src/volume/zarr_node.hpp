@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volume/chunked_array.hpp"
+#include "volume/half_floats.hpp"
 #include "volume/json_file.hpp"
 
 namespace isoweave {
@@ -30,7 +31,8 @@ ChunkedArray zarr3_array(const ZarrNode& node);
 ChunkedArray n5_array(const ZarrNode& node);
 
 // The fill value of an array, as one sample would be stored.
-std::array<std::byte, 8> fill_sample(const Json* value, SampleType type, bool big_endian, const std::string& path);
+std::array<std::byte, 8> fill_sample(const Json* value, const StoredType& type, bool big_endian,
+                                     const std::string& path);
 
 // Names of axes as a list of texts; an entry that is none has no name. Does nothing for another number of names.
 void name_axes(std::vector<ArrayAxis>& axes, const Json* names);

@@ -42,6 +42,25 @@ double real_of(std::uint32_t bits, std::uint64_t component, bool normalized) {
   return normalized ? bits / most : bits;
 }
 
+int hex_digit(char c) {
+  return c >= '0' && c <= '9'   ? c - '0'
+         : c >= 'a' && c <= 'f' ? c - 'a' + 10
+         : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                : -1;
+}
+
+// "a%20b" as "a b"; a % that no two digits follow stays.
+std::string percent_decoded(std::string_view text) {
+  std::string decoded;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    const int high = text[n] == '%' && n + 2 < text.size() ? hex_digit(text[n + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(text[n + 2]) : -1;
+    decoded += low >= 0 ? static_cast<char>(high * 16 + low) : text[n];
+    if (low >= 0) n += 2;
+  }
+  return decoded;
+}
+
 GltfValue parse(const MeshInput& input, const std::string& text) {
   constexpr int kDeepest = 100;
   bool too_deep = false;
@@ -58,7 +77,7 @@ GltfValue parse(const MeshInput& input, const std::string& text) {
 
 }  // namespace
 
-GltfFile::GltfFile(MeshInput& input) : input_(input) {
+GltfFile::GltfFile(MeshInput& input) : input_(input), size_(input.size()) {
   const bool binary = input.head(4) == "glTF";
   std::string text = binary ? read_binary() : read_text();
   // Some programs fill up with zeros.
@@ -109,20 +128,36 @@ std::string GltfFile::read_binary() {
 
 void GltfFile::take_buffers() {
   for (const GltfValue& buffer : scene_.value("buffers", GltfValue::array())) {
-    std::vector<std::byte>& bytes = buffers_.emplace_back();
     const std::string uri = buffer.value("uri", "");
-    if (uri.empty()) continue;
-    const std::size_t comma = uri.find(";base64,");
-    if (!uri.starts_with("data:") || comma == std::string::npos) {
-      input_.fail("expected all data in one file, as GLB has them, found '" + uri.substr(0, 60) + "'");
+    if (!uri.empty()) {
+      buffers_.push_back(buffer_of(uri));
+    } else {
+      buffers_.push_back({{}, input_.file(), binary_, buffers_.empty() ? binary_bytes_ : 0});
     }
-    std::vector<std::byte> text(uri.size() - comma - 8);
-    std::transform(uri.begin() + static_cast<std::ptrdiff_t>(comma) + 8, uri.end(), text.begin(),
-                   [](char c) { return static_cast<std::byte>(c); });
-    bytes.resize(text.size() / 4 * 3);
-    Base64Stream stream(std::make_unique<DecodedStream>([&] { return std::move(text); }), input_.path());
-    bytes.resize(stream.read(bytes));
   }
+}
+
+GltfFile::Buffer GltfFile::buffer_of(const std::string& uri) {
+  constexpr std::string_view kBase64 = ";base64,";
+  const std::size_t colon = uri.substr(0, uri.find('/')).find(':');
+  if (colon == std::string::npos) {
+    const FilePtr data = open_file(input_.named_file(percent_decoded(uri)), "the data of a mesh");
+    size_ += data->size();
+    return {{}, data, 0, data->size()};
+  }
+  const std::size_t comma = uri.find(kBase64);
+  if (!uri.starts_with("data:") || comma == std::string::npos) {
+    input_.fail("expected data in base64 or the name of a file, found '" + uri.substr(0, 60) + "'");
+  }
+  std::vector<std::byte> text(uri.size() - comma - kBase64.size());
+  std::transform(uri.begin() + static_cast<std::ptrdiff_t>(comma + kBase64.size()), uri.end(), text.begin(),
+                 [](char c) { return static_cast<std::byte>(c); });
+  Buffer buffer;
+  buffer.bytes.resize((text.size() + 3) / 4 * 3);
+  Base64Stream stream(std::make_unique<DecodedStream>([&] { return std::move(text); }), input_.path());
+  buffer.bytes.resize(stream.read(buffer.bytes));
+  buffer.size = buffer.bytes.size();
+  return buffer;
 }
 
 std::uint64_t GltfFile::whole(const GltfValue& value, std::string_view what) const {
@@ -145,21 +180,17 @@ const GltfValue& GltfFile::element(const char* list, const GltfValue& number) co
 }
 
 std::vector<std::byte> GltfFile::bytes_of(std::uint64_t buffer, std::uint64_t offset, std::uint64_t bytes) {
-  const bool inside = buffer < buffers_.size() && !buffers_[static_cast<std::size_t>(buffer)].empty();
-  const std::uint64_t there = inside        ? buffers_[static_cast<std::size_t>(buffer)].size()
-                              : buffer == 0 ? binary_bytes_
-                                            : 0;
-  if (offset > there || bytes > there - offset) {
+  static const Buffer kNone;
+  const Buffer& from = buffer < buffers_.size() ? buffers_[static_cast<std::size_t>(buffer)] : kNone;
+  if (offset > from.size || bytes > from.size - offset) {
     input_.fail("expected " + std::to_string(bytes) + " bytes from byte " + std::to_string(offset) +
-                " of a buffer, found " + std::to_string(there) + " bytes in all");
+                " of a buffer, found " + std::to_string(from.size) + " bytes in all");
   }
   std::vector<std::byte> result(static_cast<std::size_t>(bytes));
-  if (inside) {
-    const auto from = buffers_[static_cast<std::size_t>(buffer)].begin() + static_cast<std::ptrdiff_t>(offset);
-    std::copy_n(from, result.size(), result.begin());
-  } else if (!result.empty()) {
-    input_.move_to(binary_ + offset);
-    input_.read(result);
+  if (!from.file) {
+    std::copy_n(from.bytes.begin() + static_cast<std::ptrdiff_t>(offset), result.size(), result.begin());
+  } else if (from.file->read_at(from.begin + offset, result) < result.size()) {
+    input_.fail("expected " + std::to_string(bytes) + " bytes of a buffer, found fewer");
   }
   return result;
 }
@@ -187,7 +218,7 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
   const std::uint64_t begin = view.contains("byteOffset") ? whole(view.at("byteOffset"), "byteOffset") : 0;
   const std::uint64_t length = whole(view.at("byteLength"), "byteLength");
   std::uint64_t bytes = 0;
-  const bool wrong = each == 0 || stored.stride < each || stored.count > input_.size() ||
+  const bool wrong = each == 0 || stored.stride < each || stored.count > size_ ||
                      __builtin_mul_overflow(stored.count - 1, stored.stride, &bytes) ||
                      __builtin_add_overflow(bytes, each, &bytes) || first > length || bytes > length - first;
   if (wrong && stored.count > 0) {

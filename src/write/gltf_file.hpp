@@ -18,8 +18,12 @@ using GltfValue = nlohmann::json;
 
 class GltfFile {
  public:
-  // Fails when the file is not complete, needs another file, or is no glTF 2.
+  // Fails when the file is not complete or no glTF 2, and when it needs a file that is not there or that it may not
+  // name.
   explicit GltfFile(MeshInput& input);
+
+  // Bytes of the file and of those that it names.
+  std::uint64_t size() const { return size_; }
 
   const GltfValue& scene() const { return scene_; }
 
@@ -51,8 +55,18 @@ class GltfFile {
 
   MeshInput& input_;
   GltfValue scene_;
+  // A buffer: bytes out of the scene's text, or a file's from a place on.
+  struct Buffer {
+    std::vector<std::byte> bytes;
+    FilePtr file;
+    std::uint64_t begin = 0, size = 0;
+  };
+
+  Buffer buffer_of(const std::string& uri);
+
+  std::uint64_t size_;
   std::uint64_t binary_ = 0, binary_bytes_ = 0;  // where the chunk of data is; 0: there is none
-  std::vector<std::vector<std::byte>> buffers_;  // those that are in the scene's text; of the others nothing
+  std::vector<Buffer> buffers_;
 };
 
 }  // namespace isoweave::mesh_io

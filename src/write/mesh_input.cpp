@@ -1,44 +1,35 @@
 #include "write/mesh_input.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <system_error>
 
 #include "isoweave/error.hpp"
+#include "volume/external_files.hpp"
+#include "volume/packed_file.hpp"
 #include "volume/printable.hpp"
+#include "volume/whole_input.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 constexpr std::size_t kLongestMessage = 400;
-
-// Opens without waiting for a writer when the name is a pipe; fails on all but regular files.
-int open_regular(const std::string& path, std::uint64_t& size) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) throw BadInput(path + ": cannot open: " + std::generic_category().message(errno));
-  struct stat status {};
-  const bool known = ::fstat(fd, &status) == 0;
-  if (!known || !S_ISREG(status.st_mode)) {
-    ::close(fd);
-    throw BadInput(path + (known && S_ISDIR(status.st_mode) ? ": is a folder" : ": is not a regular file") +
-                   ", expected a mesh file");
-  }
-  size = static_cast<std::uint64_t>(status.st_size);
-  return fd;
-}
+constexpr std::string_view kMeshFile = "a mesh file";
 
 }  // namespace
 
-MeshInput::MeshInput(const std::string& path) : path_(path), fd_(open_regular(path, size_)) {
-  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_)));
-}
+MeshInput::MeshInput(const std::string& path, const ReadMeshOptions& options)
+    : path_(path),
+      options_(options),
+      file_(jumping_file(unpacked(open_input_file(path, kMeshFile), kMeshFile))),
+      size_(file_->size()),
+      buffer_(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_))) {}
 
-MeshInput::~MeshInput() { ::close(fd_); }
+std::string MeshInput::named_file(const std::string& name) const {
+  OpenOptions options;
+  options.external = options_.external;
+  check_external(options, path_, name);
+  return beside(path_, name);
+}
 
 void MeshInput::fail(const std::string& what) const {
   // Words quoted from the file must not break the line, drive a terminal or fill it.
@@ -54,13 +45,9 @@ bool MeshInput::refill() {
   next_ = 0;
   filled_ = left;
   const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size() - left, size_ - from));
-  ssize_t got = 0;
-  do {
-    got = ::pread(fd_, buffer_.data() + left, wanted, static_cast<off_t>(from));
-  } while (got < 0 && errno == EINTR);
-  if (got < 0) fail("cannot read: " + std::generic_category().message(errno));
+  const std::size_t got = file_->read_at(from, std::span(buffer_).subspan(left, wanted));
   if (got == 0) fail("ends at byte " + std::to_string(from) + ", it had " + std::to_string(size_) + " when opened");
-  filled_ += static_cast<std::size_t>(got);
+  filled_ += got;
   return true;
 }
 
@@ -137,13 +124,6 @@ std::string_view MeshInput::read_token() {
     token_.push_back(static_cast<char>(c));
   }
   return token_;
-}
-
-std::string MeshInput::head(std::size_t bytes) const {
-  std::string text(bytes, '\0');
-  const ssize_t got = ::pread(fd_, text.data(), bytes, 0);
-  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  return text;
 }
 
 void check_indices(const MeshInput& input, std::span<const std::array<std::uint32_t, 3>> triangles,

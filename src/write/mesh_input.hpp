@@ -1,4 +1,4 @@
-// What the mesh readers share: a file read once from front to back through a bounded buffer, and numbers from text.
+// What the mesh readers share: a file read from front to back through a bounded buffer, and numbers from text.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +15,24 @@
 #include <vector>
 
 #include "isoweave/mesh.hpp"
+#include "volume/input_file.hpp"
 
 namespace isoweave::mesh_io {
 
 // Every failure is BadInput with one line that begins with the path.
 class MeshInput {
  public:
-  explicit MeshInput(const std::string& path);
-  ~MeshInput();
+  // A regular file, or what comes out of a pipe. What is in gzip is inflated into a file without a name, as readers go
+  // back and ask how much is left. Throws CannotWrite where there is no room for that.
+  explicit MeshInput(const std::string& path, const ReadMeshOptions& options = {});
   MeshInput(const MeshInput&) = delete;
   MeshInput& operator=(const MeshInput&) = delete;
 
   const std::string& path() const { return path_; }
+  const FilePtr& file() const { return file_; }
+
+  // The path of a file that this one names. Fails where it may name none.
+  std::string named_file(const std::string& name) const;
   std::uint64_t size() const { return size_; }
   std::uint64_t remaining() const { return size_ - position_; }
 
@@ -74,7 +80,7 @@ class MeshInput {
   std::string_view read_token();
 
   // Up to `bytes` bytes from the beginning, without moving.
-  std::string head(std::size_t bytes) const;
+  std::string head(std::size_t bytes) const { return file_->head(bytes); }
 
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -88,8 +94,9 @@ class MeshInput {
   std::size_t buffered(std::size_t wanted);
 
   std::string path_;
-  std::uint64_t size_ = 0;
-  int fd_ = -1;                 // after size_, which opening sets
+  ReadMeshOptions options_;
+  FilePtr file_;
+  std::uint64_t size_;
   std::uint64_t position_ = 0;  // of the next byte to hand out
   std::vector<std::byte> buffer_;
   std::size_t next_ = 0;
@@ -170,6 +177,7 @@ void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
 TriangleMesh read_ply(MeshInput& input);
 TriangleMesh read_off(MeshInput& input);
+// PolyData and flat cells of unstructured grids, also of files that name others for their pieces.
 TriangleMesh read_vtp(MeshInput& input);
 TriangleMesh read_vtk(MeshInput& input);
 TriangleMesh read_glb(MeshInput& input);

@@ -257,7 +257,7 @@ class SceneReader {
   // A file of a few bytes can name the same numbers any number of times.
   void count_in(std::uint64_t numbers) {
     numbers_ += numbers;
-    if (numbers_ > kMostCopies * input_.size()) {
+    if (numbers_ > kMostCopies * file_.size()) {
       input_.fail("expected copies of meshes in proportion to the file, found more");
     }
   }

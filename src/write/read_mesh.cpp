@@ -7,6 +7,7 @@
 #include "isoweave/mesh.hpp"
 #include "parallel/float_environment.hpp"
 #include "volume/formats.hpp"
+#include "volume/header_text.hpp"
 #include "write/mesh_input.hpp"
 #include "write/mesh_words.hpp"
 
@@ -18,14 +19,13 @@ using mesh_io::MeshInput;
 constexpr std::size_t kHeadBytes = 4096;
 constexpr std::size_t kLongestKeyword = 40;
 
+// Whatever the case, and before ".gz".
 bool has_ending(const std::string& path, std::string_view ending) {
-  if (path.size() < ending.size()) return false;
-  const std::string_view tail = std::string_view(path).substr(path.size() - ending.size());
-  for (std::size_t i = 0; i < ending.size(); ++i) {
-    const char c = tail[i] >= 'A' && tail[i] <= 'Z' ? static_cast<char>(tail[i] - 'A' + 'a') : tail[i];
-    if (c != ending[i]) return false;
-  }
-  return true;
+  constexpr std::string_view kPacked = ".gz";
+  const std::string name = lower_case(path);
+  std::string_view stem = name;
+  if (stem.ends_with(kPacked)) stem.remove_suffix(kPacked.size());
+  return stem.ends_with(ending);
 }
 
 // The first statement after comments and empty lines is one that begins OBJ files.
@@ -97,11 +97,13 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
   if (has_ending(path, ".gltf")) input.fail("does not begin with '{'");
   if (has_ending(path, ".vtk")) input.fail("does not begin with the line '# vtk DataFile Version'");
-  if (has_ending(path, ".vtp")) input.fail("does not begin with a '<VTKFile' tag");
+  for (const std::string_view ending : {".vtp", ".pvtp", ".vtu", ".pvtu"}) {
+    if (has_ending(path, ending)) input.fail("does not begin with a '<VTKFile' tag");
+  }
   if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
   if (has_ending(path, ".off")) input.fail("does not begin with a line such as 'OFF' or 'COFF'");
   if (named_obj || looks_like_obj(text_of(head))) return mesh_io::read_obj(input);
-  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTK, GLB, glTF or 3MF file");
+  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
 }
 
 // Programs write 'nan' as the normal of a vertex that has none. Such normals are of no use, and others are made from
@@ -124,10 +126,9 @@ void note_missing_triangles(TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::string& path) {
+TriangleMesh read_mesh(const std::string& path, const ReadMeshOptions& options) {
   const StandardFloats floats;
-  MeshInput input(path);
-  if (input.size() == 0) input.fail("is empty, expected a mesh file");
+  MeshInput input(path, options);
   const std::string head = input.head(kHeadBytes);
   const bool named_obj = has_ending(path, ".obj");
   std::optional<TriangleMesh> told = read_by_content(input, head, named_obj);

@@ -17,29 +17,15 @@ struct Cells {
   }
 };
 
-// VTK's numbers of kinds of cells.
-enum CellType : std::uint64_t {
-  kEmpty,
-  kVertex,
-  kPolyVertex,
-  kLine,
-  kPolyLine,
-  kTriangle,
-  kStrip,
-  kPolygon,
-  kPixel,
-  kQuad
-};
-
 class VtkReader {
  public:
-  explicit VtkReader(MeshInput& input) : input_(input), file_(open_file(input.path())), mesh_(input) {}
+  explicit VtkReader(MeshInput& input) : input_(input), file_(input.file()), mesh_(input) {}
 
   TriangleMesh read() {
     for (auto words = file_.next_words(); !words.empty(); words = file_.next_words()) take_line(words);
     if (!has_points_) input_.fail("expected POINTS of PolyData, found none");
     if (grid_ && types_.size() != grid_->ends.size()) input_.fail("expected a type for each cell, found others");
-    for (std::size_t n = 0; grid_ && n < types_.size(); ++n) add_cell(types_[n], (*grid_)[n]);
+    for (std::size_t n = 0; grid_ && n < types_.size(); ++n) mesh_.add_cell(types_[n], (*grid_)[n]);
     for (const LegacyArray& array : file_.points.all) read_point_data(array);
     for (const LegacyArray& array : file_.cells.all) mesh_.leftovers.not_kept("cell array '" + array.name + "'");
     return mesh_.finish({});
@@ -150,21 +136,6 @@ class VtkReader {
                   " numbers, found others");
     }
     return cells;
-  }
-
-  void add_cell(std::uint64_t type, std::span<const std::uint64_t> corners) {
-    if (type == kTriangle || type == kPolygon || type == kQuad) {
-      mesh_.add_polygon(corners);
-    } else if (type == kStrip) {
-      mesh_.add_strip(corners);
-    } else if (type == kPixel && corners.size() == 4) {
-      mesh_.add_polygon(std::array{corners[0], corners[1], corners[3], corners[2]});
-    } else if (type <= kPolyLine) {
-      mesh_.leftovers.left_out(1, type >= kLine ? kLineCells : kPointCells);
-    } else {
-      input_.fail("expected cells that are triangles or polygons, found type " + std::to_string(type) +
-                  " (extract the surface first)");
-    }
   }
 
   void read_point_data(const LegacyArray& array) {

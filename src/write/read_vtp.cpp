@@ -1,4 +1,5 @@
-// VTP, VTK's XML polygons: tags up to the appended arrays, then the arrays of each piece in every encoding.
+// VTP and VTU, VTK's XML polygons and unstructured grids, and PVTP and PVTU, which name files for their pieces: tags up
+// to the appended arrays, then the arrays of each piece in every encoding.
 #include <algorithm>
 #include <map>
 
@@ -20,37 +21,40 @@ const VtkArray* find(const Arrays& arrays, std::string_view name) {
 
 struct VtpPiece {
   std::uint64_t points = 0, verts = 0, lines = 0, strips = 0, polys = 0;
+  std::uint64_t cells = 0;               // of an unstructured grid
+  std::string source;                    // the file that holds it
   std::string normals, scalars;          // names of the active arrays
   std::map<std::string, Arrays> arrays;  // by the section that they stand in: "Points", "Polys", ...
 };
 
+// One file, whose pieces go into a mesh.
 class VtpReader {
  public:
-  explicit VtpReader(MeshInput& input) : input_(input), file_(open_file(input.path())), tags_(file_), mesh_(input) {}
+  // `kind`: the one type of VTK XML that it may be of; empty: any that is a mesh.
+  VtpReader(const MeshInput& input, std::string kind, VtkMesh& mesh, MeshPlace& place)
+      : input_(input), kind_(std::move(kind)), file_(input.file()), tags_(file_), place_(place), mesh_(mesh) {}
 
-  TriangleMesh read() {
+  void read() {
     check_end();
     for (std::string tag = tags_.next(); !tag.empty() && take_tag(tag); tag = tags_.next()) {
     }
-    if (pieces_.empty()) input_.fail("expected a piece of PolyData, found none");
+    if (pieces_.empty()) input_.fail("expected a piece of " + form_.type + ", found none");
     for (const VtkArray& text : field_texts_) place_.take(text.name, text_of(text));
-    for (const VtpPiece& piece : pieces_) read_piece(piece);
-    return mesh_.finish(place_);
+    for (const VtpPiece& piece : pieces_) is_list() ? read_named(piece) : read_piece(piece);
   }
 
  private:
   void check_end() {
     constexpr std::uint64_t kTail = 64;
-    input_.move_to(input_.size() - std::min(input_.size(), kTail));
-    std::string tail(static_cast<std::size_t>(input_.remaining()), '\0');
-    input_.read(std::as_writable_bytes(std::span(tail)));
+    std::string tail(static_cast<std::size_t>(std::min(file_->size(), kTail)), '\0');
+    file_->read_at(file_->size() - tail.size(), std::as_writable_bytes(std::span(tail)));
     if (tail.find("</VTKFile>") == std::string::npos) input_.fail("truncated: expected '</VTKFile>' at the end");
   }
 
   // False when nothing but appended arrays follows.
   bool take_tag(std::string_view tag) {
-    constexpr std::array<std::string_view, 8> kSections{"FieldData", "PointData", "CellData", "Points",
-                                                        "Verts",     "Lines",     "Strips",   "Polys"};
+    constexpr std::array<std::string_view, 9> kSections{"FieldData", "PointData", "CellData", "Points", "Verts",
+                                                        "Lines",     "Strips",    "Polys",    "Cells"};
     const std::string_view name = vtk_tag_name(tag);
     if (name == "VTKFile") take_form(tag);
     if (name == "Piece") take_piece(tag);
@@ -68,11 +72,23 @@ class VtpReader {
 
   void take_form(std::string_view tag) {
     form_ = vtk_xml_form(tag, input_.path());
-    if (form_.type != "PolyData") input_.fail("expected VTK XML of type PolyData, found '" + form_.type + "'");
+    static constexpr std::array<std::string_view, 4> kMeshes{"PolyData", "UnstructuredGrid", "PPolyData",
+                                                             "PUnstructuredGrid"};
+    const bool is_mesh = std::find(kMeshes.begin(), kMeshes.end(), form_.type) != kMeshes.end();
+    if (kind_.empty() ? is_mesh : form_.type == kind_) return;
+    const std::string expected = kind_.empty() ? "PolyData or UnstructuredGrid" : kind_;
+    input_.fail("expected VTK XML of type " + expected + ", found '" + form_.type + "'");
   }
 
+  // A file of pieces in other files.
+  bool is_list() const { return form_.type.starts_with("PP") || form_.type.starts_with("PU"); }
+
   void take_piece(std::string_view tag) {
+    constexpr std::size_t kMostPieces = 4096;
+    if (pieces_.size() == kMostPieces) input_.fail("expected at most 4096 pieces, found more");
     VtpPiece piece;
+    piece.source = xml_attribute(tag, "Source");
+    piece.cells = count_of(tag, "NumberOfCells");
     piece.points = count_of(tag, "NumberOfPoints");
     piece.verts = count_of(tag, "NumberOfVerts");
     piece.lines = count_of(tag, "NumberOfLines");
@@ -142,14 +158,23 @@ class VtpReader {
     return found == piece.arrays.end() ? kNone : found->second;
   }
 
+  void read_named(const VtpPiece& piece) {
+    if (piece.source.empty()) input_.fail("expected a file as Source of each piece, found none");
+    const MeshInput input(input_.named_file(piece.source));
+    VtpReader(input, form_.type.substr(1), mesh_, place_).read();
+  }
+
   void read_piece(const VtpPiece& piece) {
-    if (piece.points == 0 && piece.polys == 0 && piece.strips == 0) return;
+    if (piece.points == 0 && piece.polys == 0 && piece.strips == 0 && piece.cells == 0) return;
     const Arrays& points = arrays_of(piece, "Points");
     if (points.empty() || points.front().components != 3) input_.fail("expected Points of 3 components, found none");
     VtkNumbers numbers = open(points.front(), 3 * piece.points);
     mesh_.add_points(numbers, piece.points, points.front().type == "Float32");
-    read_cells(piece, "Polys", piece.polys, &VtkMesh::add_polygon);
-    read_cells(piece, "Strips", piece.strips, &VtkMesh::add_strip);
+    using Corners = std::span<const std::uint64_t>;
+    read_cells(piece, "Polys", piece.polys, [&](std::size_t, Corners corners) { mesh_.add_polygon(corners); });
+    read_cells(piece, "Strips", piece.strips, [&](std::size_t, Corners corners) { mesh_.add_strip(corners); });
+    const std::vector<std::uint64_t> kinds = kinds_of(piece);
+    read_cells(piece, "Cells", piece.cells, [&](std::size_t n, Corners corners) { mesh_.add_cell(kinds[n], corners); });
     mesh_.leftovers.left_out(piece.verts, kPointCells);
     mesh_.leftovers.left_out(piece.lines, kLineCells);
     for (const VtkArray& array : arrays_of(piece, "PointData")) read_point_data(piece, array);
@@ -157,9 +182,20 @@ class VtpReader {
       mesh_.leftovers.not_kept("cell array '" + array.name + "'");
   }
 
-  // Where each cell ends among the corners, then the corners.
-  void read_cells(const VtpPiece& piece, const char* section, std::uint64_t count,
-                  void (VtkMesh::*add)(std::span<const std::uint64_t>)) {
+  // Of the cells of an unstructured grid.
+  std::vector<std::uint64_t> kinds_of(const VtpPiece& piece) {
+    if (piece.cells == 0) return {};
+    const VtkArray* const types = find(arrays_of(piece, "Cells"), "types");
+    if (types == nullptr) input_.fail("expected types of Cells, found none");
+    VtkNumbers numbers = open(*types, piece.cells);
+    std::vector<std::uint64_t> kinds;
+    for (std::uint64_t n = 0; n < piece.cells; ++n) kinds.push_back(numbers.index());
+    return kinds;
+  }
+
+  // Where each cell ends among the corners, then the corners. add(n, corners) takes each cell.
+  template <class Add>
+  void read_cells(const VtpPiece& piece, const char* section, std::uint64_t count, const Add& add) {
     if (count == 0) return;
     const VtkArray* const offsets = find(arrays_of(piece, section), "offsets");
     const VtkArray* const connectivity = find(arrays_of(piece, section), "connectivity");
@@ -179,10 +215,10 @@ class VtpReader {
     VtkNumbers corners = open(*connectivity, ends.back());
     std::vector<std::uint64_t> cell;
     std::uint64_t begin = 0;
-    for (const std::uint64_t end : ends) {
+    for (std::size_t n = 0; n < ends.size(); ++n) {
       cell.clear();
-      for (; begin < end; ++begin) cell.push_back(corners.index());
-      (mesh_.*add)(cell);
+      for (; begin < ends[n]; ++begin) cell.push_back(corners.index());
+      add(n, cell);
     }
   }
 
@@ -198,7 +234,8 @@ class VtpReader {
     }
   }
 
-  MeshInput& input_;
+  const MeshInput& input_;
+  std::string kind_;
   FilePtr file_;
   VtkTags tags_;
   VtkXmlForm form_;
@@ -206,12 +243,17 @@ class VtpReader {
   std::string section_;
   std::vector<VtkArray> field_texts_;
   std::vector<VtpPiece> pieces_;
-  MeshPlace place_;
-  VtkMesh mesh_;
+  MeshPlace& place_;
+  VtkMesh& mesh_;
 };
 
 }  // namespace
 
-TriangleMesh read_vtp(MeshInput& input) { return VtpReader(input).read(); }
+TriangleMesh read_vtp(MeshInput& input) {
+  VtkMesh mesh(input);
+  MeshPlace place;
+  VtpReader(input, "", mesh, place).read();
+  return mesh.finish(place);
+}
 
 }  // namespace isoweave::mesh_io

@@ -5,6 +5,24 @@
 
 namespace isoweave::mesh_io {
 
+namespace {
+
+// VTK's numbers of kinds of cells.
+enum CellKind : std::uint64_t {
+  kEmpty,
+  kVertex,
+  kPolyVertex,
+  kLine,
+  kPolyLine,
+  kTriangle,
+  kStrip,
+  kPolygon,
+  kPixel,
+  kQuad
+};
+
+}  // namespace
+
 // The points so far as doubles.
 void VtkMesh::widen() {
   if (is_wide_) return;
@@ -71,6 +89,21 @@ void VtkMesh::add_strip(std::span<const std::uint64_t> corners) {
     mesh_.triangles.push_back(n % 2 == 0 ? last : std::array{last[1], last[0], last[2]});
   }
   if (corners.size() < 3) leftovers.left_out(1, kFewCorners);
+}
+
+void VtkMesh::add_cell(std::uint64_t kind, std::span<const std::uint64_t> corners) {
+  if (kind == kTriangle || kind == kPolygon || kind == kQuad) {
+    add_polygon(corners);
+  } else if (kind == kStrip) {
+    add_strip(corners);
+  } else if (kind == kPixel && corners.size() == 4) {
+    add_polygon(std::array{corners[0], corners[1], corners[3], corners[2]});
+  } else if (kind <= kPolyLine) {
+    leftovers.left_out(1, kind >= kLine ? kLineCells : kPointCells);
+  } else {
+    input_.fail("expected cells that are triangles or polygons, found type " + std::to_string(kind) +
+                " (extract the surface first: vtkDataSetSurfaceFilter, or Extract Surface of ParaView)");
+  }
 }
 
 TriangleMesh VtkMesh::finish(const MeshPlace& place) {

@@ -34,6 +34,9 @@ class VtkMesh {
   void add_polygon(std::span<const std::uint64_t> corners);
   void add_strip(std::span<const std::uint64_t> corners);
 
+  // A cell of one of VTK's kinds, by its number. Fails for those that are no surface.
+  void add_cell(std::uint64_t kind, std::span<const std::uint64_t> corners);
+
   // Of this piece.
   std::uint64_t points() const { return points_; }
 

@@ -1,33 +1,30 @@
-// Entries of a zip archive, read forward one at a time.
+// Texts in a zip archive, read character by character.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "volume/zip_file.hpp"
 #include "write/mesh_input.hpp"
 
 namespace isoweave::mesh_io {
 
-// What the directory says of an entry.
-struct ZipRecord {
-  std::string name;
-  std::uint64_t flags = 0, method = 0, crc = 0, packed = 0, bytes = 0, offset = 0;
-};
+using isoweave::ZipRecord;
 
-// The directory, which may have a comment behind it.
-std::vector<ZipRecord> read_zip_directory(MeshInput& input);
+inline std::vector<ZipRecord> read_zip_directory(const MeshInput& input) {
+  return isoweave::read_zip_directory(input.file());
+}
 
-// The text of an entry, stored or deflated. Never gives more than the directory says, and checks length and CRC-32 at
-// the end. The input moves with it, so one is read at a time.
+// The text of an entry. Fails where it is not as the directory says.
 class ZipText {
  public:
-  ZipText(MeshInput& input, const ZipRecord& record);
-  ~ZipText();
-  ZipText(const ZipText&) = delete;
-  ZipText& operator=(const ZipText&) = delete;
+  ZipText(const MeshInput& input, const ZipRecord& record)
+      : bytes_(open_zip_entry(input.file(), record)),
+        text_(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, record.bytes)), '\0') {}
 
   // The next character, or -1 at the end.
   int get() {
@@ -36,22 +33,18 @@ class ZipText {
   }
 
  private:
-  struct Inflater;
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 
-  void open_entry();
-  bool refill();
-  std::size_t copy_some();
-  std::size_t inflate_some();
+  bool refill() {
+    next_ = 0;
+    filled_ = bytes_->read(std::as_writable_bytes(std::span(text_)));
+    return filled_ > 0;
+  }
 
-  MeshInput& input_;
-  ZipRecord record_;
-  std::uint64_t packed_left_ = 0, left_ = 0;
-  std::uint64_t found_crc_ = 0;
-  std::vector<std::byte> packed_text_;
+  std::unique_ptr<ByteStream> bytes_;
   std::string text_;
   std::size_t next_ = 0;
   std::size_t filled_ = 0;
-  std::unique_ptr<Inflater> inflater_;
 };
 
 }  // namespace isoweave::mesh_io

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -159,6 +160,33 @@ TEST(CliInputMeshes, CloudsOfPointsAreNoSurface) {
   const Result compared = run(folder.path(), {"compare", "a.obj", "a.obj"});
   EXPECT_EQ(compared.code, 3);
   EXPECT_NE(compared.err.find("expected a mesh with triangles"), std::string::npos);
+}
+
+// A scene whose data are in a file beside it, which only those who trust it read.
+TEST(CliInputMeshes, FilesThatAMeshNamesAreReadUnlessTheyMustNot) {
+  const files::Folder folder;
+  files::write_bytes(
+      folder / "a.gltf",
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,)"
+      R"("byteLength":36}],"buffers":[{"byteLength":36,"uri":"a.bin"}]})");
+  const std::string one("\0\0\x80?", 4), nought(4, '\0');
+  files::write_bytes(folder / "a.bin", nought + nought + nought + one + nought + nought + nought + one + nought);
+  for (std::vector<std::string> arguments :
+       std::vector<std::vector<std::string>>{{"check", "a.gltf"},
+                                             {"simplify", "a.gltf", "-o", "o.ply", "--error", "0"},
+                                             {"compare", "a.gltf", "a.gltf", "--samples", "10"},
+                                             {"render", "a.gltf", "-o", "o.png", "--size", "16x16"},
+                                             {"view", "a.gltf", "-o", "o.html"}}) {
+    const bool may_lack = arguments[0] == "render" || arguments[0] == "view";
+    const Result read = run(folder.path(), arguments);
+    if (may_lack && read.code != 0 && read.err.find("build") != std::string::npos) continue;
+    EXPECT_EQ(read.code, 0) << arguments[0] << read.err;
+    for (const char* written : {"o.ply", "o.png", "o.html"}) std::filesystem::remove(folder / written);
+    arguments.emplace_back("--no-external");
+    program::expect_failed(run(folder.path(), arguments), 3, "a file that names no other, as --no-external asks");
+    EXPECT_EQ(program::listing(folder), (std::vector<std::string>{"a.bin", "a.gltf"})) << arguments[0];
+  }
 }
 
 }  // namespace

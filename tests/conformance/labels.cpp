@@ -264,10 +264,10 @@ class FailingSink final : public MeshSink {
 TEST(LabelSweepOptions, AnErrorInOneLabelEndsAll) {
   for (const int threads : {1, 4}) {
     for (const bool large : {true, false}) {
-      MemorySink sinks[3];
+      MemorySink sinks[6];
       FailingSink failing;
       std::vector<LabelSink> labels{{1, &sinks[0], {}}, {2, &failing, {}}, {300, &sinks[1], {}}, {7, &sinks[2], {}}};
-      if (!large) labels.insert(labels.end(), 3, labels[3]);
+      if (!large) labels.insert(labels.end(), {{7, &sinks[3], {}}, {7, &sinks[4], {}}, {7, &sinks[5], {}}});
       RunControl control;
       control.threads = threads;
       MeshOptions options;

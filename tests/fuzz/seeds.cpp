@@ -128,6 +128,7 @@ void put_plain_headers(Seeds& seeds) {
                                  .magic = false}) +
                          samples);
     seeds.put("npy", npy_header(big ? ">i2" : "<i2", "(5, 2, 3)", big) + samples);
+    seeds.put("npy", npy_header(big ? ">f2" : "<f2", "(5, 2, 3)", big) + samples);
     seeds.put("npy", npy_header(big ? ">i2" : "<i2", "(1L, 10, 3,)", false, big ? 2 : 3) + samples);
     seeds.put("mgh", mgh_header({.placed = big, .centre = {1, 2, 3}}) + stored(ramp<std::int16_t>(3 * 2 * 5), true));
   }
@@ -343,6 +344,7 @@ void put_meshes(Seeds& seeds) {
     sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
     sink->finish();
     seeds.put(name, get(folder / ("a." + name)));
+    seeds.put("mesh_gzip", gzipped(get(folder / ("a." + name))));
   }
   mesh.offset = {500000.1, 4649776.7, 120.3};
   mesh.unit = "m";

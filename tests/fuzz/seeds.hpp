@@ -31,7 +31,7 @@ class Seeds {
 // Zarr 2 and 3, OME-Zarr, N5.
 void put_arrays(Seeds& seeds);
 
-// Meshes of other programs in VTP, legacy VTK, 3MF and GLB.
+// Meshes of other programs in VTP, legacy VTK, 3MF and GLB; volumes in VTR and NPZ.
 void put_packages(Seeds& seeds);
 
 }  // namespace isoweave::fuzz

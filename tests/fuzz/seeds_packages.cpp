@@ -1,4 +1,6 @@
-// Seeds of meshes in packages and scenes: VTP, legacy VTK, 3MF, GLB.
+// Seeds in packages and scenes: meshes in VTP, VTU, legacy VTK, 3MF and GLB, volumes in VTR and NPZ.
+#include "foreign_meshes.hpp"
+#include "header_helpers.hpp"
 #include "seeds.hpp"
 
 namespace isoweave::fuzz {
@@ -31,9 +33,32 @@ void put_vtp(Seeds& seeds) {
   }
   seeds.put("vtp", head + cells + "</Piece></PolyData><AppendedData encoding=\"raw\">_" + little(36) + points() +
                        "</AppendedData></VTKFile>");
+  seeds.put("pvtp",
+            "<VTKFile type=\"PPolyData\"><PPolyData><Piece Source=\"a_0.vtp\"/><Piece Source=\"a_0.vtp\"/></PPolyData>"
+            "</VTKFile>" +
+                kNext + head + cells + "</Piece></PolyData><AppendedData encoding=\"raw\">_" + little(36) + points() +
+                "</AppendedData></VTKFile>");
   const std::string base64 = "JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAA==";
   seeds.put("vtp", head + cells + "</Piece></PolyData><AppendedData encoding=\"base64\">_" + base64 +
                        "</AppendedData></VTKFile>");
+}
+
+// Triangle, pixel and line.
+void put_vtu(Seeds& seeds) {
+  const auto array = [](const std::string& attributes, const std::string& numbers) {
+    return "<DataArray " + attributes + " format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  const std::string grid =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"3\"><Points>" +
+      array("type=\"Float64\" NumberOfComponents=\"3\"", "0 0 0 1 0 0 0 1 0 1 1 0") + "</Points><Cells>" +
+      array("type=\"Int32\" Name=\"connectivity\"", "0 1 2 0 1 2 3 0 1") +
+      array("type=\"Int32\" Name=\"offsets\"", "3 7 9") + array("type=\"UInt8\" Name=\"types\"", "5 8 3") +
+      "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  seeds.put("vtu", grid);
+  seeds.put("pvtp",
+            "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"a_1.vtu\"/></PUnstructuredGrid>"
+            "</VTKFile>" +
+                kNext + kNext + grid);
 }
 
 void put_legacy(Seeds& seeds) {
@@ -50,6 +75,42 @@ void put_legacy(Seeds& seeds) {
                        "RECTILINEAR_GRID\nDIMENSIONS 2 2 1\nX_COORDINATES 2 float\n0 1\nY_COORDINATES 2 double\n3 "
                        "5\nZ_COORDINATES 1 int\n7\nCELL_DATA 1\nFIELD f 1\na 1 1 unsigned_char\n7\nPOINT_DATA "
                        "4\nVECTORS v float\n1 2 3 4 5 6 7 8 9 10 11 12\nCOLOR_SCALARS c 1\n0 0.25 0.5 1\n");
+}
+
+// A grid whose slices lie at 0, 1 and 3, and one in two pieces.
+void put_grids(Seeds& seeds) {
+  const auto array = [](const std::string& type, const std::string& numbers) {
+    return "<DataArray type=\"" + type + "\" Name=\"s\" format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  const auto piece = [&](const std::string& extent, const std::string& z, const std::string& samples) {
+    return "<Piece Extent=\"" + extent + "\"><PointData>" + array("Int16", samples) + "</PointData><Coordinates>" +
+           array("Float32", "0 1") + array("Int32", "0") + array("Float64", z) + "</Coordinates></Piece>";
+  };
+  const std::string head =
+      "<VTKFile type=\"RectilinearGrid\" byte_order=\"BigEndian\"><RectilinearGrid WholeExtent=\"0 1 0 0 0 2\">";
+  const std::string end = "</RectilinearGrid></VTKFile>";
+  seeds.put("vtr", head + piece("0 1 0 0 0 2", "0 1 3", "1 2 3 4 5 6") + end);
+  seeds.put("vtr", head + piece("0 1 0 0 0 1", "5 4", "1 2 3 4") + piece("0 1 0 0 1 2", "4 3", "3 4 5 6") + end);
+}
+
+// Arrays of NumPy in an archive: one, and two of which one has three axes.
+void put_archives(Seeds& seeds) {
+  const std::string samples(60, '\7');
+  const std::string volume = testing::npy_header("<i2", "(5, 2, 3)") + samples;
+  const std::string plane = testing::npy_header("<f8", "(2, 3)") + samples.substr(0, 48);
+  seeds.put("npz", foreign::zip_of({{"ct.npy", volume}}));
+  seeds.put("npz", foreign::zip_of({{"affine.npy", plane}, {"ct.npy", volume}}));
+  const std::string text = testing::npy_header("<f2", "(2, 5, 2, 3)", true) + samples + samples;
+  const std::string packed = testing::deflated(text, -15);
+  const ZipEntry entry{"v.npy", true, zip_crc(0, text), packed.size(), text.size(), 0};
+  std::string archive;
+  const auto append = [&archive](const std::vector<std::byte>& bytes) {
+    archive.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  append(zip_header(entry));
+  archive += packed;
+  append(zip_directory({&entry, 1}, archive.size()));
+  seeds.put("npz", archive);
 }
 
 void put_models(Seeds& seeds) {
@@ -78,6 +139,7 @@ void put_scenes(Seeds& seeds) {
   const auto length = static_cast<std::uint32_t>(binary.size());
   seeds.put("glb", "glTF" + little(2) + little(28 + length + 36) + little(length) + "JSON" + binary + little(36) +
                        std::string("BIN\0", 4) + points());
+  seeds.put("gltf", scene + R"(,"uri":"%61.bin"}]})" + kNext + points());
   seeds.put("gltf", scene + R"(,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
 }
 
@@ -85,7 +147,10 @@ void put_scenes(Seeds& seeds) {
 
 void put_packages(Seeds& seeds) {
   put_vtp(seeds);
+  put_vtu(seeds);
   put_legacy(seeds);
+  put_grids(seeds);
+  put_archives(seeds);
   put_models(seeds);
   put_scenes(seeds);
 }

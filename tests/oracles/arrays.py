@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Compares what isoweave reads of HDF5, Zarr 2 and N5 with what h5py, zarr and numcodecs wrote.
+"""Compares what isoweave reads of HDF5, Zarr 2, N5, NPY, NPZ and TIFF with what h5py, zarr, numcodecs, NumPy and
+tifffile wrote.
 
 tests/oracles/arrays.py DUMP_VOLUME    exit status 77 where the packages are not installed
 """
@@ -20,7 +21,13 @@ except ImportError as error:
     sys.exit(77)
 
 SHAPE = (11, 13, 17)  # z, y, x
+try:
+    import tifffile
+except ImportError:
+    tifffile = None
+
 CHUNKS = [(1, 13, 17), (4, 5, 6), (11, 1, 17), (16, 32, 32)]
+HALF = "f2"  # read as float32
 TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "f4", "f8"]
 
 
@@ -32,6 +39,13 @@ def volume(dtype, shape=SHAPE):
         return (values / 16 - 1000).astype(kind).reshape(shape)
     info = np.iinfo(kind)
     return (values % (int(info.max) - int(info.min)) + int(info.min)).astype(kind).reshape(shape)
+
+
+def halves(order):
+    """Halves of all kinds, those of the smallest exponent among them, and what they are as float32."""
+    data = (np.arange(int(np.prod(SHAPE)), dtype=np.uint16) * 13 % 0x7C00).view(np.float16).reshape(SHAPE)
+    data[::2] *= -1
+    return data.astype(order + HALF), data.astype(np.float32)
 
 
 class Comparison:
@@ -123,9 +137,36 @@ def compare_n5(comparison, folder):
         comparison.expect(f"n5 {chunk}", folder / f"chunks-{n}.n5", data)
 
 
+def compare_halves(comparison, folder):
+    for order in "<>":
+        data, expected = halves(order)
+        np.save(folder / "a.npy", data)
+        comparison.expect(f"npy {order}f2", folder / "a.npy", expected)
+        np.save(folder / "a.npy", np.asfortranarray(data))
+        comparison.expect(f"npy {order}f2 Fortran", folder / "a.npy", expected)
+        for write in (np.savez, np.savez_compressed):
+            write(folder / "a.npz", first=data, second=data[:, :5], third=data[0])
+            comparison.expect(f"npz {order}f2", folder / "a.npz", expected, "dataset=first")
+            comparison.expect(f"npz {order}f2", folder / "a.npz", expected[:, :5], "dataset=second")
+        for chunk in (None, (4, 5, 6)):
+            with h5py.File(folder / "a.h5", "w") as file:
+                file.create_dataset("v", data=data, chunks=chunk, compression="gzip" if chunk else None)
+            comparison.expect(f"hdf5 {order}f2", folder / "a.h5", expected)
+        path = folder / f"{'big' if order == '>' else 'little'}.zarr"
+        zarr.open(str(path), mode="w", shape=SHAPE, chunks=(4, 5, 6), dtype=data.dtype)[...] = data
+        comparison.expect(f"zarr {order}f2", path, expected)
+        path = folder / f"{'big' if order == '>' else 'little'}-fill.zarr"
+        zarr.open(str(path), mode="w", shape=SHAPE, chunks=(4, 5, 6), dtype=data.dtype, fill_value=0.1)
+        comparison.expect(f"zarr fill {order}f2", path, np.full(SHAPE, np.float16(0.1)).astype(np.float32))
+        if tifffile is not None:
+            for tile in (None, (16, 16)):
+                tifffile.imwrite(folder / "a.tif", data, byteorder=order, tile=tile, photometric="minisblack")
+                comparison.expect(f"tiff {order}f2 {tile}", folder / "a.tif", expected)
+
+
 def main():
     comparison = Comparison(sys.argv[1])
-    for compare in [compare_hdf5, compare_zarr2, compare_n5]:
+    for compare in [compare_hdf5, compare_zarr2, compare_n5, compare_halves]:
         with tempfile.TemporaryDirectory() as folder:
             compare(comparison, Path(folder))
     print(f"{comparison.done} arrays compared, {comparison.failed} differ")

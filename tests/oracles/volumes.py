@@ -307,6 +307,19 @@ def write_npy(folder):
         yield path, None
 
 
+def write_npz(folder):
+    """Stored and deflated, alone and beside an array of fewer axes."""
+    for name, write, arrays in (("s", np.savez, {}), ("c", np.savez_compressed, {}),
+                                ("two", np.savez_compressed, {"affine": np.eye(4)}),
+                                ("f", np.savez, {"ids": np.arange(4)})):
+        path = os.path.join(folder, f"{name}.npz")
+        write(path, ct=np.asfortranarray(VALUES) if name == "f" else VALUES, **arrays)
+        yield path, None
+    path = os.path.join(folder, "unnamed.npz")
+    np.savez(path, VALUES)
+    yield path, None
+
+
 def write_analyze(folder):
     """By nibabel, in its three dialects; all but the first keep a scale, which is 1 here."""
     for kind in (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage):
@@ -374,7 +387,7 @@ def in_index_space(oracle, path, mesh, digests):
 
 
 def check_unplaced(oracle, folder, mesh, digests):
-    for write in (write_tiff, write_png, write_legacy_vtk, write_raw, write_npy, write_analyze):
+    for write in (write_tiff, write_png, write_legacy_vtk, write_raw, write_npy, write_npz, write_analyze):
         place = os.path.join(folder, write.__name__)
         os.mkdir(place)
         for path, spacing in write(place):

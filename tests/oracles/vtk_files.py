@@ -86,7 +86,10 @@ def write_stl(corners, path):
 
 
 def write_vtp(mesh, path, mode, compressor="None", bits=64, big=False, pieces=1):
-    writer = vtk.vtkXMLPolyDataWriter()
+    write_xml(vtk.vtkXMLPolyDataWriter(), mesh, path, mode, compressor, bits, big, pieces)
+
+
+def write_xml(writer, mesh, path, mode, compressor, bits, big, pieces=1):
     writer.SetInputData(mesh)
     writer.SetFileName(path)
     if mode == "Raw":
@@ -159,7 +162,48 @@ class Meshes:
             write_legacy(grid, path, binary, version)
             self.expect(mesh, path)
 
-    def gltf(self):
+    def xml_grid(self):
+        mesh = surface("quads")
+        grid = vtk.vtkUnstructuredGrid()
+        grid.SetPoints(mesh.GetPoints())
+        grid.SetCells(vtk.VTK_QUAD, mesh.GetPolys())
+        path = os.path.join(self.folder, "grid.vtu")
+        for mode, compressor, bits, big in itertools.product(
+                ("Ascii", "Binary", "Appended", "Raw"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64), (False, True)):
+            if mode == "Ascii" and (compressor != "None" or big):
+                continue
+            write_xml(vtk.vtkXMLUnstructuredGridWriter(), grid, path, mode, compressor, bits, big)
+            self.expect(mesh, path)
+
+    def parts(self, kind):
+        """A file that names one for each piece: the source is cut by VTK's own filter."""
+        whole = surface(kind)
+        cut = vtk.vtkAppendPolyData()
+        for shift in (0, 5, 9):
+            moved = vtk.vtkTransformPolyDataFilter()
+            transform = vtk.vtkTransform()
+            transform.Translate(shift, 0, 0)
+            moved.SetTransform(transform)
+            moved.SetInputData(whole)
+            cut.AddInputConnection(moved.GetOutputPort())
+        cut.Update()
+        for mode in ("Ascii", "Binary", "Appended"):
+            writer = vtk.vtkXMLPPolyDataWriter()
+            writer.SetInputConnection(cut.GetOutputPort())
+            writer.SetNumberOfPieces(2)
+            writer.SetStartPiece(0)
+            writer.SetEndPiece(1)
+            getattr(writer, f"SetDataModeTo{mode}")()
+            path = os.path.join(self.folder, "parts.pvtp")
+            writer.SetFileName(path)
+            assert writer.Write() == 1
+            reader = vtk.vtkXMLPPolyDataReader()
+            reader.SetFileName(path)
+            reader.Update()
+            assert open(path).read().count("<Piece Source") >= 1
+            self.expect(reader.GetOutput(), path)
+
+    def gltf(self, inline):
         """A scene in metres: an actor that is turned, doubled and moved, as one of the nodes."""
         source = vtk.vtkSphereSource()
         mapper = vtk.vtkPolyDataMapper()
@@ -176,8 +220,8 @@ class Meshes:
         window.AddRenderer(renderer)
         exporter = vtk.vtkGLTFExporter()
         exporter.SetRenderWindow(window)
-        exporter.InlineDataOn()
-        path = os.path.join(self.folder, "scene.gltf")
+        exporter.SetInlineData(inline)
+        path = os.path.join(self.folder, f"scene{inline}.gltf")
         exporter.SetFileName(path)
         exporter.Write()
         properties = vtk.vtkMassProperties()
@@ -283,6 +327,32 @@ class Volumes:
             assert writer.Write() == 1
             self.expect(path, values, first)
 
+    def vtr(self, kind, cells):
+        data, values = image(kind, cells, grid=True)
+        first = np.array(ORIGIN) + np.array(SPACING) * (0.5 if cells else 0)
+        path = os.path.join(self.folder, f"{kind}{cells}.vtr")
+        for mode, compressor, bits, big in itertools.product(
+                ("Ascii", "Binary", "Appended", "Raw"), ("None", "ZLib", "LZ4", "LZMA"), (32, 64), (False, True)):
+            if mode == "Ascii" and (compressor != "None" or big):
+                continue
+            write_xml(vtk.vtkXMLRectilinearGridWriter(), data, path, mode, compressor, bits, big)
+            self.expect(path, values, first)
+
+    def uneven_slices(self):
+        """Of slices at 0, 1, 3, 4 and 5 six are made, one of them between two."""
+        data, values = image("float32", grid=True)
+        places = np.array([0, 1, 3, 4, 5]) * SPACING[2] + ORIGIN[2]
+        data.SetZCoordinates(numpy_to_vtk(places, deep=True))
+        made = np.insert(values, 2, (values[1].astype(float) + values[2]) / 2, axis=0)
+        for writer, name in ((vtk.vtkXMLRectilinearGridWriter(), "u.vtr"), (vtk.vtkRectilinearGridWriter(), "u.vtk")):
+            path = os.path.join(self.folder, name)
+            writer.SetInputData(data)
+            writer.SetFileName(path)
+            if name == "u.vtk":
+                writer.SetFileTypeToBinary()
+            assert writer.Write() == 1
+            self.expect(path, made, np.array(ORIGIN))
+
     def pieces(self):
         """In one file and in several; a source that can be cut is needed for that."""
         source = vtk.vtkRTAnalyticSource()
@@ -334,7 +404,11 @@ def main(program, dump):
             meshes.vtp(kind)
             meshes.legacy(kind)
         meshes.grid()
-        meshes.gltf()
+        for inline in (True, False):
+            meshes.gltf(inline)
+        meshes.xml_grid()
+        for kind in ("sphere", "strips"):
+            meshes.parts(kind)
         volumes = Volumes(oracle, dump, folder)
         for kind in (*TYPES, "bit"):
             for cells in (False, True):
@@ -344,6 +418,10 @@ def main(program, dump):
             volumes.legacy(kind, cells, grid, active=True)
         volumes.legacy("uint8", False, grid=False, active=False)
         volumes.legacy("uint16", True, grid=False, active=False)
+        for kind in ("int16", "float64", "uint8"):
+            for cells in (False, True):
+                volumes.vtr(kind, cells)
+        volumes.uneven_slices()
         volumes.pieces()
     oracle.finish()
 

@@ -249,9 +249,9 @@ TEST(ReadMesh, FormatIsToldByContentBeforeTheName) {
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   EXPECT_NO_THROW(parse("wrong.obj", ply));
   EXPECT_EQ(parse("no-ending", "# c\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size(), 1U);
-  EXPECT_EQ(failure("a.bin", "hello"), "is not a PLY, STL, OBJ, OFF, VTP, VTK, GLB, glTF or 3MF file");
+  EXPECT_EQ(failure("a.bin", "hello"), "is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
   EXPECT_EQ(failure("a.ply", "hello"), "does not begin with the line 'ply'");
-  EXPECT_EQ(failure("a.obj", ""), "is empty, expected a mesh file");
+  EXPECT_EQ(failure("a.obj", ""), "expected a mesh file, found an empty file");
 }
 
 TEST(ReadMesh, MissingFilesFoldersAndPipesAreErrors) {

@@ -1,5 +1,6 @@
 // GLB and glTF of other programs: nodes, accessors of every type, and what is refused.
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -184,9 +185,71 @@ TEST(ReadGltf, ReadsTextWithItsDataInIt) {
        {"uri", "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}};
   const TriangleMesh found = foreign::parse("a.gltf", gltf.scene.dump(2));
   EXPECT_EQ(found.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  gltf.scene["buffers"][0]["uri"] = "a.bin";
+  gltf.scene["buffers"][0]["uri"] = "data:text/plain,abc";
   EXPECT_EQ(foreign::failure("a.gltf", gltf.scene.dump()),
-            "expected all data in one file, as GLB has them, found 'a.bin'");
+            "expected data in base64 or the name of a file, found 'data:text/plain,abc'");
+}
+
+// A scene of a tetrahedron whose data are in a file of this name.
+std::string scene_beside(const std::string& uri, std::string& data) {
+  Gltf gltf;
+  gltf.show({{{"mesh", gltf.add_tetrahedron()}}});
+  gltf.scene["buffers"] = {{{"byteLength", gltf.data.size()}, {"uri", uri}}};
+  data = gltf.data;
+  return gltf.scene.dump();
+}
+
+TEST(ReadGltf, ReadsDataInAFileBesideIt) {
+  const files::Folder folder;
+  std::filesystem::create_directory(folder / "data");
+  std::string data;
+  const std::vector<std::pair<std::string, std::string>> names{
+      {"a.bin", "a.bin"},           {"data/a.bin", "data/a.bin"},
+      {"./data/../b.bin", "b.bin"}, {"a%20b%c3%a9.bin", "a b\xc3\xa9.bin"},
+      {"50%.bin", "50%.bin"},       {folder / "c.bin", "c.bin"}};
+  for (const auto& [uri, name] : names) {
+    files::write_bytes(folder / "a.gltf", scene_beside(uri, data));
+    files::write_bytes(folder / name, data);
+    const TriangleMesh mesh = read_mesh(folder / "a.gltf");
+    EXPECT_EQ(mesh.vertices, meshes::tetrahedron().vertices) << uri;
+    EXPECT_EQ(mesh.triangles, meshes::tetrahedron().triangles) << uri;
+    EXPECT_THROW(read_mesh(folder / "a.gltf", {.external = false}), BadInput) << uri;
+  }
+}
+
+// The first number may have the bytes that gzip begins with.
+TEST(ReadGltf, TakesDataBesideItAsTheyAre) {
+  const files::Folder folder;
+  std::string data;
+  const std::string scene = scene_beside("a.bin", data);
+  data.replace(0, 4, "\x1f\x8b\x08\x3f");
+  files::write_bytes(folder / "a.gltf", scene);
+  files::write_bytes(folder / "a.bin", data);
+  EXPECT_NEAR(read_mesh(folder / "a.gltf").vertices[0][0], 0.533, 1e-3);
+}
+
+TEST(ReadGltf, RefusesDataInFilesThatAreNotAsTheSceneSays) {
+  const files::Folder folder;
+  std::string data;
+  const auto refusal_with = [&](const std::string& uri, const ReadMeshOptions& options) {
+    files::write_bytes(folder / "a.gltf", scene_beside(uri, data));
+    try {
+      read_mesh(folder / "a.gltf", options);
+    } catch (const BadInput& error) {
+      return std::string(error.what()).substr(folder.path().size() + 1);
+    }
+    return std::string("nothing thrown");
+  };
+  EXPECT_EQ(refusal_with("a.bin", {}), "a.bin: cannot be opened: No such file or directory");
+  EXPECT_EQ(refusal_with("a.bin", {.external = false}),
+            "a.gltf: expected a file that names no other, as --no-external asks, found 'a.bin'");
+  EXPECT_EQ(refusal_with("http://x.org/a.bin", {}),
+            "a.gltf: expected data in base64 or the name of a file, found 'http://x.org/a.bin'");
+  files::write_bytes(folder / "a.bin", "");
+  EXPECT_EQ(refusal_with("a.bin", {}), "a.bin: expected the data of a mesh, found an empty file");
+  files::write_bytes(folder / "a.bin", data.substr(0, data.size() - 1));
+  EXPECT_TRUE(contains(refusal_with("a.bin", {}), "a.gltf: expected 24 bytes from byte 48 of a buffer, found 71 bytes"))
+      << refusal_with("a.bin", {});
 }
 
 TEST(ReadGltf, RefusesWhatItDoesNotRead) {

@@ -1,6 +1,10 @@
 // VTP and legacy VTK as VTK and others write them, by hand.
+#include <algorithm>
+
 #include "foreign_meshes.hpp"
+#include "isoweave/volume.hpp"
 #include "meshes.hpp"
+#include "packing.hpp"
 
 namespace isoweave {
 namespace {
@@ -109,7 +113,7 @@ TEST(ReadVtp, RefusesWhatIsWrong) {
   EXPECT_TRUE(contains(with(kNone), "connectivity and offsets in Polys"));
   EXPECT_TRUE(contains(with(cells("Polys", "0 1 2", "1000000")), "which cannot hold them"));
   EXPECT_EQ(failure("a.vtp", "<VTKFile type=\"ImageData\"></VTKFile>"),
-            "expected VTK XML of type PolyData, found 'ImageData'");
+            "expected VTK XML of type PolyData or UnstructuredGrid, found 'ImageData'");
   EXPECT_TRUE(contains(failure("a.vtp", vtp("")), "a piece of PolyData"));
   std::string infinite = vtp(piece("NumberOfPolys=\"1\"", kSquare));
   infinite.replace(infinite.find("0 0 0 1 0 0"), 11, "0 0 0 1 0 inf");
@@ -121,6 +125,114 @@ std::string legacy(const std::string& rest, const std::string& version = "4.2") 
 }
 
 const std::string kPoints = "POINTS 4 float\n0 0 0 1 0 0\n1 1 0 0 1 0\n\n";
+
+std::string xml(const std::string& kind, const std::string& inside) {
+  return "<VTKFile type=\"" + kind + "\" byte_order=\"LittleEndian\"><" + kind + ">" + inside + "</" + kind +
+         "></VTKFile>\n";
+}
+
+std::string vtu(const std::string& corners, const std::string& ends, const std::string& kinds) {
+  const std::string count = std::to_string(std::count(ends.begin(), ends.end(), ' ') + 1);
+  std::string all = cells("Cells", corners, ends);
+  all.insert(all.find("</Cells>"), array("type=\"UInt8\" Name=\"types\"", kinds));
+  return xml("UnstructuredGrid", piece("NumberOfCells=\"" + count + "\"", all));
+}
+
+// A polygon, a triangle, a pixel, whose corners go row by row, a strip, a line.
+TEST(ReadVtu, FlatCellsAreAMesh) {
+  const TriangleMesh mesh = parse("a.vtu", vtu("0 1 2 3 0 1 2 0 1 3 2 0 1 3 2 0 1", "4 7 11 15 17", "7 5 8 6 3"));
+  EXPECT_EQ(mesh.triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {3, 1, 2}}));
+  EXPECT_TRUE(has_note(mesh, "1 lines"));
+  EXPECT_EQ(parse("a.vtu", vtu("0 1 2 3", "4", "9")).triangles.size(), 2U);
+}
+
+TEST(ReadVtu, OtherCellsAreRefusedWithTheWayRound) {
+  EXPECT_EQ(failure("a.vtu", vtu("0 1 2 3", "4", "10")),
+            "expected cells that are triangles or polygons, found type 10 (extract the surface first: "
+            "vtkDataSetSurfaceFilter, or Extract Surface of ParaView)");
+  EXPECT_EQ(failure("a.vtu", vtu("0 1 2 7", "4", "9")), "a cell refers to point 7, there are 4");
+  EXPECT_TRUE(contains(failure("a.vtu", vtu("0 1 2 3", "3 4", "9")), "as many numbers as its header says"))
+      << failure("a.vtu", vtu("0 1 2 3", "3 4", "9"));
+  EXPECT_EQ(failure("a.vtu", xml("UnstructuredGrid", piece("NumberOfCells=\"1\"", cells("Cells", "0 1 2", "3")))),
+            "expected types of Cells, found none");
+  EXPECT_EQ(failure("a.vtu", "text"), "does not begin with a '<VTKFile' tag");
+  foreign::expect_damage_is_safe("a.vtu", vtu("0 1 2 3 0 1 2", "4 7", "7 5"));
+}
+
+TEST(ReadVtu, VolumesThatAreNoneSayThatTheyAreMeshes) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.vtu", vtu("0 1 2 3", "4", "9"));
+  try {
+    open_volume(folder / "a.vtu");
+    FAIL() << "a mesh was read as a volume";
+  } catch (const BadInput& error) {
+    EXPECT_TRUE(contains(error.what(), "'UnstructuredGrid', a mesh: isoweave simplify takes it")) << error.what();
+  }
+}
+
+// A list of pieces, and the pieces, in a folder.
+class Pieces {
+ public:
+  Pieces() {
+    const std::string square = piece("NumberOfPolys=\"1\"", kSquare);
+    put("a_0.vtp", vtp(square));
+    put("a_1.vtp", vtp(square + square));
+    put("b_0.vtu", vtu("0 1 2", "3", "5"));
+  }
+
+  void put(const std::string& name, const std::string& content) const { files::write_bytes(folder_ / name, content); }
+  std::string path() const { return folder_ / "a.pvtp"; }
+
+  TriangleMesh read(const std::string& kind, const std::vector<std::string>& sources, bool external = true) const {
+    std::string list = "<PPointData/>";
+    for (const std::string& source : sources) list += "<Piece Source=\"" + source + "\"/>";
+    put("a.pvtp", xml(kind, list));
+    return read_mesh(path(), {external});
+  }
+
+  // Without the path of the list.
+  std::string refusal(const std::string& kind, const std::vector<std::string>& sources, bool external = true) const {
+    try {
+      read(kind, sources, external);
+    } catch (const BadInput& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message.find('\n'), std::string::npos);
+      return message.starts_with(path()) ? message.substr(path().size() + 2) : message;
+    }
+    return "nothing thrown";
+  }
+
+ private:
+  files::Folder folder_;
+};
+
+TEST(ReadPvtp, PiecesInOtherFilesAreJoined) {
+  const Pieces pieces;
+  const TriangleMesh mesh = pieces.read("PPolyData", {"a_0.vtp", "a_1.vtp"});
+  EXPECT_EQ(mesh.vertices.size(), 12U);
+  EXPECT_EQ(mesh.triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}, {8, 9, 10}, {8, 10, 11}}));
+  EXPECT_TRUE(has_note(mesh, "3 pieces are joined"));
+  EXPECT_EQ(pieces.read("PUnstructuredGrid", {"b_0.vtu"}).triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  pieces.put("sub.vtp", testing::gzipped(vtp(piece("NumberOfPolys=\"1\"", kSquare))));
+  EXPECT_EQ(pieces.read("PPolyData", {"sub.vtp"}).triangles.size(), 2U);
+}
+
+TEST(ReadPvtp, WhatIsNoPieceIsRefused) {
+  const Pieces pieces;
+  EXPECT_EQ(pieces.refusal("PPolyData", {"a_0.vtp"}, false),
+            "expected a file that names no other, as --no-external asks, found 'a_0.vtp'");
+  EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"none.vtp"}), "none.vtp: cannot be opened"));
+  EXPECT_EQ(pieces.refusal("PPolyData", {""}), "expected a file as Source of each piece, found none");
+  EXPECT_EQ(pieces.refusal("PPolyData", {}), "expected a piece of PPolyData, found none");
+  EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"b_0.vtu"}), "b_0.vtu: expected VTK XML of type PolyData"));
+  // A list of itself.
+  EXPECT_TRUE(
+      contains(pieces.refusal("PPolyData", {"a.pvtp"}), "expected VTK XML of type PolyData, found 'PPolyData'"));
+  pieces.put("a_1.vtp", vtp(piece("NumberOfPolys=\"1\"", cells("Polys", "0 1 9", "3"))));
+  EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"a_0.vtp", "a_1.vtp"}), "a cell refers to point 9"));
+}
 
 TEST(ReadLegacyVtk, ReadsBothFormsOfCells) {
   const std::vector<Triangle> right{{0, 1, 2}, {0, 2, 3}};

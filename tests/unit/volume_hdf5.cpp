@@ -72,15 +72,34 @@ TEST(Hdf5, TypesAndByteOrders) {
   EXPECT_TRUE(contains(refusal(path, options), "expected a dataset '/', found a group"));
 }
 
+// A float of two bytes, by its fields and its bias.
+hid_t half_type(std::size_t bias) {
+  const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
+  H5Tset_fields(half, 15, 10, 5, 0, 10);
+  H5Tset_size(half, 2);
+  H5Tset_ebias(half, bias);
+  return half;
+}
+
+TEST(Hdf5, HalvesAreReadAsFloats) {
+  const TempFolder folder;
+  const hid_t half = half_type(15);
+  for (const H5T_order_t order : {H5T_ORDER_LE, H5T_ORDER_BE}) {
+    H5Tset_order(half, order);
+    Writer(folder / "b.h5").put<float>("/v", {2, 2, 3}, half, H5T_NATIVE_FLOAT);
+    std::vector<float> expected(12);
+    for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = static_cast<float>(n + 1);
+    EXPECT_EQ(read_file<float>(folder / "b.h5"), expected);
+  }
+  H5Tclose(half);
+}
+
 TEST(Hdf5, TheOnlyDatasetOfATypeThatIsNotReadIsNamed) {
   const TempFolder folder;
   {
-    const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
-    H5Tset_fields(half, 15, 10, 5, 0, 10);
-    H5Tset_size(half, 2);
-    H5Tset_ebias(half, 15);
-    Writer(folder / "b.h5").put<float>("/v", {2, 2, 2}, half, H5T_NATIVE_FLOAT);
-    H5Tclose(half);
+    const hid_t odd = half_type(14);
+    Writer(folder / "b.h5").put<float>("/v", {2, 2, 2}, odd, H5T_NATIVE_FLOAT);
+    H5Tclose(odd);
   }
   EXPECT_TRUE(contains(refusal(folder / "b.h5"), "in '/v', found float16"));
 }

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +20,7 @@
 
 #include "isoweave/error.hpp"
 #include "isoweave/volume.hpp"
+#include "packing.hpp"
 
 namespace isoweave::testing {
 
@@ -82,25 +82,6 @@ std::string stored(const std::vector<Sample>& samples, bool big = false) {
   for (const Sample sample : samples) bytes += bytes_of(sample, big);
   return bytes;
 }
-
-// zlib's wrapping of `window_bits`: 15 zlib, 31 gzip.
-inline std::string deflated(const std::string& data, int window_bits) {
-  z_stream zlib{};
-  deflateInit2(&zlib, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&zlib, data.size()) + 64, '\0');
-  std::string in = data;
-  zlib.next_in = reinterpret_cast<Bytef*>(in.data());
-  zlib.avail_in = static_cast<uInt>(in.size());
-  zlib.next_out = reinterpret_cast<Bytef*>(out.data());
-  zlib.avail_out = static_cast<uInt>(out.size());
-  deflate(&zlib, Z_FINISH);
-  out.resize(zlib.total_out);
-  deflateEnd(&zlib);
-  return out;
-}
-
-inline std::string gzipped(const std::string& data) { return deflated(data, 31); }
-inline std::string zlibbed(const std::string& data) { return deflated(data, 15); }
 
 // All slices of a source, `at_once` at a time.
 inline std::vector<std::byte> read_all(SliceSource& source, std::int64_t at_once = 2) {

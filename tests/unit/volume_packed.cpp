@@ -223,7 +223,6 @@ TEST(Unread, AreToldWithTheWayRound) {
       {gzipped(gzipped("twice")), "gzip twice"},
       {"\x28\xb5\x2f\xfd", "zstd -dc"},
       {tar, "a tar archive"},
-      {zip_of("arr_0.npy"), "numpy.save"},
       {zip_of("image.zarr/.zgroup"), "Zarr in a zip archive"},
       {zip_of("[Content_Types].xml"), "simplify"},
       {zip_of("read.me"), "a zip archive: unpack"},

@@ -273,9 +273,9 @@ TEST(VtkLegacyVariants, ReadsRectilinearGridsThatAreEven) {
   EXPECT_EQ(geometry.spacing[1], 0.5);
   EXPECT_EQ(geometry.direction[4], -1) << "coordinates that descend";
   EXPECT_EQ(geometry.origin, (std::array<double, 3>{1, 5, 7}));
-  EXPECT_TRUE(has_note(*source, "one Z coordinate"));
+  EXPECT_TRUE(has_note(*source, "one z coordinate"));
   EXPECT_EQ(samples_of<std::int16_t>(*source), (std::vector<std::int16_t>{1, 2, 3, 4, 5, 6}));
-  EXPECT_TRUE(contains(refusal(folder.put("b.vtk", rectilinear("1 1.2 1.3"))), "evenly spaced X_COORDINATES"));
+  EXPECT_TRUE(contains(refusal(folder.put("b.vtk", rectilinear("1 1.2 1.3"))), "evenly spaced x coordinates"));
   EXPECT_TRUE(contains(refusal(folder.put("b.vtk", rectilinear("1 1 1"))), "expected"));
 }
 

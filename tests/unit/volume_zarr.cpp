@@ -77,6 +77,35 @@ TEST(Zarr2, FillValuesOf64BitsAreNotRounded) {
   }
 }
 
+// Samples whose bits, as halves, are 1, 2, ...: multiples of 2^-24.
+TEST(Zarr2, HalvesAreReadAsFloats) {
+  const TempFolder folder;
+  std::vector<float> expected;
+  for (const std::int64_t bits : expected_samples<std::int64_t>({5, 4, 3})) {
+    expected.push_back(static_cast<float>(bits) * 0x1p-24F);
+  }
+  put_zarr2<std::uint16_t>(folder / "a", {{"dtype", "<f2"}});
+  EXPECT_EQ(read_file<float>(folder / "a"), expected);
+  put_zarr2<std::uint16_t>(folder / "b", {{"dtype", ">f2"}}, {.big = true});
+  EXPECT_EQ(read_file<float>(folder / "b"), expected);
+  put_zarr3<std::uint16_t>(folder / "c", {{"data_type", "float16"}});
+  EXPECT_EQ(read_file<float>(folder / "c"), expected);
+  const std::vector<std::pair<ArrayJson, float>> fills{
+      {-1.5, -1.5F}, {"0x3c01", 1 + 0x1p-10F}, {"Infinity", std::numeric_limits<float>::infinity()}, {nullptr, 0.0F}};
+  for (const auto& [fill, value] : fills) {
+    put_json(folder / "d/zarr.json", [&] {
+      ArrayJson metadata = kZarr3;
+      metadata.update({{"data_type", "float16"}, {"fill_value", fill}});
+      return metadata;
+    }());
+    EXPECT_EQ(read_file<float>(folder / "d"), std::vector<float>(60, value)) << fill;
+  }
+  for (const ArrayJson& fill : {ArrayJson("0x7fc00000"), ArrayJson(70000), ArrayJson("x")}) {
+    put_zarr2<std::uint16_t>(folder / "e", {{"dtype", "<f2"}, {"fill_value", fill}});
+    EXPECT_TRUE(contains(refusal(folder / "e"), "a fill value of float16")) << fill;
+  }
+}
+
 TEST(Zarr2, Codecs) {
   const TempFolder folder;
   put_zarr2(folder / "gzip", {{"compressor", {{"id", "gzip"}}}}, {}, gzipped);
