@@ -1,4 +1,5 @@
 // Digests that hold on every machine, by every instruction set that this processor has.
+// Threads: none, digests of the loops that schedules.cpp has
 #include <gtest/gtest.h>
 
 #include <algorithm>

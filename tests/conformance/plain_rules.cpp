@@ -1,4 +1,5 @@
 // Whole meshes of the library, compared bit for bit with those of rules that were written a second time.
+// Threads: none, the loops are those of schedules.cpp
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Meshes in gzip and out of pipes: the same as from the plain file, and one line where the packing is damaged.
+// Threads: none, the thread here only feeds a pipe
 #include <sys/stat.h>
 
 #include <fstream>
