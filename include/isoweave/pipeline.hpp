@@ -102,7 +102,7 @@ Checkpoint read_checkpoint(const std::string& folder);
 class SweepObserver;
 
 struct RunControl {
-  int threads = 0;  // 0: one per processor
+  int threads = 0;  // 0: one per processor; at most 4096
   Schedule schedule = Schedule::kAutomatic;
   Device device = Device::kAutomatic;
   const std::atomic<bool>* stop = nullptr;        // set it, from a signal handler say, and the run throws Interrupted
