@@ -96,7 +96,7 @@ async function until(page, condition, ms = 60000) {
 }
 
 const state = (page) => page.evaluate(`document.getElementById('state').dataset.state`);
-const kComplete = `document.getElementById('state').dataset.state === 'complete'`;
+const kComplete = `document.getElementById('state')?.dataset.state === 'complete'`;
 const drawn = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) =>
   ({ final: view.final.triangles, undecided: view.undecided.triangles }))`);
 const numbers = (page) => page.evaluate(`Object.fromEntries(['layer', 'layers', 'final', 'undecided', 'live', 'bytes'].map((id) =>
@@ -126,7 +126,7 @@ const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) =
 
 describe('a sweep', () => {
   test('is seen while it runs, and ends with the numbers of the report', () => withWatched(kSlower, kSmall, async (page, run) => {
-    await until(page, `window.isoweave.news()?.frame > 1 && document.getElementById('state').dataset.state === 'running'`);
+    await until(page, `window.isoweave.news()?.frame > 1 && document.getElementById('state')?.dataset.state === 'running'`);
     await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 2000 && view.undecided.triangles > 500)`);
     let some;
     await run.stopped(async () => {
@@ -172,7 +172,7 @@ describe('a sweep', () => {
     await until(page, `window.isoweave.news()?.frame > 1`);
     run.process.kill('SIGINT');
     assert.equal(await run.ended, 130);
-    await until(page, `document.getElementById('state').dataset.state === 'gone'`);
+    await until(page, `document.getElementById('state')?.dataset.state === 'gone'`);
     assert.match(await visibleText(page, 'state'), /does not answer any more/);
     assert.ok((await drawn(page)).undecided > 0);
   }, { errors: [/ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|ERR_SOCKET_NOT_CONNECTED|ERR_EMPTY_RESPONSE|ERR_INVALID_CHUNKED|ERR_CONTENT_LENGTH/] }));
