@@ -46,8 +46,7 @@ TEST(Mrc, ReadsItsModesAndNamesTheOthers) {
   EXPECT_EQ(type(1), SampleType::kInt16);
   EXPECT_EQ(type(2), SampleType::kFloat32);
   EXPECT_EQ(type(6), SampleType::kUint16);
-  for (const auto& [mode, name] :
-       {std::pair{3, "complex"}, {4, "complex"}, {16, "RGB"}, {101, "4 bits"}}) {
+  for (const auto& [mode, name] : {std::pair{3, "complex"}, {4, "complex"}, {16, "RGB"}, {101, "4 bits"}}) {
     fields.mode = mode;
     EXPECT_TRUE(contains(refusal(folder.put("a.mrc", mrc_file(fields))), name));
   }

@@ -124,7 +124,8 @@ TEST(Vti, RefusesWhatItDoesNotRead) {
   };
   VtiForm packed;
   packed.block = 50;
-  EXPECT_TRUE(contains(with("ImageData\"", "PolyData\""), "expected VTK XML of type ImageData or RectilinearGrid, found 'PolyData'"));
+  EXPECT_TRUE(contains(with("ImageData\"", "PolyData\""),
+                       "expected VTK XML of type ImageData or RectilinearGrid, found 'PolyData'"));
   EXPECT_TRUE(contains(with("vtkZLib", "vtkOdd", packed), "found 'vtkOddDataCompressor'"));
   EXPECT_TRUE(contains(with("type=\"Int16\"", "type=\"Int128\""), "found 'Int128'"));
   EXPECT_TRUE(contains(with("format=\"binary\"", "format=\"odd\""), "found 'odd'"));
