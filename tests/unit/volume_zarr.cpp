@@ -93,11 +93,9 @@ TEST(Zarr2, HalvesAreReadAsFloats) {
   const std::vector<std::pair<ArrayJson, float>> fills{
       {-1.5, -1.5F}, {"0x3c01", 1 + 0x1p-10F}, {"Infinity", std::numeric_limits<float>::infinity()}, {nullptr, 0.0F}};
   for (const auto& [fill, value] : fills) {
-    put_json(folder / "d/zarr.json", [&] {
-      ArrayJson metadata = kZarr3;
-      metadata.update({{"data_type", "float16"}, {"fill_value", fill}});
-      return metadata;
-    }());
+    ArrayJson metadata = kZarr3;
+    metadata.update({{"data_type", "float16"}, {"fill_value", fill}});
+    put_json(folder / "d/zarr.json", metadata);
     EXPECT_EQ(read_file<float>(folder / "d"), std::vector<float>(60, value)) << fill;
   }
   for (const ArrayJson& fill : {ArrayJson("0x7fc00000"), ArrayJson(70000), ArrayJson("x")}) {
