@@ -114,7 +114,7 @@ RawLayout parse_raw_layout(std::string_view text);
 // Reads "foot_256x256x256_uint8.raw" as a layout; nothing if the name does not say one.
 std::optional<RawLayout> raw_layout_from_name(std::string_view path);
 
-// What becomes of slices that are not evenly spaced (DICOM, rectilinear grids of VTK):
+// The treatment of slices that are not evenly spaced (DICOM, rectilinear grids of VTK):
 //   refuse    BadInput, which names the distances
 //   resample  slices at an even distance, linear between the two nearest ones, on the way; a note says so
 //   mean      slices as they are, at their mean distance: not where they were

@@ -81,7 +81,7 @@ class DescriptorFile final : public InputFile {
   bool unnamed_;
 };
 
-// What messages say was expected where a file is empty or none.
+// The kind of file that messages say was expected, where a file is empty or none.
 inline constexpr std::string_view kVolumeFile = "a volume file";
 
 // Throws BadInput when the path is missing, not a regular file, not readable or empty.

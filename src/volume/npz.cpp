@@ -40,7 +40,7 @@ FilePtr open_array(const FilePtr& file, const NpzArray& array) {
                                       [file, record] { return open_zip_entry(file, record); });
 }
 
-// What is known of an array before it is chosen.
+// An array of the archive, as far as it is known before it is chosen.
 struct NpzLook {
   bool is_volume = false;
   std::string text;  // "'ct' (5 x 4 x 3 int16)"

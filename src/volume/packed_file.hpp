@@ -22,7 +22,7 @@ class PackedFile final : public InputFile {
   // A file in gzip. Throws BadInput when the first bytes cannot be inflated, or there are none.
   explicit PackedFile(const FilePtr& stored, std::string_view wanted = kVolumeFile);
 
-  // What a stream gives, as many bytes as are said.
+  // The bytes that a stream gives; their number is told before.
   PackedFile(const std::string& path, std::uint64_t bytes, Opener open);
 
   std::uint64_t exact_size() const override;

@@ -1,4 +1,4 @@
-// What a user names as a volume or a mesh: a file, or a pipe, whose content is kept in a file without a name.
+// The input that a user names as a volume or a mesh: a file, or a pipe, whose content is kept in a file without a name.
 #pragma once
 
 #include <string>

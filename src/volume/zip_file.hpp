@@ -12,7 +12,7 @@
 
 namespace isoweave {
 
-// What the directory says of an entry.
+// An entry as the directory of the archive describes it.
 struct ZipRecord {
   std::string name;
   std::uint64_t flags = 0, method = 0, crc = 0, packed = 0, bytes = 0, offset = 0;

@@ -78,16 +78,12 @@ std::string new_name(const std::string& path) { return path + ".new"; }
 
 // A part that has become the mesh already, under a second name, must not be written to: it goes on as a copy.
 void own_part(const std::string& path, std::uint64_t size) {
-  const std::string name = new_name(path);
   const int from = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (from < 0) cannot_write(path, "cannot be opened", errno);
   OutputDescriptor part(from, path, size);
-  const int to = ::open(name.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
-  if (to < 0) cannot_write(name, "cannot be created", errno);
-  OutputDescriptor copy(to, name);
+  AtomicFile copy(path);
   copy.append(part);
-  copy.close();
-  if (::rename(name.c_str(), path.c_str()) != 0) cannot_write(path, "cannot be replaced", errno);
+  copy.commit();
 }
 
 OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
@@ -509,9 +505,9 @@ OutputDescriptor open_part(const PartFile& part) {
 
 void remove_part(const std::string& path) {
   ::unlink(path.c_str());
-  for (const std::string& name : {overwritten_name(path), new_name(path), new_name(overwritten_name(path))}) {
-    ::unlink(name.c_str());
-  }
+  const std::string overwritten = overwritten_name(path);
+  ::unlink(overwritten.c_str());
+  ::unlink(new_name(overwritten).c_str());
 }
 
 int open_scratch(const std::string& path) { return open_scratch_in(folder_of(checked_target(path)), path); }

@@ -1,4 +1,4 @@
-// What the mesh readers share: a file read from front to back through a bounded buffer, and numbers from text.
+// The tools that mesh readers share: a file read from front to back through a bounded buffer, and numbers from text.
 #pragma once
 
 #include <algorithm>

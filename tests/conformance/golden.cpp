@@ -33,7 +33,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-// What the options of a row say.
+// The options of a row, read from its arguments.
 class Arguments {
  public:
   explicit Arguments(const std::vector<std::string>& words) : words_(words) {}
