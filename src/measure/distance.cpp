@@ -162,6 +162,7 @@ MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const 
 }
 
 std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads) {
+  const StandardFloats floats;
   check_arguments(mesh);
   check_arguments(to);
   if (mesh.offset != to.offset) {

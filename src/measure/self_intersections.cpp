@@ -8,6 +8,7 @@
 #include "measure/geometry.hpp"
 #include "measure/triangle_pair.hpp"
 #include "measure/triangle_tree.hpp"
+#include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave {
@@ -123,6 +124,7 @@ class Counter {
 }  // namespace
 
 SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t listed, int threads) {
+  const StandardFloats floats;
   measure::require_finite_mesh(mesh);
   if (mesh.triangles.empty()) return {};
   return Counter(mesh, listed, Executor(threads)).run();

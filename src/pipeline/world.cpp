@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "parallel/float_environment.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -84,6 +86,7 @@ double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_6
 
 // An offset is worth it where it takes most of the rounding away: else the volume is large, and not far away.
 std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space) {
+  const StandardFloats floats;
   constexpr double kLeft = 1.0 / 16;
   const double rounding = rounding_of_places(volume, space, false);
   const double left = half_last_place<float>(farthest_corner(volume, {0, 0, 0}));
