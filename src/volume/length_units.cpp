@@ -146,12 +146,4 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
   return common;
 }
 
-void take_unit(OpenedVolume& volume, const CommonUnit& unit) {
-  volume.info.geometry.unit = unit.unit;
-  volume.info.notes.insert(volume.info.notes.end(), unit.notes.begin(), unit.notes.end());
-  if (unit.conflict.empty()) return;
-  volume.unit_conflict = unit.conflict;
-  volume.info.notes.push_back("the units of the axes cannot be made one: " + unit.conflict);
-}
-
 }  // namespace isoweave

@@ -7,8 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/stream_source.hpp"
-
 namespace isoweave {
 
 // A unit that meshes and volumes are given in, m, mm, um, nm or in, and how many of it another unit is: a centimetre is
@@ -40,8 +38,5 @@ struct CommonUnit {
 // The unit of the first axis that has a known one. An axis of nothing plays no part; one whose unit is empty counts as
 // in the unit of the others, with a note.
 CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts);
-
-// Takes unit and notes over. A conflict becomes what open_volume refuses unless the caller gives the spacing.
-void take_unit(OpenedVolume& volume, const CommonUnit& unit);
 
 }  // namespace isoweave

@@ -9,6 +9,7 @@
 
 #include "isoweave/volume.hpp"
 #include "volume/byte_stream.hpp"
+#include "volume/length_units.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
@@ -45,6 +46,9 @@ class StreamSource final : public RowSource {
 // Throws std::invalid_argument unless [first, first + count) lies in the volume, not before `next`, and fits `out`.
 void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t first, std::int64_t count,
                        std::size_t out_bytes);
+
+// Takes unit and notes over. A conflict becomes what open_volume refuses unless the caller gives the spacing.
+void take_unit(OpenedVolume& volume, const CommonUnit& unit);
 
 // Reverses the bytes of every sample of `bytes_each` bytes.
 void swap_sample_bytes(std::span<std::byte> samples, std::size_t bytes_each);
