@@ -16,7 +16,7 @@
 
 #include "device/bulk_engine.hpp"
 #include "device/cuda_engine.hpp"
-#include "device/host_device.hpp"
+#include "device/simulated_device.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
 #include "pipeline/sweep.hpp"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "files/printable.hpp"
 #include "input_mesh.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/weld.hpp"
@@ -11,7 +12,6 @@
 #include "report.hpp"
 #include "signals.hpp"
 #include "verbs.hpp"
-#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {

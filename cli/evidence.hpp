@@ -4,10 +4,10 @@
 #include <functional>
 #include <optional>
 
+#include "files/atomic_file.hpp"
 #include "options.hpp"
 #include "page.hpp"
 #include "report.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave::cli {
 

@@ -5,13 +5,13 @@
 #include <memory>
 #include <optional>
 
+#include "files/printable.hpp"
 #include "options.hpp"
 #include "output.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "verbs.hpp"
 #include "volume/histogram.hpp"
-#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "components.hpp"
 #include "evidence.hpp"
+#include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "labels.hpp"
 #include "lods.hpp"
@@ -22,12 +23,11 @@
 #include "mesh_state.hpp"
 #include "options.hpp"
 #include "output.hpp"
-#include "pipeline/forecast_reader.hpp"
+#include "pipeline/forecast/forecast_reader.hpp"
 #include "report.hpp"
 #include "signals.hpp"
 #include "stop.hpp"
 #include "verbs.hpp"
-#include "volume/printable.hpp"
 #include "watch.hpp"
 
 namespace isoweave::cli {

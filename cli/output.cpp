@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "files/printable.hpp"
 #include "isoweave/error.hpp"
-#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "cli_app.hpp"
+#include "files/atomic_file.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 #include "mesh_output.hpp"
 #include "report.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave::cli {
 

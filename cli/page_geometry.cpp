@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "write/whole_mesh_sink.hpp"
+#include "mesh/write/whole_mesh_sink.hpp"
 
 namespace isoweave::cli {
 namespace {

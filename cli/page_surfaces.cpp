@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 #include "measure/triangle_tree.hpp"
 #include "parallel/parallel.hpp"
 

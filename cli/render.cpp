@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/atomic_file.hpp"
 #include "input_mesh.hpp"
 #include "isoweave/error.hpp"
 #include "options.hpp"
@@ -19,7 +20,6 @@
 #include "render/png.hpp"
 #include "signals.hpp"
 #include "verbs.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "files/printable.hpp"
 #include "output.hpp"
-#include "volume/printable.hpp"
 
 namespace isoweave::cli {
 namespace {

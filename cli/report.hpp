@@ -5,11 +5,11 @@
 #include <string>
 #include <string_view>
 
+#include "files/atomic_file.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "isoweave/volume.hpp"
 #include "volume/histogram.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave::cli {
 

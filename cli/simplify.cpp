@@ -10,6 +10,7 @@
 #include "input_mesh.hpp"
 #include "isoweave/weld.hpp"
 #include "lods.hpp"
+#include "mesh/write/mesh_format.hpp"
 #include "mesh_output.hpp"
 #include "options.hpp"
 #include "output.hpp"
@@ -17,7 +18,6 @@
 #include "signals.hpp"
 #include "stop.hpp"
 #include "verbs.hpp"
-#include "write/mesh_format.hpp"
 
 namespace isoweave::cli {
 namespace {

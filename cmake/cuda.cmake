@@ -22,7 +22,7 @@ function(isoweave_link_cuda library)
   if(NOT ISOWEAVE_HAS_CUDA)
     return()
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*/*.cu)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/device/*.cu)
   add_library(isoweave_cuda OBJECT ${sources})
   target_include_directories(isoweave_cuda PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   # The result is defined bit for bit: no contraction into FMA, on either side (docs/determinism.md).

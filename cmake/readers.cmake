@@ -1,6 +1,6 @@
 # Formats whose libraries may be missing. Each option is AUTO (take the format in if the library is there), ON (stop
-# without it) or OFF. What is left out is compiled as an error that says so (not_built.cpp in
-# src/volume, src/write and src/render).
+# without it) or OFF. What is left out is compiled as an error that says so (missing_formats.cpp in src/volume/formats,
+# missing_packers.cpp in src/mesh/write and missing_png.cpp in src/render).
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
@@ -21,8 +21,7 @@ macro(isoweave_reader name sources target package)
   list(APPEND ISOWEAVE_READERS ${name})
   if(NOT ISOWEAVE_HAS_${name})
     foreach(source ${sources})
-      list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/volume/${source}
-           ${PROJECT_SOURCE_DIR}/src/write/${source} ${PROJECT_SOURCE_DIR}/src/render/${source})
+      list(FILTER ISOWEAVE_SOURCES EXCLUDE REGEX "/${source}$")
     endforeach()
   endif()
 endmacro()

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "oracle.hpp"
-#include "pipeline/world.hpp"
+#include "output/world.hpp"
 
 namespace isoweave::testing {
 

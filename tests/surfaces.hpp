@@ -13,7 +13,7 @@
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
-#include "pipeline/final_output.hpp"
+#include "output/final_output.hpp"
 #include "pipeline/sweep.hpp"
 #include "sanitized.hpp"
 #include "simplify/simplifier.hpp"

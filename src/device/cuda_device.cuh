@@ -1,4 +1,4 @@
-// A CUDA device, as a BulkEngine needs one (host_device.hpp says what that is).
+// A CUDA device, as a BulkEngine needs one (simulated_device.hpp says what that is).
 //
 // Everything runs on one stream, but for slices on their way in, which have a stream of their own. The host waits where
 // it reads a count or a result, never within the rounds of a slab.
@@ -79,9 +79,10 @@ __device__ inline void add_totals(const RoundTotals& own, RoundTotals* sum) {
   fetch_add(sum->rounds, own.rounds);
 }
 
-// All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. The size of a list is set to
-// zero in a pass that neither reads that size nor adds to the list.
-static __global__ void __launch_bounds__(kThreads) rounds_kernel(RoundPasses<ScalarArithmetic> passes, RoundTotals* totals) {
+// All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. The size of a list is set
+// to zero in a pass that neither reads that size nor adds to the list.
+static __global__ void __launch_bounds__(kThreads)
+    rounds_kernel(RoundPasses<ScalarArithmetic> passes, RoundTotals* totals) {
   const cooperative_groups::grid_group grid = cooperative_groups::this_grid();
   const bool first = first_item() == 0;
   const auto size = [](const IndexList& list) { return std::int64_t{load_relaxed(*list.size)}; };

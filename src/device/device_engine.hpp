@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "device/final_passes.hpp"
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 #include "isoweave/simplify_options.hpp"
 #include "simplify/zone_view.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 

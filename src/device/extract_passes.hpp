@@ -4,11 +4,11 @@
 
 #include <bit>
 
+#include "extract/cube_rules.hpp"
 #include "extract/gradient.hpp"
-#include "extract/rules.hpp"
 #include "extract/tables.hpp"
+#include "lattice/lattice.hpp"
 #include "simplify/zone_view.hpp"
-#include "slab/lattice.hpp"
 
 namespace isoweave {
 

@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "extract/cell_kernels.hpp"
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 
 namespace isoweave {
 

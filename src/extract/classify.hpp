@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "extract/cube_rules.hpp"
 #include "extract/row_kernels.hpp"
-#include "extract/rules.hpp"
 #include "isoweave/volume.hpp"
 
 namespace isoweave {

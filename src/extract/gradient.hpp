@@ -8,8 +8,8 @@
 #include <type_traits>
 
 #include "isoweave/mesh.hpp"
-#include "parallel/host_device.hpp"
-#include "slab/vec3.hpp"
+#include "lattice/vec3.hpp"
+#include "parallel/annotations.hpp"
 
 namespace isoweave {
 

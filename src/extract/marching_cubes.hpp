@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "extract/cell_kernels.hpp"
+#include "extract/cube_rules.hpp"
 #include "extract/row_kernels.hpp"
-#include "extract/rules.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
+#include "lattice/lattice.hpp"
 #include "parallel/parallel.hpp"
-#include "slab/lattice.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "extract/gradient.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 #include "volume/threshold.hpp"
 
 namespace isoweave {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "isoweave/mesh.hpp"
+#include "lattice/vec3.hpp"
 #include "parallel/array.hpp"
-#include "slab/vec3.hpp"
 
 namespace isoweave {
 

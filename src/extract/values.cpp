@@ -1,7 +1,7 @@
 #include "extract/values.hpp"
 
 #include "extract/sample_view.hpp"
-#include "slab/value_rules.hpp"
+#include "lattice/value_rules.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {

@@ -4,9 +4,9 @@
 #include <array>
 
 #include "extract/surface_piece.hpp"
+#include "lattice/lattice.hpp"
 #include "parallel/parallel.hpp"
-#include "slab/lattice.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 

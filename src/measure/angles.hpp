@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "isoweave/measure.hpp"
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 
 namespace isoweave::measure {
 

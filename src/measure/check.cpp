@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
+#include "lattice/triangles.hpp"
 #include "measure/angles.hpp"
 #include "measure/check_around.hpp"
-#include "measure/geometry.hpp"
 #include "parallel/float_environment.hpp"
 
 namespace isoweave {

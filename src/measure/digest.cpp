@@ -5,7 +5,7 @@
 #include <compare>
 
 #include "isoweave/measure.hpp"
-#include "measure/splitmix64.hpp"
+#include "lattice/splitmix64.hpp"
 
 namespace isoweave {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
-#include "measure/geometry.hpp"
-#include "measure/splitmix64.hpp"
+#include "lattice/splitmix64.hpp"
+#include "lattice/triangles.hpp"
 #include "measure/triangle_tree.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"

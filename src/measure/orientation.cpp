@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 
 namespace isoweave::measure {
 namespace {

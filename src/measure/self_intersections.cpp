@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "isoweave/measure.hpp"
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 #include "measure/triangle_pair.hpp"
 #include "measure/triangle_tree.hpp"
 #include "parallel/float_environment.hpp"

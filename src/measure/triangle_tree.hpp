@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave::measure {

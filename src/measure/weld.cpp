@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "measure/geometry.hpp"
-#include "write/welder.hpp"
+#include "lattice/triangles.hpp"
+#include "mesh/read/welder.hpp"
 
 namespace isoweave {
 namespace {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "parallel/host_device.hpp"
+#include "parallel/annotations.hpp"
 
 namespace isoweave {
 

@@ -14,10 +14,10 @@
 #include <system_error>
 #include <utility>
 
+#include "files/atomic_file.hpp"
+#include "files/input_file.hpp"
 #include "isoweave/error.hpp"
 #include "system/file_facts.hpp"
-#include "volume/input_file.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave {
 namespace {

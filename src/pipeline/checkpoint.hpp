@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "files/state_file.hpp"
 #include "isoweave/pipeline.hpp"
-#include "pipeline/state_file.hpp"
 
 namespace isoweave {
 

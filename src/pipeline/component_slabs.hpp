@@ -1,9 +1,9 @@
 // Slabs that are looked at for their components and forgotten.
 #pragma once
 
-#include "extract/component_finder.hpp"
 #include "extract/marching_cubes.hpp"
 #include "pipeline/slab_engine.hpp"
+#include "select/component_finder.hpp"
 
 namespace isoweave {
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "device/device_engine.hpp"
+#include "output/surface_output.hpp"
 #include "pipeline/slab_engine.hpp"
-#include "pipeline/surface_output.hpp"
 
 namespace isoweave {
 

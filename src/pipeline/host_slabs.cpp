@@ -1,8 +1,8 @@
 #include "pipeline/host_slabs.hpp"
 
 #include "extract/values.hpp"
+#include "output/sweep_view.hpp"
 #include "pipeline/sweep.hpp"
-#include "pipeline/sweep_view.hpp"
 
 namespace isoweave {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "extract/component_filter.hpp"
 #include "extract/marching_cubes.hpp"
-#include "pipeline/final_output.hpp"
-#include "pipeline/full_output.hpp"
+#include "output/final_output.hpp"
+#include "output/full_output.hpp"
 #include "pipeline/slab_engine.hpp"
+#include "select/component_filter.hpp"
 #include "simplify/count_target.hpp"
 
 namespace isoweave {

@@ -7,10 +7,10 @@
 #include <span>
 
 #include "isoweave/pipeline.hpp"
+#include "output/world.hpp"
 #include "pipeline/host_slabs.hpp"
 #include "pipeline/surface_field.hpp"
-#include "pipeline/world.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "files/length_units.hpp"
 #include "isoweave/pipeline.hpp"
-#include "volume/length_units.hpp"
 
 namespace isoweave {
 namespace {

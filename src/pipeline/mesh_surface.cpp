@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isoweave/error.hpp"
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 #include "parallel/collect.hpp"
 #include "parallel/vertex_owners.hpp"
 

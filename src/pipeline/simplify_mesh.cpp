@@ -8,8 +8,8 @@
 #include <string>
 
 #include "isoweave/pipeline.hpp"
+#include "output/final_output.hpp"
 #include "parallel/float_environment.hpp"
-#include "pipeline/final_output.hpp"
 #include "pipeline/mesh_surface.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/sweep.hpp"

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "files/state_file.hpp"
 #include "isoweave/pipeline.hpp"
-#include "pipeline/state_file.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 

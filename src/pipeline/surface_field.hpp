@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 #include "isoweave/pipeline.hpp"
 #include "parallel/parallel.hpp"
 #include "volume/smoothed_mask.hpp"

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "isoweave/error.hpp"
-#include "pipeline/world.hpp"
-#include "slab/lattice.hpp"
-#include "volume/geometry.hpp"
+#include "lattice/lattice.hpp"
+#include "output/world.hpp"
+#include "volume/axes.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 

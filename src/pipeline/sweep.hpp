@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 #include "isoweave/pipeline.hpp"
+#include "pipeline/memory_model.hpp"
 #include "simplify/count_target.hpp"
 #include "simplify/simplifier.hpp"
-#include "slab/memory_model.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "isoweave/render.hpp"
-#include "slab/vec3.hpp"
+#include "lattice/vec3.hpp"
 
 namespace isoweave::render {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "isoweave/render.hpp"
-#include "slab/vec3.hpp"
+#include "lattice/vec3.hpp"
 
 namespace isoweave::render {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
 #include "render/colours.hpp"
 #include "render/shading.hpp"
 

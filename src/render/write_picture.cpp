@@ -1,9 +1,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "files/atomic_file.hpp"
 #include "isoweave/render.hpp"
 #include "render/png.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "slab/vec3.hpp"
+#include "lattice/vec3.hpp"
 
 namespace isoweave {
 

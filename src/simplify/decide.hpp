@@ -6,13 +6,13 @@
 
 #include "extract/gradient.hpp"
 #include "isoweave/simplify_options.hpp"
+#include "lattice/value_rules.hpp"
 #include "parallel/atomics.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/reach.hpp"
 #include "simplify/simplify_totals.hpp"
 #include "simplify/star.hpp"
 #include "simplify/zone_rules.hpp"
-#include "slab/value_rules.hpp"
 
 namespace isoweave {
 

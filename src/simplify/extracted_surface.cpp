@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "simplify/rules.hpp"
+#include "simplify/edge_rules.hpp"
 
 namespace isoweave {
 namespace {

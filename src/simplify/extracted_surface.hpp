@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "measure/geometry.hpp"
+#include "lattice/triangles.hpp"
+#include "lattice/vec3.hpp"
 #include "parallel/array.hpp"
 #include "simplify/reach.hpp"
-#include "slab/vec3.hpp"
 
 namespace isoweave {
 

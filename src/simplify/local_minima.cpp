@@ -1,16 +1,14 @@
 #include "simplify/local_minima.hpp"
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstddef>
-#include <exception>
-#include <mutex>
 #include <span>
 #include <thread>
 
 #include "parallel/collect.hpp"
 #include "simplify/columns.hpp"
 #include "simplify/turns.hpp"
+#include "simplify/work_pool.hpp"
 
 namespace isoweave {
 namespace {
@@ -29,82 +27,6 @@ struct LocalMinima::Stretch {
   std::size_t end = 0;
 };
 
-// What workers with much to do leave to those with nothing.
-class LocalMinima::Spare {
- public:
-  // One worker more is at work. It is not while it waits in take(), nor when it has left.
-  void enter() {
-    const std::lock_guard lock(mutex_);
-    ++working_;
-  }
-
-  void leave() {
-    const std::lock_guard lock(mutex_);
-    if (--working_ == 0) changed_.notify_all();
-  }
-
-  bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
-
-  // Takes the older half of a stack.
-  void give(std::vector<Index>& todo) {
-    const auto half = todo.begin() + static_cast<std::ptrdiff_t>(todo.size() / 2);
-    {
-      const std::lock_guard lock(mutex_);
-      vertices_.insert(vertices_.end(), todo.begin(), half);
-      wanted_ = false;
-    }
-    todo.erase(todo.begin(), half);
-    changed_.notify_one();
-  }
-
-  // Waits for something to do. False when nobody is at work any more.
-  bool take(std::vector<Index>& todo) {
-    if (failed()) return false;
-    std::unique_lock lock(mutex_);
-    if (--working_ == 0) changed_.notify_all();
-    ++waiting_;
-    wanted_ = true;
-    changed_.wait(lock, [&] { return !vertices_.empty() || working_ == 0 || failed(); });
-    --waiting_;
-    ++working_;
-    if (vertices_.empty() || failed()) return false;
-    todo.swap(vertices_);
-    wanted_ = waiting_ > 0;
-    return true;
-  }
-
-  // A worker has thrown. It may hold vertices for ever: the others end as soon as they see it.
-  void fail() {
-    failed_.store(true, std::memory_order_relaxed);
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  }
-  bool failed() const { return failed_.load(std::memory_order_relaxed); }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<Index> vertices_;
-  std::size_t working_ = 0;
-  std::size_t waiting_ = 0;
-  std::atomic<bool> wanted_{false};  // somebody waits, and nothing is there
-  std::atomic<bool> failed_{false};
-};
-
-// A worker's time at work, however it ends.
-struct LocalMinima::Shift {
-  explicit Shift(Spare& where) : spare(where) { spare.enter(); }
-  ~Shift() {
-    if (std::uncaught_exceptions() > exceptions) spare.fail();
-    spare.leave();
-  }
-  Shift(const Shift&) = delete;
-  Shift& operator=(const Shift&) = delete;
-
-  Spare& spare;
-  const int exceptions = std::uncaught_exceptions();
-};
-
 // Serves pairs. It holds both ends of one that it looks at, all their neighbours when it decides the edge, and the
 // vertex that it lets the pair wait for. It never waits for another worker with anything in hand.
 class LocalMinima::Worker {
@@ -114,9 +36,9 @@ class LocalMinima::Worker {
   const DecisionCounts& counts() const { return decider_.counts(); }
 
   // owners: nullptr when this is the only worker.
-  void begin(std::vector<std::uint16_t>* owners, Spare& spare) {
+  void begin(std::vector<std::uint16_t>* owners, WorkPool& pool) {
     owners_ = owners;
-    spare_ = &spare;
+    pool_ = &pool;
   }
 
   // Gives the edges of new triangles their keys, turns to the vertices that have all of them now, and serves what
@@ -142,7 +64,7 @@ class LocalMinima::Worker {
 
   // Serves what other workers leave, until all are through.
   void help(const std::atomic<bool>* stop) {
-    while (spare_->take(todo_)) serve_all(stop);
+    while (pool_->take(todo_)) serve_all(stop);
   }
 
  private:
@@ -150,7 +72,7 @@ class LocalMinima::Worker {
 
   void serve_all(const std::atomic<bool>* stop) {
     while (!todo_.empty() || !later_.empty()) {
-      if (todo_.size() >= kMuch && spare_->wanted()) spare_->give(todo_);
+      if (todo_.size() >= kMuch && pool_->wanted()) pool_->give(todo_);
       if (todo_.empty()) {
         todo_.swap(later_);
         std::this_thread::yield();
@@ -159,7 +81,7 @@ class LocalMinima::Worker {
       todo_.pop_back();
       if (!visit(top)) later_.push_back(top);
       release();
-      if (spare_->failed() || (stop != nullptr && stop->load(std::memory_order_relaxed))) {
+      if (pool_->failed() || (stop != nullptr && stop->load(std::memory_order_relaxed))) {
         todo_.clear();
         later_.clear();
         return;
@@ -322,7 +244,7 @@ class LocalMinima::Worker {
   void begin_turns(Index v) {
     if (zone_.states[v] == VertexState::kIncomplete) return;
     while (!hold(v)) {
-      if (spare_->failed()) return;
+      if (pool_->failed()) return;
       std::this_thread::yield();
     }
     give_turn(zone_, v);
@@ -351,7 +273,7 @@ class LocalMinima::Worker {
   Decider decider_;
   std::uint16_t number_;
   std::vector<std::uint16_t>* owners_ = nullptr;
-  Spare* spare_ = nullptr;
+  WorkPool* pool_ = nullptr;
   std::vector<Index> todo_;   // a stack: what was woken last lies nearest
   std::vector<Index> later_;  // met another worker
   std::vector<Index> held_;
@@ -382,15 +304,15 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
   if (!alone) owners_.assign(zone_.vertices.size(), 0);
   std::vector<Stretch> stretches(workers_.size());
   share_places(stretches);
-  Spare spare;
+  WorkPool pool;
   executor_.for_each(executor_.threads(), 1, [&](std::int64_t n) {
     const auto number = static_cast<std::size_t>(n);
     Worker& worker = *workers_[number];
-    worker.begin(alone ? nullptr : &owners_, spare);
-    const Shift shift(spare);
+    worker.begin(alone ? nullptr : &owners_, pool);
+    const WorkingTime working(pool);
     for (std::size_t m = 0; m < stretches.size(); ++m) {
       Stretch& stretch = stretches[(number + m) % stretches.size()];
-      for (std::size_t place = stretch.next++; place < stretch.end && !spare.failed(); place = stretch.next++) {
+      for (std::size_t place = stretch.next++; place < stretch.end && !pool.failed(); place = stretch.next++) {
         worker.settle(zone_.unsettled(place), stop);
         serve_place(place, worker, stop);
       }

@@ -28,8 +28,6 @@ class LocalMinima final : public Driver {
  private:
   class Worker;
   struct Stretch;
-  class Spare;
-  struct Shift;
 
   void give_turns_to_old();
   void list_let_through();

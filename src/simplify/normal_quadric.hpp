@@ -6,7 +6,7 @@
 // is a weighted mean, so that a quadric over position alone is left to be minimised.
 #pragma once
 
-#include "parallel/host_device.hpp"
+#include "parallel/annotations.hpp"
 #include "simplify/quadric.hpp"
 
 namespace isoweave {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "parallel/host_device.hpp"
-#include "slab/vec3.hpp"
+#include "lattice/vec3.hpp"
+#include "parallel/annotations.hpp"
 
 namespace isoweave {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "parallel/host_device.hpp"
+#include "parallel/annotations.hpp"
 
 namespace isoweave {
 

@@ -11,10 +11,10 @@
 #include <span>
 
 #include "isoweave/mesh.hpp"
-#include "parallel/host_device.hpp"
+#include "parallel/annotations.hpp"
+#include "simplify/edge_rules.hpp"
 #include "simplify/normal_quadric.hpp"
 #include "simplify/quadric.hpp"
-#include "simplify/rules.hpp"
 
 namespace isoweave {
 

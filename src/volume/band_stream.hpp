@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "volume/byte_stream.hpp"
+#include "files/byte_stream.hpp"
 
 namespace isoweave {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "volume/header_text.hpp"
-#include "volume/printable.hpp"
+#include "files/header_text.hpp"
+#include "files/printable.hpp"
 #include "volume/text_streams.hpp"
 
 namespace isoweave {

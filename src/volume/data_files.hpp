@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/byte_stream.hpp"
-#include "volume/formats.hpp"
+#include "files/byte_stream.hpp"
+#include "volume/formats/formats.hpp"
 
 namespace isoweave {
 

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "volume/fields.hpp"
-#include "volume/printable.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {

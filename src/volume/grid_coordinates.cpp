@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
-#include "volume/geometry.hpp"
-#include "volume/header_text.hpp"
+#include "files/header_text.hpp"
+#include "volume/axes.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {

@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "volume/header_text.hpp"
-#include "volume/input_file.hpp"
-#include "volume/printable.hpp"
+#include "files/header_text.hpp"
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
 
 namespace isoweave {
 namespace {

@@ -2,8 +2,8 @@
 #include <string>
 #include <type_traits>
 
-#include "volume/header_text.hpp"
-#include "volume/input_file.hpp"
+#include "files/header_text.hpp"
+#include "files/input_file.hpp"
 #include "volume/labels.hpp"
 #include "volume/samples.hpp"
 

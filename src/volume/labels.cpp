@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "files/input_file.hpp"
 #include "isoweave/error.hpp"
-#include "volume/input_file.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {

@@ -6,20 +6,20 @@
 #include <string>
 #include <utility>
 
+#include "files/external_files.hpp"
+#include "files/header_text.hpp"
+#include "files/printable.hpp"
+#include "files/whole_input.hpp"
 #include "isoweave/error.hpp"
 #include "parallel/float_environment.hpp"
-#include "volume/dicom_file.hpp"
-#include "volume/dicom_series.hpp"
-#include "volume/external_files.hpp"
-#include "volume/formats.hpp"
-#include "volume/geometry.hpp"
-#include "volume/header_text.hpp"
+#include "volume/axes.hpp"
+#include "volume/formats/dicom/dicom_file.hpp"
+#include "volume/formats/dicom/dicom_series.hpp"
+#include "volume/formats/formats.hpp"
+#include "volume/formats/images/slice_files.hpp"
+#include "volume/formats/images/slice_series.hpp"
+#include "volume/formats/other/unread_formats.hpp"
 #include "volume/packed_file.hpp"
-#include "volume/printable.hpp"
-#include "volume/slice_files.hpp"
-#include "volume/slice_series.hpp"
-#include "volume/unread_formats.hpp"
-#include "volume/whole_input.hpp"
 
 namespace isoweave {
 namespace {

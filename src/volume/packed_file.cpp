@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "volume/header_text.hpp"
+#include "files/header_text.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {

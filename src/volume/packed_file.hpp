@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "volume/byte_stream.hpp"
-#include "volume/input_file.hpp"
+#include "files/byte_stream.hpp"
+#include "files/input_file.hpp"
 
 namespace isoweave {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/array_axes.hpp"
-#include "volume/byte_stream.hpp"
+#include "files/byte_stream.hpp"
+#include "volume/formats/chunked/array_axes.hpp"
 
 namespace isoweave {
 

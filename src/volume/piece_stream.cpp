@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "volume/input_file.hpp"
+#include "files/input_file.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "files/byte_stream.hpp"
 #include "isoweave/volume.hpp"
-#include "volume/byte_stream.hpp"
 
 namespace isoweave {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "files/byte_stream.hpp"
 #include "isoweave/volume.hpp"
-#include "volume/byte_stream.hpp"
 
 namespace isoweave {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
 #include "volume/even_slices.hpp"
-#include "volume/input_file.hpp"
-#include "volume/printable.hpp"
 
 namespace isoweave {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <string_view>
 
+#include "files/byte_stream.hpp"
+#include "files/length_units.hpp"
 #include "isoweave/volume.hpp"
-#include "volume/byte_stream.hpp"
-#include "volume/length_units.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "volume/printable.hpp"
+#include "files/printable.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {

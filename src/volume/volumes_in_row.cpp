@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/array_axes.hpp"
+#include "volume/formats/chunked/array_axes.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "files/atomic_file.hpp"
+#include "files/header_text.hpp"
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
-#include "volume/header_text.hpp"
-#include "volume/input_file.hpp"
-#include "volume/printable.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave {
 namespace {

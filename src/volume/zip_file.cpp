@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "volume/printable.hpp"
+#include "files/printable.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/byte_stream.hpp"
-#include "volume/input_file.hpp"
+#include "files/byte_stream.hpp"
+#include "files/input_file.hpp"
 
 namespace isoweave {
 

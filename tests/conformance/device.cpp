@@ -7,7 +7,7 @@
 
 #include "device/bulk_engine.hpp"
 #include "device/cuda_engine.hpp"
-#include "device/host_device.hpp"
+#include "device/simulated_device.hpp"
 #include "pipeline/device_slabs.hpp"
 #include "surfaces.hpp"
 

@@ -1,9 +1,9 @@
 // Reads the input as the model in a 3MF archive, under a checksum that fits.
 #include <vector>
 
+#include "files/zip_archive.hpp"
 #include "input_files.hpp"
 #include "isoweave/mesh.hpp"
-#include "write/zip_archive.hpp"
 
 namespace {
 

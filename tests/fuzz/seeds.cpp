@@ -12,7 +12,7 @@
 #include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
-#include "volume/formats.hpp"
+#include "volume/formats/formats.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
 #include "dicom_helpers.hpp"

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <vector>
 
+#include "files/state_file.hpp"
 #include "input_files.hpp"
 #include "isoweave/pipeline.hpp"
-#include "pipeline/state_file.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 // Threads: none, a forecast is a run that surfaces.cpp has
 #include <gtest/gtest.h>
 
+#include "pipeline/memory_model.hpp"
 #include "pipeline/slab_plan.hpp"
-#include "slab/memory_model.hpp"
 #include "surfaces.hpp"
 
 namespace isoweave {

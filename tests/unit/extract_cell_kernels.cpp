@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "extract/cell_kernels.hpp"
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 
 namespace isoweave {
 namespace {

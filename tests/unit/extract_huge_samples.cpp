@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "extract/rules.hpp"
+#include "extract/cube_rules.hpp"
 #include "isoweave/pipeline.hpp"
-#include "slab/value_rules.hpp"
+#include "lattice/value_rules.hpp"
 
 namespace isoweave {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "files/zip_archive.hpp"
 #include "isoweave/mesh.hpp"
 #include "mesh_file_helpers.hpp"
-#include "write/zip_archive.hpp"
 
 namespace isoweave::foreign {
 

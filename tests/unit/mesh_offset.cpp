@@ -10,9 +10,9 @@
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
 #include "meshes.hpp"
 #include "surfaces.hpp"
-#include "write/mesh_file_sink.hpp"
 
 namespace isoweave {
 namespace {

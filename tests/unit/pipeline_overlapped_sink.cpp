@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "isoweave/error.hpp"
-#include "pipeline/overlapped_sink.hpp"
+#include "output/overlapped_sink.hpp"
 
 namespace isoweave {
 namespace {

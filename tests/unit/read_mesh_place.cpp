@@ -9,9 +9,9 @@
 #include "files.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
+#include "mesh/read/mesh_input.hpp"
+#include "mesh/read/mesh_place.hpp"
 #include "meshes.hpp"
-#include "write/mesh_input.hpp"
-#include "write/mesh_place.hpp"
 
 namespace isoweave {
 namespace {

@@ -4,10 +4,10 @@
 #include <random>
 #include <set>
 
+#include "lattice/lattice.hpp"
 #include "pipeline/sweep.hpp"
+#include "simplify/edge_rules.hpp"
 #include "simplify/radix_heap.hpp"
-#include "simplify/rules.hpp"
-#include "slab/lattice.hpp"
 
 namespace isoweave {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "isoweave/error.hpp"
-#include "slab/slice_window.hpp"
+#include "volume/slice_window.hpp"
 
 namespace isoweave {
 namespace {

@@ -1,5 +1,5 @@
 #include "header_helpers.hpp"
-#include "volume/run_lengths.hpp"
+#include "volume/formats/other/run_lengths.hpp"
 
 namespace isoweave::testing {
 namespace {

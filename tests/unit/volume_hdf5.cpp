@@ -1,7 +1,7 @@
 // HDF5: files written through the library itself.
 #include "hdf5_helpers.hpp"
-#include "volume/hdf5_library.hpp"
-#include "volume/lzf.hpp"
+#include "volume/formats/chunked/lzf.hpp"
+#include "volume/formats/hdf5/hdf5_library.hpp"
 
 namespace isoweave::testing {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "dicom_helpers.hpp"
 #include "isoweave/error.hpp"
-#include "volume/jpeg.hpp"
+#include "volume/formats/dicom/jpeg.hpp"
 
 namespace isoweave::testing {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <thread>
 
+#include "files/whole_input.hpp"
 #include "header_helpers.hpp"
 #include "volume/packed_file.hpp"
-#include "volume/whole_input.hpp"
 
 namespace isoweave::testing {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "volume/printable.hpp"
+#include "files/printable.hpp"
 
 namespace isoweave {
 namespace {

@@ -1,5 +1,5 @@
 #include "pvm_helpers.hpp"
-#include "volume/dds_stream.hpp"
+#include "volume/formats/other/dds_stream.hpp"
 
 namespace isoweave::testing {
 namespace {

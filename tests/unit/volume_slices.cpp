@@ -1,7 +1,7 @@
 // Series of one file per slice: how files are found and ordered, and what a series must have in common.
 #include "tiff_helpers.hpp"
-#include "volume/slice_files.hpp"
-#include "volume/slice_numbers.hpp"
+#include "volume/formats/images/slice_files.hpp"
+#include "volume/formats/images/slice_numbers.hpp"
 
 namespace isoweave::testing {
 namespace {

@@ -1,6 +1,6 @@
 // Units of length in every spelling, and axes whose units differ.
+#include "files/length_units.hpp"
 #include "isoweave/pipeline.hpp"
-#include "volume/length_units.hpp"
 #include "volume_helpers.hpp"
 
 namespace isoweave::testing {

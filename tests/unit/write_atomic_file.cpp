@@ -10,9 +10,9 @@
 #include <random>
 
 #include "files.hpp"
+#include "files/atomic_file.hpp"
 #include "isoweave/error.hpp"
 #include "meshes.hpp"
-#include "write/atomic_file.hpp"
 
 namespace isoweave {
 namespace {

@@ -8,9 +8,9 @@
 #include "files.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/mesh.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
+#include "mesh/write/mesh_format.hpp"
 #include "meshes.hpp"
-#include "write/mesh_file_sink.hpp"
-#include "write/mesh_format.hpp"
 
 namespace isoweave {
 namespace {

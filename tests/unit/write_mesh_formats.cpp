@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
+#include "files/zip_archive.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
+#include "mesh/read/zip_input.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
+#include "mesh/write/mesh_format.hpp"
 #include "meshes.hpp"
-#include "write/mesh_file_sink.hpp"
-#include "write/mesh_format.hpp"
-#include "write/zip_archive.hpp"
-#include "write/zip_input.hpp"
 
 namespace isoweave {
 namespace {

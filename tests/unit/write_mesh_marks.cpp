@@ -10,8 +10,8 @@
 #include "files.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
 #include "meshes.hpp"
-#include "write/mesh_file_sink.hpp"
 
 namespace isoweave {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "files.hpp"
 #include "isoweave/error.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
 #include "meshes.hpp"
-#include "write/mesh_file_sink.hpp"
 
 #ifdef ISOWEAVE_HAS_MESHOPTIMIZER
 #include <meshoptimizer.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "array_helpers.hpp"
-#include "volume/chunk_codecs.hpp"
+#include "volume/formats/chunked/chunk_codecs.hpp"
 
 #ifdef ISOWEAVE_HAS_ZSTD
 #include <zstd.h>

@@ -1,0 +1,72 @@
+#include "files/atomic_folder.hpp"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "files/atomic_file.hpp"
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr mode_t kNewFolderMode = 0777;  // the umask takes its share
+constexpr int kAttempts = 100;
+
+[[noreturn]] void cannot_write(const std::string& path, const std::string& what, int error) {
+  throw CannotWrite(path + ": " + what + ": " + std::generic_category().message(error));
+}
+
+// Beside the folder, as a rename cannot leave the file system.
+std::string make_temporary(const std::string& path) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::string name = temporary_name(path);
+    if (::mkdir(name.c_str(), kNewFolderMode) == 0) return name;
+    if (errno != EEXIST) cannot_write(path, "cannot create a folder in '" + folder_of(path) + "'", errno);
+  }
+  throw CannotWrite(path + ": no free temporary name in '" + folder_of(path) + "'");
+}
+
+}  // namespace
+
+std::string without_slashes(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  return path;
+}
+
+void AtomicFolder::check_free(const std::string& path) {
+  const std::filesystem::path name = without_slashes(path);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(name, error);
+  if (status.type() == std::filesystem::file_type::not_found) return;
+  const bool empty = std::filesystem::is_directory(status) && std::filesystem::is_empty(name, error);
+  if (!empty || error) throw CannotWrite(path + ": exists, expected nothing or an empty folder of that name");
+}
+
+AtomicFolder::AtomicFolder(const std::string& path) : path_(without_slashes(path)) {
+  check_free(path);
+  temporary_ = make_temporary(path_);
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
+}
+
+void AtomicFolder::write_file(const std::string& name, std::span<const std::byte> bytes) {
+  AtomicFile out(file(name));
+  out.write(bytes);
+  out.commit();
+}
+
+void AtomicFolder::commit() {
+  // An empty folder of that name is replaced, and nothing else can be.
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) cannot_write(path_, "cannot be renamed into place", errno);
+  temporary_.clear();
+  sync_folder(path_, path_);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,119 @@
+#include "mesh/write/glb_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "files/length_units.hpp"
+#include "mesh/write/mesh_file_sink.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+
+// As a quaternion. RAS: half a turn about the middle of y and z, (x, y, z) -> (-x, z, y). Others: a quarter turn about
+// x, (x, y, z) -> (x, z, -y).
+std::array<double, 4> turn_to_y_up(const std::string& space) {
+  const double half = std::sqrt(0.5);
+  if (space == "RAS") return {0, half, half, 0};
+  return {-half, 0, 0, half};
+}
+
+}  // namespace
+
+void Bounds::add(std::span<const Point> points) {
+  for (const Point& point : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], point[axis]);
+      high[axis] = std::max(high[axis], point[axis]);
+    }
+  }
+}
+
+std::vector<std::uint64_t> Bounds::state() const {
+  std::vector<std::uint64_t> numbers;
+  for (const Point& corner : {low, high}) {
+    for (const float coordinate : corner) numbers.push_back(std::bit_cast<std::uint32_t>(coordinate));
+  }
+  return numbers;
+}
+
+void Bounds::load(const std::vector<std::uint64_t>& state) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(state[axis]));
+    high[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(state[3 + axis]));
+  }
+}
+
+GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
+  GltfJson json;
+  json["asset"] = {{"version", "2.0"}, {"generator", kGltfGenerator}};
+  GltfJson& extras = json["asset"]["extras"];
+  extras["comments"] = options.comments;
+  extras["unit"] = options.unit;
+  extras["space"] = options.space;
+  if (has_offset(options)) extras["offset"] = options.offset;
+  json["scene"] = 0;
+  json["scenes"] = {{{"nodes", {0}}}};
+  GltfJson root{{"rotation", turn_to_y_up(options.space)}};
+  const double metres = unit_in(options.unit, "m").value_or(1);
+  if (metres != 1) root["scale"] = {metres, metres, metres};
+  if (placed.is_null() && has_offset(options)) {
+    root["children"] = {1};
+    json["nodes"] = {root, {{"mesh", 0}, {"translation", options.offset}}};
+  } else if (placed.is_null()) {
+    root["mesh"] = 0;
+    json["nodes"] = GltfJson::array({root});  // {root} is root to some compilers
+  } else {
+    root["children"] = {1};
+    json["nodes"] = {root, placed};
+  }
+  return json;
+}
+
+GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels) {
+  GltfJson json = gltf_scene(options.front(), GltfJson::object());
+  json["nodes"].erase(1);  // the root's child is the finest level
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    GltfJson& node = levels[level];
+    node["name"] = "lod" + std::to_string(level);
+    node["extras"]["comments"] = options[level].comments;
+    if (level > 0) levels[0]["extensions"]["MSFT_lod"]["ids"].push_back(level + 1);
+  }
+  for (GltfJson& node : levels) json["nodes"].push_back(std::move(node));
+  if (levels.size() > 1) json["extensionsUsed"] = {"MSFT_lod"};
+  return json;
+}
+
+GltfJson gltf_empty_scene(const MeshFileOptions& options) {
+  GltfJson json = gltf_scene(options);
+  json.erase("nodes");
+  json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
+  return json;
+}
+
+std::string gltf_text(const GltfJson& scene) { return scene.dump(-1, ' ', false, GltfJson::error_handler_t::replace); }
+
+std::vector<std::byte> glb_begin(const std::string& json, std::uint64_t json_bytes, std::uint64_t total) {
+  if (json.size() > json_bytes) throw std::logic_error("the scene of a GLB file is longer than was foreseen");
+  std::vector<std::byte> bytes(kGlbHeaderBytes + json_bytes, std::byte{' '});
+  std::byte* out = bytes.data();
+  for (const std::uint64_t word : {std::uint64_t{kGlbMagic}, std::uint64_t{2}, total, json_bytes}) {
+    store_u32(out, static_cast<std::uint32_t>(word));
+  }
+  store_u32(out, kJsonChunk);
+  std::transform(json.begin(), json.end(), out, [](char c) { return static_cast<std::byte>(c); });
+  return bytes;
+}
+
+std::vector<std::byte> glb_chunk(std::uint64_t bytes) {
+  std::vector<std::byte> header(kGlbChunkHeaderBytes);
+  std::byte* out = header.data();
+  store_u32(out, static_cast<std::uint32_t>(bytes));
+  store_u32(out, kBinChunk);
+  return header;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,41 @@
+// The surface as it is extracted on its way out: what there is to do when nothing is simplified.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "extract/surface_piece.hpp"
+#include "output/surface_output.hpp"
+
+namespace isoweave {
+
+class FullOutput {
+ public:
+  FullOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure, SweepObserver* observer)
+      : executor_(executor), output_(world, sink, executor, measure, observer) {}
+
+  // Writes a piece of a manifold surface.
+  void take(const SurfacePiece& piece);
+
+  void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
+
+  // Returns when the sink has everything. Throws what it threw.
+  void wait() { output_.wait(); }
+
+  template <class Archive>
+  void exchange(Archive& archive) {
+    archive.list(front_);
+    archive.value(open_edges_);
+    output_.exchange(archive);
+  }
+
+ private:
+  void forget_components();
+
+  const Executor& executor_;
+  SurfaceOutput output_;
+  std::vector<OutputCorner> front_;  // vertices that the next piece names as well
+  std::uint64_t open_edges_ = 0;
+};
+
+}  // namespace isoweave

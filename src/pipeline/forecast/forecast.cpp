@@ -1,0 +1,476 @@
+// Forecasts: a few blocks of the volume are meshed, and the rest is taken to be like them.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "extract/cube_rules.hpp"
+#include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
+#include "parallel/parallel.hpp"
+#include "pipeline/forecast/forecast_reader.hpp"
+#include "pipeline/forecast/forecast_sinks.hpp"
+#include "pipeline/forecast/forecast_tile.hpp"
+#include "pipeline/memory_cap.hpp"
+#include "pipeline/memory_model.hpp"
+#include "pipeline/slab_plan.hpp"
+#include "pipeline/surface_field.hpp"
+#include "pipeline/sweep.hpp"
+#include "simplify/count_target.hpp"
+#include "system/process_memory.hpp"
+#include "volume/samples.hpp"
+#include "volume/threshold.hpp"
+
+namespace isoweave {
+namespace {
+
+// Thin blocks tell how many triangles there are, thick ones what simplification leaves of them.
+constexpr std::int64_t kThin = 2;  // slices
+constexpr std::int64_t kThick = 15;
+constexpr std::int64_t kThickBlocks = 3;
+constexpr std::int64_t kMostBlocks = 24;
+constexpr double kSampledPart = 0.04;  // of the volume's bytes, and of its triangles that are simplified
+constexpr double kLeastBytes = 32e6;
+constexpr double kMostBytes = 256e6;
+constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
+constexpr double kMostTile = 100000;
+constexpr double kTileBytes = 16e6;
+constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
+constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever the cap: it must not be another forecast
+constexpr std::int64_t kThinnestBand = 8;  // rows
+constexpr double kRoughSurface = 250;      // triangles that are held, per sample along two sides of a slice
+
+// How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
+// flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
+double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
+constexpr double kCapDepth = 20;
+constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
+constexpr double kCapsLeft = 0.005;   // share of the triangles of caps that their outlines keep
+constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
+constexpr double kCountMargin = 2.5;  // the same, where what is held depends on a number of triangles
+constexpr double kFineDepth = 1.5;    // of the zone with fine quality, over that with normal quality
+constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
+constexpr double kUsualError = 0.3;   // mean voxels
+constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
+
+struct BlockFacts {
+  double per_layer = 0;  // triangles of the open surface
+  double caps = 0;       // triangles per layer on the four sides of a closed one
+};
+
+class Forecaster {
+ public:
+  Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
+      : volume_(volume), rows_(volume), info_(checked_volume(volume.info())), options_(options) {
+    control_.threads = control.threads;
+    control_.measure = true;
+    control_.stop = control.stop;
+    error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
+    // Tiles tell how long simplification takes and how many triangles are left, at least where a number is to stop it.
+    tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
+    refuse_reader(control.memory);
+    band_rows_ = band_rows();
+    plan_blocks();
+  }
+
+  Forecast run() {
+    if (constant_sample(volume_)) return conclude_constant();
+    for (std::int64_t n = 0; n < blocks_; ++n) {
+      const std::int64_t begin = slices_ * n / blocks_;
+      const std::int64_t room = slices_ * (n + 1) / blocks_ - begin;
+      const std::int64_t thick = n % every_ == every_ / 2 ? thick_ : 0;
+      const std::int64_t thin = thick == 0 || room >= thick + kThin ? std::min(kThin, room) : 0;
+      const std::int64_t first = begin + (room - thin - thick) / 2;
+      band_ = band_of(n);
+      map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});  // without a thin part it stays empty
+      if (n == 0 && first > 0 && options_.closed) first_cap_ = end_cap(0);
+      BlockFacts facts;
+      if (thin > 0) facts = look_at_thin(first, thin);
+      if (thick > 0) facts = look_at_thick(first + thin, thick);
+      facts_.push_back(facts);
+    }
+    if (options_.closed && !last_cap_) last_cap_ = volume_.skips() ? end_cap(info_.dims[2] - 1) : first_cap_;
+    if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
+    return conclude();
+  }
+
+ private:
+  // What meshing a block of slices holds, per sample of one: slices in the ring, and bits.
+  double block_bytes() const { return 9 * static_cast<double>(sample_bytes(info_.type)) + 4; }
+
+  // A source that decodes more at once than the cap leaves is not read from at all, unless that is no more than what
+  // looking at a volume takes anyway. The surface is not known then: what is named is enough for a rough one.
+  void refuse_reader(std::uint64_t cap) const {
+    const auto held = static_cast<double>(held_by_rows(volume_));
+    const double least =
+        static_cast<double>(resident_) + held + kThinnestBand * block_bytes() * static_cast<double>(info_.dims[0]);
+    if (cap == 0 || held <= kBandBytes || least <= static_cast<double>(cap)) return;
+    const Profiles rough{Profile({kRoughSurface * static_cast<double>(info_.dims[0] + info_.dims[1])}, 1),
+                         Profile({0.0}, 1)};
+    refuse_cap(info_.path, with_slack(to_count(std::max(least, least_cap(rough)))), cap);
+  }
+
+  // Rows of the bands that are looked at: all, unless slices are so large that a block of them would not fit.
+  std::int64_t band_rows() const {
+    const double rows = kBandBytes / (block_bytes() * static_cast<double>(info_.dims[0]));
+    return std::clamp(static_cast<std::int64_t>(rows), std::min(kThinnestBand, info_.dims[1]), info_.dims[1]);
+  }
+
+  // Another band for each block, spread evenly however many there are (by the golden section), the first in the middle.
+  RowBand band_of(std::int64_t block) const {
+    const double place = 0.5 + 0.6180339887498949 * static_cast<double>(block);
+    const auto free = static_cast<double>(info_.dims[1] - band_rows_);
+    return {static_cast<std::int64_t>((place - std::floor(place)) * free), band_rows_};
+  }
+
+  // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of
+  // the volume.
+  void plan_blocks() {
+    const auto whole = static_cast<double>(info_.slice_bytes());
+    const double slice = whole * static_cast<double>(band_rows_) / static_cast<double>(info_.dims[1]);
+    slices_ = info_.dims[2];
+    if (!volume_.skips()) {
+      const auto most = static_cast<std::int64_t>(static_cast<double>(kStreamBytes) / whole);
+      slices_ = std::clamp<std::int64_t>(most, std::min(band_rows_ < info_.dims[1] ? kThin : kThick, slices_), slices_);
+    }
+    const double budget =
+        std::clamp(kSampledPart * slice * static_cast<double>(info_.dims[2]), kLeastBytes, kMostBytes);
+    const auto affordable = static_cast<std::int64_t>(budget / slice);
+    thick_ = std::min(kThick, slices_);
+    const std::int64_t thick_blocks = affordable >= 2 * kThickBlocks * thick_ ? kThickBlocks : 1;
+    blocks_ = std::clamp<std::int64_t>((affordable - thick_blocks * thick_) / kThin + thick_blocks, 1, kMostBlocks);
+    blocks_ = std::clamp<std::int64_t>(slices_ / thick_, 1, blocks_);
+    every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
+  }
+
+  // Triangles on one side of a slice that no block looks at, where it is an end of a closed volume.
+  double end_cap(std::int64_t k) {
+    double cap = 0;
+    const std::size_t row = info_.slice_bytes() / static_cast<std::size_t>(info_.dims[1]);
+    std::vector<std::byte> band(static_cast<std::size_t>(band_rows_) * row);
+    for (std::int64_t j = 0; j < info_.dims[1]; j += band_rows_) {
+      const std::int64_t rows = std::min(band_rows_, info_.dims[1] - j);
+      rows_.read(k, j, rows, band);
+      cap += 2 * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
+    }
+    return cap;
+  }
+
+  double inside_in(std::span<const std::byte> bytes) const {
+    const IsoRule rule = stored_rule(info_, options_);
+    return visit_sample_type(info_.type, [&]<class T>() {
+      const std::span samples(reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
+      const auto is_inside = [&](T sample) {
+        const auto value = static_cast<double>(sample);
+        return rule.above ? value >= rule.iso : value <= rule.iso;
+      };
+      return static_cast<double>(std::ranges::count_if(samples, is_inside));
+    });
+  }
+
+  BlockFacts look_at_thin(std::int64_t first, std::int64_t slices) {
+    const auto look = [&](double i, double j, double /*k*/) { map_.add(i, j); };
+    LocatingSink sink(info_.geometry.spacing, look);
+    return look_at(first, slices, sink, nullptr);
+  }
+
+  BlockFacts look_at_thick(std::int64_t first, std::int64_t slices) {
+    CountingSink sink;
+    if (error_ == 0) return look_at(first, slices, sink, nullptr);
+    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes()) / rows_in_bands();
+    Tile tile(info_, map_.busy_part(std::min(1.0, kTileBytes / bytes)), slices);
+    const BlockFacts facts = look_at(first, slices, sink, &tile);
+    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer / layers_in_bands());
+    return facts;
+  }
+
+  // Counts the triangles of some slices, and fills a tile of them.
+  template <class Sink>
+  BlockFacts look_at(std::int64_t first, std::int64_t slices, Sink& sink, Tile* tile) {
+    double inside = 0;
+    Section section(rows_, info_, first, slices, band_, [&](std::int64_t n, std::span<const std::byte> slice) {
+      if (tile != nullptr) tile->take(n, slice);
+      if (options_.closed) inside += inside_on_sides(slice);
+      if (options_.closed && first + n == 0) first_cap_ = 2 * inside_in(slice) * rows_in_bands();
+      if (options_.closed && first + n == info_.dims[2] - 1) last_cap_ = 2 * inside_in(slice) * rows_in_bands();
+    });
+    Stopwatch watch;
+    const MeshReport report = mesh(section, sink, 0, 0);
+    watch.lap(seconds_extracting_);
+    slices_read_ += static_cast<double>(slices) / rows_in_bands();
+    return {static_cast<double>(report.triangles) / layers(section) * layers_in_bands(),
+            2.0 * inside / layers(section)};
+  }
+
+  // Simplifies as much of a tile as is a small part of the volume's surface.
+  void simplify_part(const Tile& tile, double per_layer) {
+    const double expected = per_layer * layers_in_bands() * static_cast<double>(info_.dims[2]);
+    const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
+    Tile part = tile.cut(map_.busy_part(std::min(1.0, wanted / (per_layer * layers(tile)))));
+    TileCount full = count(part, 0);
+    if (static_cast<double>(full.total) < wanted / 4) {  // the surface is elsewhere
+      part = tile;
+      full = count(part, 0);
+    }
+    Stopwatch watch;
+    const TileCount left = count(part, tile_error_);
+    watch.lap(seconds_simplifying_);
+    simplified_ += static_cast<double>(full.total);
+    before_ += full.middle;
+    after_ += left.middle;
+    const double depth = static_cast<double>(left.undecided) * layers(part) / static_cast<double>(full.total + 1);
+    depth_ = std::max(depth_, depth);
+  }
+
+  struct TileCount {
+    std::uint64_t total = 0, middle = 0;  // triangles; in the middle third of the layers, which the ends hardly disturb
+    std::uint64_t undecided = 0;          // most of them after a slab
+  };
+
+  TileCount count(Tile& tile, double error) const {
+    const double third = layers(tile) / 3;
+    TileCount counted;
+    const auto look = [&](double /*i*/, double /*j*/, double k) {
+      counted.middle += k >= third && k < 2 * third ? 1 : 0;
+    };
+    LocatingSink sink(info_.geometry.spacing, look);
+    const MeshReport report = mesh(tile, sink, error, error > 0 ? 3 : 0);
+    counted.total = report.triangles;
+    for (const SlabRecord& record : report.sweep) {
+      counted.undecided = std::max(counted.undecided, record.undecided_triangles);
+    }
+    return counted;
+  }
+
+  // The open surface in samples.
+  MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
+    MeshOptions options = options_;
+    options.closed = false;
+    if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
+    options.values = nullptr;
+    options.levels.clear();
+    options.triangles = 0;
+    options.components = nullptr;
+    options.space = OutputSpace::kIndex;
+    options.error = {error, false};
+    options.slab = slab;
+    return mesh_volume(block, sink, options, control_);
+  }
+
+  // Rows of a slice, and layers between them, for one in a band.
+  double rows_in_bands() const { return static_cast<double>(info_.dims[1]) / static_cast<double>(band_rows_); }
+  double layers_in_bands() const {
+    const auto between = [](std::int64_t rows) { return static_cast<double>(std::max<std::int64_t>(rows - 1, 1)); };
+    return between(info_.dims[1]) / between(band_rows_);
+  }
+
+  // Samples inside on the sides of a slice. Of a band two sides are cuts: the others stand for all four.
+  double inside_on_sides(std::span<const std::byte> slice) const {
+    const IsoRule rule = stored_rule(info_, options_);
+    const std::int64_t nx = info_.dims[0];
+    const std::int64_t ny = band_.count;
+    const bool whole = ny == info_.dims[1];
+    return visit_sample_type(info_.type, [&]<class T>() {
+      const T* const samples = reinterpret_cast<const T*>(slice.data());
+      const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
+      std::uint64_t inside = 0;
+      const auto add = [&](std::int64_t i, std::int64_t j) {
+        const T value = samples[j * nx + i];
+        const bool is_beyond = rule.above ? value >= threshold.value : value <= threshold.value;
+        inside += threshold.reachable && is_beyond ? 1 : 0;
+      };
+      for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, ny - 1);
+      for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);
+      const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
+      return static_cast<double>(inside) * (whole ? 1 : sides / static_cast<double>(ny));
+    });
+  }
+
+  static double layers(const SliceSource& block) {
+    return static_cast<double>(std::max<std::int64_t>(block.info().dims[2] - 1, 1));
+  }
+
+  Forecast conclude() const {
+    const Profiles profiles = make_profiles();
+    const auto layers = static_cast<double>(info_.dims[2]);
+    const double open = profiles.open.below(layers);
+    const double caps = profiles.caps.below(layers) + first_cap_ + last_cap_.value_or(0);
+    const double extracted = open + caps;
+    Forecast forecast;
+    forecast.triangles_extracted = to_count(extracted);
+    const double left = std::isinf(error_) ? extracted : open * left_ + caps * (error_ > 0 ? kCapsLeft : 1);
+    forecast.triangles = to_count(left);
+    if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
+    forecast.vertices = forecast.triangles / 2;
+    forecast.peak_bytes = to_count(peak(profiles, options_.slab));
+    forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
+    forecast.seconds = seconds_extracting_ / slices_read_ * layers;
+    if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
+    return forecast;
+  }
+
+  // A run stops at the number or at the error, whatever leaves more.
+  std::uint64_t left_of_number(const Forecast& forecast) const {
+    const std::uint64_t most =
+        std::isinf(error_) ? options_.triangles : std::max(options_.triangles, forecast.triangles);
+    return std::min(most, forecast.triangles_extracted);
+  }
+
+  // Nothing but the six sides of a closed volume that is inside as a whole.
+  Forecast conclude_constant() {
+    const bool inside = is_inside(*constant_sample(volume_), info_.type, stored_rule(info_, options_));
+    const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
+    const bool boxed = inside && options_.closed;
+    facts_.push_back({0, boxed ? 4 * sides : 0});
+    first_cap_ = boxed ? 2 * static_cast<double>(info_.slice_samples()) : 0;
+    last_cap_ = first_cap_;
+    slices_read_ = 1;
+    blocks_ = 1;
+    return conclude();
+  }
+
+  // How many triangles lie below a height, in layers: between the middles of two blocks the facts go from those of the
+  // one to those of the other, outside they stay.
+  class Profile {
+   public:
+    Profile(std::vector<double> per_layer, double distance) : per_layer_(std::move(per_layer)), distance_(distance) {
+      below_.push_back(per_layer_[0] * distance_ / 2);
+      for (std::size_t n = 1; n < per_layer_.size(); ++n) {
+        below_.push_back(below_.back() + (per_layer_[n - 1] + per_layer_[n]) / 2 * distance_);
+      }
+    }
+
+    double below(double height) const {
+      const double place = std::max(height, 0.0) / distance_ - 0.5;
+      if (place <= 0) return per_layer_[0] * std::max(height, 0.0);
+      const std::size_t n = std::min(static_cast<std::size_t>(place), per_layer_.size() - 1);
+      const double beyond = place - static_cast<double>(n);
+      if (n + 1 == per_layer_.size()) return below_[n] + per_layer_[n] * beyond * distance_;
+      const double here = per_layer_[n] + beyond * (per_layer_[n + 1] - per_layer_[n]);
+      return below_[n] + (per_layer_[n] + here) / 2 * beyond * distance_;
+    }
+
+   private:
+    std::vector<double> per_layer_;
+    double distance_;
+    std::vector<double> below_;  // the middle of each block
+  };
+
+  // Of the open surface, and of the caps.
+  struct Profiles {
+    Profile open, caps;
+  };
+
+  Profiles make_profiles() const {
+    std::vector<double> open;
+    std::vector<double> caps;
+    for (const BlockFacts& facts : facts_) {
+      open.push_back(facts.per_layer);
+      caps.push_back(facts.caps);
+    }
+    const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
+    return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
+  }
+
+  // Undecided triangles when the slab at a layer is appended.
+  double held_before(const Profiles& profiles, double at, double depth) const {
+    if (options_.triangles > 0) {
+      return std::min(profiles.open.below(at) + profiles.caps.below(at),
+                      static_cast<double>(CountTarget::most_held(options_.triangles)));
+    }
+    const auto above = [&](const Profile& profile, double layers) {
+      return profile.below(at) - profile.below(at - layers);
+    };
+    return above(profiles.open, depth) + kCapWeight * above(profiles.caps, kCapDepth * depth);
+  }
+
+  // Goes through the slabs of a run.
+  double peak(const Profiles& profiles, std::int64_t asked) const {
+    const VolumeInfo field = SurfaceField::info_of(info_, options_);
+    const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
+                            field.slice_bytes(),
+                            static_cast<std::uint64_t>(info_.slice_samples()),
+                            Executor(control_.threads).threads(),
+                            error_ > 0,
+                            vertex_extras(options_),
+                            options_.levels.size(),
+                            options_.max_distance.value > 0};
+    const double deeper = options_.quality == Quality::kFine ? kFineDepth : 1;
+    const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : deeper * undecided_layers(left_);
+    const auto sum = [](const Profile& profile, double from, double to) {
+      return profile.below(to) - profile.below(from);
+    };
+    double most = model.fixed();
+    double ring = 0;
+    std::int64_t recent = 0;
+    double per_layer = 0;
+    for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
+      const auto at = static_cast<double>(done);
+      const double undecided = held_before(profiles, at, depth);
+      const SlabGoal goal = beside_zone(slab_goal(error_ > 0), undecided);
+      // What is read and classified was planned before it turned out how full it is.
+      const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
+      const auto ahead =
+          static_cast<double>(std::min(slices_ahead(field, goal, planned), info_.dims[2] - done - planned));
+      ring = std::max(ring,
+                      MemoryModel::ring_for(static_cast<double>(planned), ahead, options_.normals != Normals::kAbsent));
+      recent = planned;
+      const auto extracted = [&] {
+        const double end = at + static_cast<double>(recent);
+        return sum(profiles.open, at, end) + sum(profiles.caps, at, end) + (done == 0 ? first_cap_ : 0) +
+               (done + recent == info_.dims[2] ? last_cap_.value_or(0) : 0);
+      };
+      const double fullest = 2 * static_cast<double>(goal.most_vertices);
+      while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
+      const double triangles = extracted();
+      most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
+      per_layer = triangles / static_cast<double>(recent);
+    }
+    return most;
+  }
+
+  // The cap that a run should do with, without slack.
+  double least_cap(const Profiles& profiles) const {
+    return (options_.triangles > 0 ? kCountMargin : kCapMargin) * peak(profiles, 1) / kUsedPart;
+  }
+
+  static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
+
+  SliceSource& volume_;
+  RowReader rows_;
+  const VolumeInfo info_;
+  const MeshOptions& options_;
+  RunControl control_;
+  const std::uint64_t resident_ = system::resident_bytes();
+  double error_ = 0;             // length
+  double tile_error_ = 0;        // of tiles
+  std::int64_t slices_ = 0;      // that are looked at
+  std::int64_t thick_ = 0;       // slices of a thick block
+  std::int64_t band_rows_ = 1;   // of a slice, that are looked at
+  RowBand band_;                 // of the block
+  TriangleMap map_{info_.dims};  // of the last thin block
+  std::int64_t blocks_ = 0;
+  std::int64_t every_ = 1;  // so many blocks one is thick
+  std::vector<BlockFacts> facts_;
+  double slices_read_ = 0;                // in all blocks
+  double simplified_ = 0;                 // triangles of tiles
+  std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
+  double first_cap_ = 0;                  // triangles below the first slice, two for each sample inside
+  std::optional<double> last_cap_;        // above the last one
+  double left_ = 1;                       // share of the triangles that is left
+  double depth_ = 0;                      // layers seen undecided
+  double seconds_extracting_ = 0, seconds_simplifying_ = 0;
+};
+
+}  // namespace
+
+void check_reader(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  Forecaster(volume, options, control);
+}
+
+Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  const StandardFloats floats;
+  return Forecaster(volume, options, control).run();
+}
+
+}  // namespace isoweave

@@ -1,0 +1,42 @@
+// Sinks of the blocks that a forecast meshes: they keep no mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "isoweave/mesh.hpp"
+
+namespace isoweave {
+
+// Counts triangles.
+class CountingSink : public MeshSink {
+ public:
+  void append(const MeshPiece& piece) override { total += piece.triangles.size(); }
+  void finish() override {}
+
+  std::uint64_t total = 0;
+};
+
+// Tells where triangles are, by their first corners in samples: look(i, j, k).
+template <class Look>
+class LocatingSink final : public MeshSink {
+ public:
+  LocatingSink(const std::array<double, 3>& spacing, const Look& look) : spacing_(spacing), look_(look) {}
+
+  void append(const MeshPiece& piece) override {
+    vertices_.insert(vertices_.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const auto& t : piece.triangles) {
+      const Point& at = vertices_[t[0]];
+      look_(double{at[0]} / spacing_[0], double{at[1]} / spacing_[1], double{at[2]} / spacing_[2]);
+    }
+  }
+  void finish() override {}
+
+ private:
+  const std::array<double, 3>& spacing_;
+  const Look& look_;
+  std::vector<Point> vertices_;
+};
+
+}  // namespace isoweave

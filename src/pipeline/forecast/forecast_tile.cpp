@@ -1,0 +1,101 @@
+#include "pipeline/forecast/forecast_tile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace isoweave {
+namespace {
+
+// Copies the rectangle `part` of slices whose rows have `row` samples of `each` bytes.
+void copy_part(const std::byte* slice, std::int64_t row, const Rectangle& part, std::size_t each, std::byte* out) {
+  const std::size_t bytes = static_cast<std::size_t>(part.size[0]) * each;
+  for (std::int64_t j = part.from[1]; j < part.from[1] + part.size[1]; ++j, out += bytes) {
+    std::memcpy(out, slice + static_cast<std::size_t>(j * row + part.from[0]) * each, bytes);
+  }
+}
+
+}  // namespace
+
+std::size_t TriangleMap::bin(double place, std::size_t axis) const {
+  const double bin = place / static_cast<double>(dims_[axis]) * static_cast<double>(kBins);
+  return std::min(static_cast<std::size_t>(std::max(bin, 0.0)), kBins - 1);
+}
+
+std::uint64_t TriangleMap::count(std::size_t i, std::size_t j, std::size_t side) const {
+  std::uint64_t sum = 0;
+  for (std::size_t row = j; row < j + side; ++row) {
+    for (std::size_t at = row * kBins + i; at < row * kBins + i + side; ++at) sum += counts_[at];
+  }
+  return sum;
+}
+
+Rectangle TriangleMap::busy_part(double part) const {
+  const double bins = std::clamp(std::round(std::sqrt(part) * kBins), 1.0, double{kBins});
+  const auto side = static_cast<std::size_t>(bins);
+  const double usual = static_cast<double>(count(0, 0, kBins)) * bins * bins / (kBins * kBins);
+  std::array<std::size_t, 2> best{};
+  std::pair<double, double> best_rank{-1, 0};
+  for (std::size_t j = 0; j + side <= kBins; ++j) {
+    for (std::size_t i = 0; i + side <= kBins; ++i) {
+      const double beside =
+          std::hypot(static_cast<double>(2 * i + side) - kBins, static_cast<double>(2 * j + side) - kBins);
+      const std::pair rank{std::min(static_cast<double>(count(i, j, side)), usual / 2), -beside};
+      if (rank > best_rank) best_rank = rank, best = {i, j};
+    }
+  }
+  Rectangle found;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto edge = [&](std::size_t at) { return dims_[axis] * static_cast<std::int64_t>(at) / std::int64_t{kBins}; };
+    const std::int64_t least = std::min<std::int64_t>(2, dims_[axis]);
+    found.from[axis] = std::min(edge(best[axis]), dims_[axis] - least);
+    found.size[axis] = std::max(edge(best[axis] + side) - found.from[axis], least);
+  }
+  return found;
+}
+
+Tile::Tile(const VolumeInfo& volume, const Rectangle& part, std::int64_t slices)
+    : info_(volume), part_(part), whole_row_(volume.dims[0]) {
+  info_.dims = {part.size[0], part.size[1], slices};
+  samples_.resize(static_cast<std::size_t>(slices) * info_.slice_bytes());
+}
+
+void Tile::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+  std::memcpy(out.data(), samples_.data() + offset(first), offset(count));
+}
+
+void Tile::take(std::int64_t n, std::span<const std::byte> whole) {
+  copy_part(whole.data(), whole_row_, part_, sample_bytes(info_.type), samples_.data() + offset(n));
+}
+
+Tile Tile::cut(const Rectangle& part) const {
+  Rectangle inner;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const std::int64_t end = std::min(part.from[axis] + part.size[axis], part_.from[axis] + part_.size[axis]);
+    inner.from[axis] = std::max(part.from[axis] - part_.from[axis], std::int64_t{0});
+    inner.size[axis] = end - part_.from[axis] - inner.from[axis];
+  }
+  if (std::ranges::min(inner.size) < 2) return *this;
+  Tile smaller(info_, inner, info_.dims[2]);
+  for (std::int64_t n = 0; n < info_.dims[2]; ++n) smaller.take(n, std::span(samples_).subspan(offset(n)));
+  return smaller;
+}
+
+Section::Section(RowReader& rows, const VolumeInfo& info, std::int64_t first, std::int64_t slices, RowBand band,
+                 Look look)
+    : rows_(rows), first_(first), band_(band), info_(info), look_(std::move(look)) {
+  info_.dims[1] = band.count;
+  info_.dims[2] = slices;
+}
+
+void Section::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+  const std::size_t bytes = info_.slice_bytes();
+  for (std::int64_t n = 0; n < count; ++n) {
+    const std::span<std::byte> slice = out.subspan(static_cast<std::size_t>(n) * bytes, bytes);
+    rows_.read(first_ + first + n, band_.from, band_.count, slice);
+    look_(first + n, slice);
+  }
+}
+
+}  // namespace isoweave

@@ -1,0 +1,69 @@
+// The first of two passes that drop components: how large they are is known in the end only, when the surface has long
+// gone by. So this pass notes vertices by which the second one, whatever its slabs, knows a component again.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "extract/surface_piece.hpp"
+#include "isoweave/components.hpp"
+#include "lattice/lattice.hpp"
+#include "parallel/array.hpp"
+#include "parallel/parallel.hpp"
+
+namespace isoweave {
+
+// Vertices of a surface are in order: that in which they are extracted, layer by layer, the same for all slabs. A seed
+// is the first vertex of a connected part of one layer's surface, if it is not on the slice below. Then the first
+// vertex of a connected part of a slab of any thickness is a seed, or on the slice below the slab.
+//
+// An edge between two vertices of a slice lies in a face of a cell below it and of one above, so the layer below tells
+// what is connected on a slice. The first slice of an open volume has no layer below: there each vertex is a seed.
+class ComponentFinder {
+ public:
+  ComponentFinder(const Lattice& lattice, const Executor& executor) : lattice_(lattice), executor_(executor) {}
+
+  // Takes the next piece, of one layer or more. Throws OverMemory at 2^32 seeds.
+  void take(const SurfacePiece& piece);
+
+  // What the rule keeps of the surface, which is complete. Same result for any pieces and any number of threads. To be
+  // called once.
+  ComponentChoice choose(const ComponentRule& rule);
+
+  std::uint64_t bytes() const;
+
+ private:
+  // The vertices and triangles of a piece up to the end of a layer.
+  struct LayerEnd {
+    std::uint32_t vertex;
+    std::size_t triangle;
+  };
+
+  void begin(const SurfacePiece& piece);
+  LayerEnd end_of_layer(const SurfacePiece& piece, std::uint32_t first_vertex) const;
+  void join_triangles(const SurfacePiece& piece, std::size_t first, std::size_t end);
+  void add_seeds(const SurfacePiece& piece, std::uint32_t first, std::uint32_t end);
+  void join_seeds(std::uint32_t inherited);
+  void count_triangles(const SurfacePiece& piece);
+  void list_front(const SurfacePiece& piece);
+  void sum_up();
+
+  const Lattice lattice_;
+  const Executor& executor_;
+
+  // Of the whole surface, in the order of the vertices.
+  std::vector<std::uint64_t> seeds_;           // ids
+  std::vector<std::uint32_t> seed_parents_;    // which of them are of one component
+  std::vector<std::uint64_t> seed_triangles_;  // that were found beside them
+
+  // Of the piece.
+  Array<std::uint32_t> parents_;          // sets of connected vertices
+  Array<std::uint32_t> labels_;           // of vertices that are roots, or were: a seed of the component
+  std::vector<std::uint32_t> new_roots_;  // vertices whose seeds came with the piece
+  std::vector<std::uint32_t> found_;      // those of the layer
+
+  std::vector<std::uint32_t> front_;  // labels of the vertices that the next piece inherits
+};
+
+}  // namespace isoweave

@@ -1,0 +1,123 @@
+#include "volume/formats/dicom/dicom_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
+#include "volume/formats/dicom/dicom_numbers.hpp"
+#include "volume/formats/dicom/dicom_scouts.hpp"
+
+namespace isoweave {
+namespace {
+
+double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+std::string text_of(const SliceKindFacts& facts) {
+  return std::to_string(facts.columns) + " x " + std::to_string(facts.rows) + " " +
+         std::string(sample_type_name(facts.type)) + " " + facts.photometric;
+}
+
+SampleType sample_type_of(const DicomSlice& slice) {
+  if (slice.bits == 8) return slice.is_signed ? SampleType::kInt8 : SampleType::kUint8;
+  if (slice.bits == 16) return slice.is_signed ? SampleType::kInt16 : SampleType::kUint16;
+  if (slice.bits == 32) return slice.is_signed ? SampleType::kInt32 : SampleType::kUint32;
+  bad_input(slice.path, "8, 16 or 32 bits allocated", std::to_string(slice.bits));
+}
+
+SliceKindFacts facts_of(const DicomSlice& slice) {
+  if (slice.samples != 1 || !slice.photometric.starts_with("MONOCHROME")) {
+    bad_input(slice.path, "grey samples (MONOCHROME1 or 2)",
+              quoted(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
+  }
+  if (slice.stored < 1 || slice.high >= slice.bits || slice.stored > slice.high + 1) {
+    bad_input(slice.path, "bits stored within those allocated",
+              std::to_string(slice.stored) + " up to bit " + std::to_string(slice.high));
+  }
+  return {slice.columns, slice.rows, sample_type_of(slice), slice.photometric};
+}
+
+SlicePlane plane_of(const DicomSlice& slice) {
+  const auto cosines = numbers_of(slice.orientation, "Image Orientation (Patient)", 6, slice.path);
+  const auto steps = numbers_of(slice.pixel_spacing, "Pixel Spacing", 2, slice.path);
+  SlicePlane plane{{cosines[0], cosines[1], cosines[2]}, {cosines[3], cosines[4], cosines[5]}, steps[1], steps[0]};
+  constexpr double kSlack = 1e-2;
+  const bool orthonormal = std::abs(dot(plane.row, plane.row) - 1) < kSlack &&
+                           std::abs(dot(plane.column, plane.column) - 1) < kSlack &&
+                           std::abs(dot(plane.row, plane.column)) < kSlack;
+  if (!orthonormal) {
+    bad_input(slice.path, "orthogonal unit vectors as Image Orientation (Patient)", quoted(slice.orientation));
+  }
+  return plane;
+}
+
+bool is_close(const SlicePlane& a, const SlicePlane& b) {
+  constexpr double kSlack = 1e-3;
+  bool close = std::abs(a.row_step - b.row_step) <= kSlack * a.row_step &&
+               std::abs(a.column_step - b.column_step) <= kSlack * a.column_step;
+  for (std::size_t n = 0; n < 3; ++n) {
+    close = close && std::abs(a.row[n] - b.row[n]) < kSlack && std::abs(a.column[n] - b.column[n]) < kSlack;
+  }
+  return close;
+}
+
+PlacedSlice placed(DicomSlice slice, const Vector3& normal) {
+  PlacedSlice result;
+  const auto at = numbers_of(slice.position, "Image Position (Patient)", 3, slice.path);
+  for (std::size_t n = 0; n < 3; ++n) result.position[n] = at[n] + slice.offset * normal[n];
+  result.depth = dot(result.position, normal);
+  if (!std::isfinite(result.depth)) bad_input(slice.path, "a finite position", quoted(slice.position));
+  result.slope = number_or(slice.slope, 1, "Rescale Slope", slice.path);
+  result.intercept = number_or(slice.intercept, 0, "Rescale Intercept", slice.path);
+  result.slice = std::move(slice);
+  return result;
+}
+
+// Drops slices that are in the place of the one before and are copies of it: exports hold images twice.
+void drop_copies(PlacedSeries& series) {
+  std::vector<PlacedSlice> kept;
+  std::string copy;
+  for (PlacedSlice& slice : series.slices) {
+    const bool same_place = !kept.empty() && kept.back().position == slice.position;
+    if (same_place && is_copy(kept.back().slice, slice.slice)) {
+      copy = quoted(slice.slice.name());
+    } else {
+      kept.push_back(std::move(slice));
+    }
+  }
+  const std::size_t dropped = series.slices.size() - kept.size();
+  series.slices = std::move(kept);
+  if (dropped == 0) return;
+  series.notes.push_back(
+      std::to_string(dropped) +
+      (dropped == 1 ? " image is a copy of another and is" : " images are copies of others and are") +
+      " left out, as " + copy);
+}
+
+}  // namespace
+
+PlacedSeries place_series(const std::vector<DicomSlice>& series) {
+  PlacedSeries result;
+  std::vector<DicomSlice> slices = without_scouts(series, result.notes);
+  const DicomSlice first = slices.front();
+  result.facts = facts_of(first);
+  result.plane = plane_of(first);
+  for (DicomSlice& slice : slices) {
+    const SliceKindFacts found = facts_of(slice);
+    if (found != result.facts) {
+      bad_input(slice.path, text_of(result.facts) + " as in " + quoted(first.name()), text_of(found));
+    }
+    if (!is_close(result.plane, plane_of(slice))) {
+      bad_input(slice.path, "the orientation and pixel spacing of " + quoted(first.name()),
+                quoted(slice.orientation + " " + slice.pixel_spacing));
+    }
+    result.slices.push_back(placed(std::move(slice), result.plane.normal()));
+  }
+  std::stable_sort(result.slices.begin(), result.slices.end(),
+                   [](const PlacedSlice& a, const PlacedSlice& b) { return a.depth < b.depth; });
+  drop_copies(result);
+  return result;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,51 @@
+// Where the slices of a DICOM series lie: parallel planes of one kind, in order along their normal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "volume/axes.hpp"
+#include "volume/formats/dicom/dicom_file.hpp"
+
+namespace isoweave {
+
+// What must be the same on all slices of a series.
+struct SliceKindFacts {
+  std::int64_t columns = 0;
+  std::int64_t rows = 0;
+  SampleType type = SampleType::kUint8;
+  std::string photometric;
+
+  bool operator==(const SliceKindFacts&) const = default;
+};
+
+// The directions along rows and down columns, then the distances between samples along them.
+struct SlicePlane {
+  Vector3 row{};
+  Vector3 column{};
+  double row_step = 1;
+  double column_step = 1;
+
+  Vector3 normal() const { return normal_of(row, column); }
+};
+
+// A slice with its place, `depth` along the normal of the slices, and the scaling of its samples.
+struct PlacedSlice {
+  DicomSlice slice;
+  Vector3 position{};
+  double depth = 0;
+  double slope = 1;
+  double intercept = 0;
+};
+
+struct PlacedSeries {
+  SliceKindFacts facts;
+  SlicePlane plane;
+  std::vector<PlacedSlice> slices;  // in order of their depths
+  std::vector<std::string> notes;   // about images that are left out
+};
+
+// Leaves scouts out where most images are of one look, then checks that the slices are parallel and alike.
+PlacedSeries place_series(const std::vector<DicomSlice>& series);
+
+}  // namespace isoweave

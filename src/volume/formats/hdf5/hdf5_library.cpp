@@ -1,0 +1,150 @@
+#include "volume/formats/hdf5/hdf5_library.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
+#include "volume/formats/chunked/lzf.hpp"
+
+namespace isoweave {
+namespace {
+
+// The filter of h5py, which libhdf5 does not have. It is given the bytes of a chunk as its third value.
+std::size_t decode_lzf_chunk(unsigned flags, std::size_t values, const unsigned* value, std::size_t stored,
+                             std::size_t* room, void** buffer) {
+  const bool decodes = (flags & H5Z_FLAG_REVERSE) != 0;
+  constexpr std::size_t kBytesAt = 2;
+  if (!decodes || values <= kBytesAt || value[kBytesAt] / kLzfRatio > stored) return 0;
+  const std::size_t bytes = value[kBytesAt];
+  void* const decoded = std::malloc(bytes);  // the library frees it
+  if (decoded == nullptr) return 0;
+  const std::span from(static_cast<const std::byte*>(*buffer), stored);
+  if (!decode_lzf(from, std::span(static_cast<std::byte*>(decoded), bytes))) {
+    std::free(decoded);
+    return 0;
+  }
+  std::free(*buffer);
+  *buffer = decoded;
+  *room = bytes;
+  return bytes;
+}
+
+template <class Function>
+void load(void* library, const char* name, Function& function, const std::string& path) {
+  function = reinterpret_cast<Function>(::dlsym(library, name));
+  if (function == nullptr) bad_input(path, "function " + std::string(name) + " in libhdf5", "a library without it");
+}
+
+// The library that was found when this one was built, or one of its name.
+void* load_library(const std::string& path) {
+  const std::filesystem::path built_with = ISOWEAVE_HDF5_LIBRARY;
+  for (const std::string& name : {built_with.string(), built_with.filename().string()}) {
+    if (void* const library = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
+  }
+  bad_input(path, "a format of this system",
+            "HDF5, whose library " + built_with.filename().string() + " cannot be loaded");
+}
+
+Hdf5Functions load_functions(const std::string& path) {
+  void* const library = load_library(path);
+  Hdf5Functions h5;
+// The name is that of the function of this version, whatever macro stands for it.
+#define ISOWEAVE_TEXT(name) #name
+#define ISOWEAVE_LOAD(name, member) load(library, ISOWEAVE_TEXT(name), h5.member, path)
+  ISOWEAVE_LOAD(H5open, open);
+  ISOWEAVE_LOAD(H5Eget_auto2, eget_auto2);
+  ISOWEAVE_LOAD(H5Eset_auto2, eset_auto2);
+  ISOWEAVE_LOAD(H5Ewalk2, ewalk2);
+  ISOWEAVE_LOAD(H5Zregister, zregister);
+  ISOWEAVE_LOAD(H5Zfilter_avail, zfilter_avail);
+  ISOWEAVE_LOAD(H5Fopen, fopen);
+  ISOWEAVE_LOAD(H5Fclose, fclose);
+  ISOWEAVE_LOAD(H5Oopen, oopen);
+  ISOWEAVE_LOAD(H5Oclose, oclose);
+  ISOWEAVE_LOAD(H5Iget_type, iget_type);
+  ISOWEAVE_LOAD(H5Gget_info, gget_info);
+  ISOWEAVE_LOAD(H5Lget_name_by_idx, lget_name_by_idx);
+  ISOWEAVE_LOAD(H5Lget_info_by_idx, lget_info_by_idx);
+  ISOWEAVE_LOAD(H5Dget_space, dget_space);
+  ISOWEAVE_LOAD(H5Dget_type, dget_type);
+  ISOWEAVE_LOAD(H5Dget_create_plist, dget_create_plist);
+  ISOWEAVE_LOAD(H5Dget_storage_size, dget_storage_size);
+  ISOWEAVE_LOAD(H5Dread, dread);
+  ISOWEAVE_LOAD(H5Sclose, sclose);
+  ISOWEAVE_LOAD(H5Screate_simple, screate_simple);
+  ISOWEAVE_LOAD(H5Sselect_hyperslab, sselect_hyperslab);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_type, sget_simple_extent_type);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_ndims, sget_simple_extent_ndims);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_dims, sget_simple_extent_dims);
+  ISOWEAVE_LOAD(H5Sget_simple_extent_npoints, sget_simple_extent_npoints);
+  ISOWEAVE_LOAD(H5Tclose, tclose);
+  ISOWEAVE_LOAD(H5Tget_class, tget_class);
+  ISOWEAVE_LOAD(H5Tget_size, tget_size);
+  ISOWEAVE_LOAD(H5Tget_sign, tget_sign);
+  ISOWEAVE_LOAD(H5Tget_super, tget_super);
+  ISOWEAVE_LOAD(H5Tget_order, tget_order);
+  ISOWEAVE_LOAD(H5Tget_precision, tget_precision);
+  ISOWEAVE_LOAD(H5Tget_offset, tget_offset);
+  ISOWEAVE_LOAD(H5Tget_fields, tget_fields);
+  ISOWEAVE_LOAD(H5Tget_ebias, tget_ebias);
+  ISOWEAVE_LOAD(H5Tis_variable_str, tis_variable_str);
+  ISOWEAVE_LOAD(H5Pclose, pclose);
+  ISOWEAVE_LOAD(H5Pget_layout, pget_layout);
+  ISOWEAVE_LOAD(H5Pget_chunk, pget_chunk);
+  ISOWEAVE_LOAD(H5Pget_nfilters, pget_nfilters);
+  ISOWEAVE_LOAD(H5Pget_filter2, pget_filter2);
+  ISOWEAVE_LOAD(H5Pget_external_count, pget_external_count);
+  ISOWEAVE_LOAD(H5Aexists, aexists);
+  ISOWEAVE_LOAD(H5Aopen, aopen);
+  ISOWEAVE_LOAD(H5Aclose, aclose);
+  ISOWEAVE_LOAD(H5Aread, aread);
+  ISOWEAVE_LOAD(H5Aget_type, aget_type);
+  ISOWEAVE_LOAD(H5Aget_space, aget_space);
+  ISOWEAVE_LOAD(H5free_memory, free_memory);
+#undef ISOWEAVE_LOAD
+#undef ISOWEAVE_TEXT
+  if (h5.open() < 0) bad_input(path, "a working libhdf5", "one that does not start");
+  constexpr H5Z_filter_t kLzf = 32000;
+  static const H5Z_class2_t kFilter{H5Z_CLASS_T_VERS, kLzf, 0, 1, "lzf", nullptr, nullptr, decode_lzf_chunk};
+  if (h5.zfilter_avail(kLzf) <= 0) h5.zregister(&kFilter);
+  return h5;
+}
+
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+const Hdf5Functions& functions(const std::string& path) {
+  static const Hdf5Functions kFunctions = load_functions(path);
+  return kFunctions;
+}
+
+// Keeps the first message of a walk.
+herr_t keep_message(unsigned, const H5E_error2_t* error, void* data) {
+  auto& message = *static_cast<std::string*>(data);
+  if (message.empty() && error->desc != nullptr) message = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+Hdf5Session::Hdf5Session(const std::string& path) : lock_(one_at_a_time()), functions_(functions(path)) {
+  functions_.eget_auto2(H5E_DEFAULT, &printer_, &printer_data_);
+  functions_.eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Hdf5Session::~Hdf5Session() { functions_.eset_auto2(H5E_DEFAULT, printer_, printer_data_); }
+
+void Hdf5Session::refuse(const std::string& path, const std::string& expected) const {
+  std::string message;
+  functions_.ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_message, &message);
+  bad_input(path, expected, message.empty() ? "damaged data" : isoweave::quoted(message));
+}
+
+}  // namespace isoweave

@@ -1,0 +1,256 @@
+#include "volume/formats/images/slice_files.hpp"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "files/header_text.hpp"
+#include "files/input_file.hpp"
+#include "files/printable.hpp"
+#include "volume/formats/formats.hpp"
+#include "volume/formats/other/unread_formats.hpp"
+
+namespace isoweave {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Cuts the leading run of digits off a text, without its zeros in front.
+std::string_view take_number(std::string_view& text) {
+  const auto* const end = std::find_if_not(text.begin(), text.end(), is_digit);
+  std::string_view digits = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+  text.remove_prefix(digits.size());
+  digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+  return digits;
+}
+
+std::string_view name_of(SliceKind kind) {
+  static constexpr std::array<std::string_view, 4> kNames{"no slice", "TIFF", "PNG", "DICOM"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+SliceKind kind_of_name(const std::string& path) {
+  const std::string name = lower_case(path);
+  if (name.ends_with(".tif") || name.ends_with(".tiff")) return SliceKind::kTiff;
+  if (name.ends_with(".png")) return SliceKind::kPng;
+  if (name.ends_with(".dcm")) return SliceKind::kDicom;
+  return SliceKind::kOther;
+}
+
+// What a file holds; an empty file is a slice that was lost only if its name is that of a slice. Where only DICOM is
+// looked for, pictures are other files.
+SliceKind kind_of(const std::string& path, bool only_dicom) {
+  const SliceKind named = kind_of_name(path);
+  if (only_dicom && (named == SliceKind::kTiff || named == SliceKind::kPng)) return SliceKind::kOther;
+  std::error_code error;
+  if (named == SliceKind::kOther && fs::file_size(path, error) == 0) return SliceKind::kOther;
+  const std::string head = open_file(path)->head(kDicomHeadBytes);
+  SliceKind found = SliceKind::kOther;
+  if (is_tiff(head)) found = SliceKind::kTiff;
+  if (is_png(head)) found = SliceKind::kPng;
+  if (is_dicom(head)) found = SliceKind::kDicom;
+  if (only_dicom && found != SliceKind::kDicom) found = SliceKind::kOther;
+  if (named != SliceKind::kOther && named != found) {
+    bad_input(path, "content of " + std::string(name_of(named)), "other content");
+  }
+  return found;
+}
+
+void take_slice(SliceFiles& slices, const std::string& path, SliceKind kind) {
+  if (slices.files.empty()) slices.kind = kind;
+  if (kind != slices.kind) {
+    bad_input(path, std::string(name_of(slices.kind)) + " as " + isoweave::quoted(slices.files.front()),
+              std::string(name_of(kind)));
+  }
+  slices.files.push_back(path);
+}
+
+std::string left_out(const std::vector<std::string>& others) {
+  constexpr std::size_t kNamed = 3;
+  std::string names;
+  for (std::size_t n = 0; n < std::min(others.size(), kNamed); ++n) {
+    names += (n == 0 ? "" : ", ") + printable(fs::path(others[n]).filename().string());
+  }
+  if (others.size() > kNamed) names += ", ...";
+  if (others.size() == 1) return "1 file of the folder is no slice and is left out: " + names;
+  return std::to_string(others.size()) + " files of the folder are no slices and are left out: " + names;
+}
+
+// The index of an export, which a folder of DICOM files is known by.
+bool is_dicomdir_name(const std::string& path) { return lower_case(fs::path(path).filename().string()) == "dicomdir"; }
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+struct Entries {
+  std::vector<std::string> files, folders;
+};
+
+// What a folder holds but for hidden files and folders. Links count as what they lead to.
+Entries entries_of(const std::string& folder) {
+  Entries entries;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    if (entry->path().filename().string().starts_with('.')) continue;
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored)) entries.files.push_back(entry->path().string());
+    if (entry->is_directory(ignored)) entries.folders.push_back(entry->path().string());
+  }
+  if (error) bad_input(folder, "cannot be listed: " + error.message());
+  std::sort(entries.files.begin(), entries.files.end(), natural_less);
+  std::sort(entries.folders.begin(), entries.folders.end(), natural_less);
+  return entries;
+}
+
+// The files of all folders below one, each folder once, whatever links lead to it.
+std::vector<std::string> files_below(const std::string& top) {
+  constexpr std::size_t kDeepest = 16;
+  constexpr std::size_t kMostFiles = 1 << 17;
+  std::vector<std::string> files;
+  std::error_code unknown;
+  std::set<fs::path> seen{fs::canonical(top, unknown)};
+  std::vector<std::string> level = entries_of(top).folders;
+  for (std::size_t depth = 1; !level.empty(); ++depth) {
+    if (depth > kDeepest)
+      bad_input(top, "folders no deeper than " + std::to_string(kDeepest), isoweave::quoted(level[0]));
+    std::vector<std::string> next;
+    for (const std::string& folder : level) {
+      std::error_code error;
+      if (!seen.insert(fs::canonical(folder, error)).second || error) continue;
+      const Entries entries = entries_of(folder);
+      files.insert(files.end(), entries.files.begin(), entries.files.end());
+      next.insert(next.end(), entries.folders.begin(), entries.folders.end());
+      if (files.size() + next.size() > kMostFiles) {
+        bad_input(top, "no more than " + std::to_string(kMostFiles) + " files in folders below", "more");
+      }
+    }
+    level = std::move(next);
+  }
+  return files;
+}
+
+// A folder that is not there holds no match; one that may not be listed might.
+int gives_up(const char*, int error) { return error == ENOENT || error == ENOTDIR ? 0 : 1; }
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const std::pair<std::string_view, std::string_view> whole(a, b);
+  while (!a.empty() && !b.empty()) {
+    if (is_digit(a[0]) && is_digit(b[0])) {
+      const std::string_view x = take_number(a);
+      const std::string_view y = take_number(b);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+      continue;
+    }
+    if (a[0] != b[0]) return static_cast<unsigned char>(a[0]) < static_cast<unsigned char>(b[0]);
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  if (a.empty() != b.empty()) return a.empty();
+  // "z1" and "z01" are the same by number.
+  return whole.first < whole.second;
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return a == b || fs::equivalent(a, b, error);
+}
+
+bool is_pattern(const std::string& path) {
+  std::error_code error;
+  return path.find_first_of("*?[") != std::string::npos && !fs::exists(path, error);
+}
+
+std::vector<std::string> files_of_folder(const std::string& folder) { return entries_of(folder).files; }
+
+std::vector<std::string> files_of_pattern(const std::string& pattern) {
+  glob_t found{};
+  const int result = ::glob(pattern.c_str(), GLOB_NOSORT, gives_up, &found);
+  std::vector<std::string> files;
+  for (std::size_t n = 0; result == 0 && n < found.gl_pathc; ++n) files.emplace_back(found.gl_pathv[n]);
+  ::globfree(&found);
+  if (result != 0 && result != GLOB_NOMATCH) bad_input(pattern, "cannot be expanded: a folder cannot be listed");
+  if (files.empty()) bad_input(pattern, "files that match the pattern", "none");
+  std::sort(files.begin(), files.end(), natural_less);
+  return files;
+}
+
+namespace {
+
+SliceFiles slices_of_pattern(const std::string& pattern) {
+  SliceFiles slices;
+  slices.path = pattern;
+  for (const std::string& file : files_of_pattern(pattern)) {
+    const SliceKind kind = kind_of(file, false);
+    if (kind == SliceKind::kOther) {
+      bad_input(file, "a slice in TIFF, PNG or DICOM", what_else(open_file(file)->head(kWhatElseBytes), file));
+    }
+    take_slice(slices, file, kind);
+  }
+  return slices;
+}
+
+void take_slices(SliceFiles& slices, std::vector<std::string>& others, const std::vector<std::string>& files,
+                 bool only_dicom) {
+  for (const std::string& file : files) {
+    const SliceKind kind = kind_of(file, only_dicom);
+    kind == SliceKind::kOther ? others.push_back(file) : take_slice(slices, file, kind);
+  }
+}
+
+}  // namespace
+
+SliceFiles find_slices(const std::string& path) {
+  if (is_pattern(path)) return slices_of_pattern(path);
+  SliceFiles slices;
+  slices.path = path;
+  std::vector<std::string> others;
+  const std::vector<std::string> files = files_of_folder(path);
+  const bool is_export = std::any_of(files.begin(), files.end(), is_dicomdir_name);
+  take_slices(slices, others, files, is_export);
+  const bool is_dicom = slices.files.empty() || slices.kind == SliceKind::kDicom;
+  if (is_dicom) take_slices(slices, others, files_below(path), true);
+  if (slices.files.empty()) bad_input(path, "slices in TIFF, PNG or DICOM", "a directory without any");
+  if (!others.empty()) slices.notes.push_back(left_out(others));
+  return slices;
+}
+
+SliceFiles slices_of_export(const std::string& dicomdir) {
+  SliceFiles slices = find_slices(folder_of(dicomdir));
+  slices.path = dicomdir;
+  return slices;
+}
+
+std::vector<std::string> dicom_files_beside(const std::string& path) {
+  std::vector<std::string> files;
+  for (const std::string& name : files_of_folder(folder_of(path))) {
+    std::error_code error;
+    const bool empty = fs::file_size(name, error) == 0;
+    if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);
+  }
+  // One that is hidden is not listed.
+  const bool is_listed =
+      std::any_of(files.begin(), files.end(), [&](const std::string& name) { return is_same_file(name, path); });
+  if (!is_listed) files.push_back(path);
+  return files;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,151 @@
+// Headerless files: the layout comes from the caller or from the file's name.
+#include <bit>
+#include <charconv>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "files/header_text.hpp"
+#include "files/printable.hpp"
+#include "volume/formats/formats.hpp"
+#include "volume/formats/images/slice_files.hpp"
+#include "volume/formats/images/slice_numbers.hpp"
+#include "volume/packed_file.hpp"
+
+namespace isoweave {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// "WxHxD" with all three at least 1.
+std::optional<std::array<std::int64_t, 3>> parse_dims(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, 'x');
+  if (parts.size() != 3) return std::nullopt;
+  std::array<std::int64_t, 3> dims{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<std::int64_t> side = parse_integer(parts[axis]);
+    if (!side || *side < 1) return std::nullopt;
+    dims[axis] = *side;
+  }
+  return dims;
+}
+
+[[noreturn]] void wrong_part(std::string_view part, std::string_view expected) {
+  throw std::invalid_argument("raw layout: expected " + std::string(expected) + ", found '" + printable(part) + "'");
+}
+
+void parse_option(RawLayout& layout, std::string_view part) {
+  constexpr std::string_view kSkip = "skip=";
+  if (part == "big") {
+    layout.big_endian = true;
+  } else if (part == "little") {
+    layout.big_endian = false;
+  } else if (part.starts_with(kSkip)) {
+    const std::optional<std::int64_t> skip = parse_integer(part.substr(kSkip.size()));
+    if (!skip || *skip < 0) wrong_part(part, "skip=BYTES");
+    layout.skip_bytes = *skip;
+  } else {
+    wrong_part(part, "'big', 'little' or 'skip=BYTES'");
+  }
+}
+
+}  // namespace
+
+RawLayout parse_raw_layout(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ':');
+  if (parts.size() < 2) wrong_part(text, "WxHxD:TYPE");
+  RawLayout layout;
+  const auto dims = parse_dims(parts[0]);
+  if (!dims) wrong_part(parts[0], "WxHxD with sides of at least 1");
+  layout.dims = *dims;
+  const auto type = parse_sample_type(parts[1]);
+  if (!type) wrong_part(parts[1], "a type such as uint8, int16 or float32");
+  layout.type = *type;
+  for (std::size_t part = 2; part < parts.size(); ++part) parse_option(layout, parts[part]);
+  return layout;
+}
+
+std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
+  constexpr std::string_view kEnding = ".raw";
+  constexpr std::string_view kPacked = ".gz";
+  if (path.ends_with(kPacked)) path.remove_suffix(kPacked.size());
+  if (!path.ends_with(kEnding)) return std::nullopt;
+  path.remove_suffix(kEnding.size());
+  path = path.substr(path.find_last_of('/') + 1);
+  const std::vector<std::string_view> parts = split(path, '_');
+  if (parts.size() < 2) return std::nullopt;
+  const auto dims = parse_dims(parts[parts.size() - 2]);
+  const auto type = parse_sample_type(parts.back());
+  if (!dims || !type) return std::nullopt;
+  return RawLayout{*dims, *type, false, 0};
+}
+
+namespace {
+
+VolumeInfo raw_info(const std::string& path, const RawLayout& layout) {
+  VolumeInfo info;
+  info.path = path;
+  info.format = "raw";
+  info.dims = layout.dims;
+  info.type = layout.type;
+  checked_volume_bytes(info);
+  if (layout.skip_bytes < 0) bad_input(path, "a skip of at least 0", std::to_string(layout.skip_bytes));
+  return info;
+}
+
+// The `bytes` behind the skip, which end the file.
+std::unique_ptr<ByteStream> samples_to_end(const FilePtr& file, const RawLayout& layout, std::uint64_t bytes) {
+  const auto skip = static_cast<std::uint64_t>(layout.skip_bytes);
+  // Both are below 2^63, so the sum does not wrap.
+  if (file->exact_size() != skip + bytes) {
+    bad_input(file->path(), std::to_string(skip + bytes) + " bytes by its layout", std::to_string(file->size()));
+  }
+  return std::make_unique<FileStream>(file, skip, skip + bytes);
+}
+
+bool is_swapped(const RawLayout& layout) { return layout.big_endian != (std::endian::native == std::endian::big); }
+
+}  // namespace
+
+bool fits_raw(const InputFile& file, const RawLayout& layout) {
+  const std::uint64_t bytes = checked_volume_bytes(raw_info(file.path(), layout));
+  return file.size() == static_cast<std::uint64_t>(layout.skip_bytes) + bytes;
+}
+
+OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout) {
+  OpenedVolume volume;
+  volume.info = raw_info(file->path(), layout);
+  volume.samples = samples_to_end(file, layout, checked_volume_bytes(volume.info));
+  volume.swap_bytes = is_swapped(layout);
+  return volume;
+}
+
+OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
+  OpenedVolume volume;
+  volume.info = raw_info(path, layout);
+  const std::vector<std::string> files = is_pattern(path) ? files_of_pattern(path) : files_of_folder(path);
+  const auto count = static_cast<std::int64_t>(files.size());
+  if (count != layout.dims[2]) {
+    bad_input(path, std::to_string(layout.dims[2]) + " files by the layout, one for each slice", std::to_string(count));
+  }
+  const std::uint64_t slice = volume.info.slice_bytes();
+  const auto name = [files](std::int64_t n) { return files[static_cast<std::size_t>(n)]; };
+  const auto open = [=](std::int64_t n) { return samples_to_end(unpacked(open_file(name(n))), layout, slice); };
+  // A file that is missing or of another size is found now.
+  for (std::int64_t n = 0; n < count; ++n) open(n);
+  volume.info.notes = notes_on_numbers(files);
+  volume.samples = std::make_unique<FileSequence>(count, slice, open, name);
+  volume.swap_bytes = is_swapped(layout);
+  return volume;
+}
+
+}  // namespace isoweave

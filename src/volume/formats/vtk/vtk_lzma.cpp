@@ -1,0 +1,40 @@
+// LZMA blocks of VTK files, each an .xz stream.
+#include <lzma.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volume/formats/vtk/vtk_streams.hpp"
+#include "volume/stream_source.hpp"
+
+namespace isoweave {
+namespace {
+
+std::vector<std::byte> decoded(ByteStream& input, std::uint64_t stored, std::uint64_t bytes, const std::string& path) {
+  constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 28;
+  std::vector<std::byte> packed(static_cast<std::size_t>(stored));
+  std::vector<std::byte> out(static_cast<std::size_t>(bytes));
+  std::uint64_t memory = kMostMemory;
+  std::size_t read = 0;
+  std::size_t written = 0;
+  const bool whole = input.read(packed) == packed.size();
+  const lzma_ret result =
+      ::lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const std::uint8_t*>(packed.data()), &read,
+                                  packed.size(), reinterpret_cast<std::uint8_t*>(out.data()), &written, out.size());
+  if (!whole || result != LZMA_OK || written != out.size()) {
+    bad_input(path, "LZMA blocks of " + std::to_string(bytes) + " bytes", "damaged data");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<ByteStream> open_lzma_block(std::unique_ptr<ByteStream> input, std::uint64_t stored,
+                                            std::uint64_t bytes, const std::string& path) {
+  check_plausible(path, bytes, stored, kLzmaRatio);
+  const std::shared_ptr<ByteStream> source = std::move(input);
+  return std::make_unique<DecodedStream>([=] { return decoded(*source, stored, bytes, path); });
+}
+
+}  // namespace isoweave
