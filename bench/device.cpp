@@ -19,7 +19,7 @@
 #include "device/simulated_device.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/task.hpp"
 
 namespace {
 

@@ -24,12 +24,6 @@ ComponentRule component_rule(const ComponentOptions& components) {
   return rule;
 }
 
-void check_components(const ComponentRule& rule, Device device) {
-  if (rule.keeps_all() || device != Device::kCuda) return;
-  throw std::invalid_argument(
-      "--device cuda: expected a run without --min-component and --largest, which take processors");
-}
-
 std::string component_text(const ComponentRule& rule) {
   return (rule.min_triangles > 1 ? fmt::format(" components of {} triangles or more", rule.min_triangles) : "") +
          (rule.largest ? " largest component" : "");

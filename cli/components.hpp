@@ -19,9 +19,6 @@ void add_component_options(CLI::App& verb, ComponentOptions& components, const s
 
 ComponentRule component_rule(const ComponentOptions& components);
 
-// Refuses what a device does not do.
-void check_components(const ComponentRule& rule, Device device);
-
 // " largest component", for the comments of a mesh file; empty where all are kept.
 std::string component_text(const ComponentRule& rule);
 

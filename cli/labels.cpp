@@ -13,7 +13,6 @@
 #include "isoweave/error.hpp"
 #include "isoweave/label_names.hpp"
 #include "output.hpp"
-#include "pipeline/label_sweep.hpp"
 #include "progress.hpp"
 
 namespace isoweave::cli {
@@ -251,7 +250,7 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   // Finds out now what would stop the run after the first pass.
   std::unique_ptr<MeshSink> any_file =
       open_output(label_output(task.output, label_file_names(std::span(&any, 1))[0]), task.file(any));
-  const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop);
+  const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop.get());
   any_file.reset();
   for (const LabelLayer& layer : layers) {
     for (const MeshedLabel& label : layer.labels) check_numbers(task, std::span(&label.name, 1));

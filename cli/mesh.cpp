@@ -85,12 +85,10 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   } else if (report.triangles_extracted - report.triangles_dropped > kMostFullTriangles) {
     contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
   } else {
-    MeshOptions full = options;
-    full.error = {0, false};
-    full.triangles = 0;
-    full.levels.clear();
-    full.normals = Normals::kAbsent;
-    full.values = nullptr;
+    MeshOptions full;
+    static_cast<SurfaceOptions&>(full) = options;
+    full.error = Length::units(0);
+    full.space = options.space;
     const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
     MeshInMemory surface(mesh_offset(volume->info(), options.space));
     mesh_volume(*volume, surface, full, control);
@@ -100,10 +98,9 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
 }
 
 // Refuses what is known to be wrong with --labels before any file is looked at.
-void check_labels(const MeshArguments& arguments, const RunControl& control) {
+void check_labels(const MeshArguments& arguments) {
   if (arguments.labels.empty()) return;
   parse_labels(arguments.labels);
-  if (control.device == Device::kCuda) wrong_value("--labels", "a run on processors", "--device cuda");
   if (arguments.input.even_spacing == "resample") {
     wrong_value("--even-spacing", "mean or refuse with --labels, as nothing lies between two labels", "resample");
   }
@@ -142,11 +139,11 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
 // One run, step by step.
 class MeshJob {
  public:
-  // resume: a saved state to go on from, or null. lock: of its folder, or null.
-  MeshJob(const MeshArguments& arguments, const Checkpoint* resume, const CheckpointLock* lock)
+  // resume: a saved state to go on from, if there is one. lock: of its folder, or null.
+  MeshJob(const MeshArguments& arguments, std::optional<Checkpoint> resume, std::shared_ptr<const CheckpointLock> lock)
       : arguments_(arguments),
-        resume_(resume),
-        lock_(lock),
+        resume_(std::move(resume)),
+        lock_(std::move(lock)),
         rule_(component_rule(arguments.components)),
         outputs_(level_outputs(arguments.output, arguments.stop)),
         options_(mesh_options(arguments)),
@@ -161,7 +158,7 @@ class MeshJob {
     if (arguments_.iso == "auto") find_iso();
     find_target();
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
-    if (resume_ == nullptr) foresee();
+    if (!resume_) foresee();
     if (arguments_.dry_run) return tell_forecast(evidence);
     choose();
     prepare_states();
@@ -176,13 +173,10 @@ class MeshJob {
     parse_slab(arguments_.slab, 1);
     check_page(arguments_.page, arguments_.output);
     check_watch(arguments_.watch, control_.device);
-    check_components(rule_, control_.device);
-    check_labels(arguments_, control_);
+    check_together();
+    check_labels(arguments_);
     if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
       throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
-    }
-    if (control_.device == Device::kCuda && !arguments_.checkpoint.empty()) {
-      throw std::invalid_argument("--device cuda: expected a run without --checkpoint, which takes processors");
     }
     for (const OutputOptions& output : outputs_) {
       check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
@@ -190,22 +184,34 @@ class MeshJob {
     }
   }
 
+  // What does not go together is refused before any file is looked at.
+  void check_together() const {
+    MeshOptions asked = options_;
+    RunControl control = control_;
+    if (!rule_.keeps_all()) asked.components = std::make_shared<ComponentChoice>();
+    if (arguments_.stop.has_number()) asked.triangles = 1;
+    if (arguments_.stop.has_levels()) asked.levels = {Length{}};
+    if (!arguments_.stop.max_distance.empty()) asked.max_distance = Length::voxels(1);
+    control.checkpoint.folder = arguments_.checkpoint;
+    control.resume = resume_;
+    require_possible(arguments_.labels.empty() ? RunKind::kMesh : RunKind::kLabels, asked, control);
+  }
+
   // The volumes, and the options that depend on their units and sizes.
   void open() {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
-    values_ = open_values(arguments_);
-    options_.values = values_.get();
+    options_.values = open_values(arguments_);
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
-    if (std::isinf(options_.error.value)) options_.error = {most_shape_error(info_), false};
+    if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
     if (!quiet() && info_.geometry.unit.empty() && has_metric_length(arguments_.stop)) {
       print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm");
     }
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
-    options_.slab = parse_slab(arguments_.slab, info_.dims[2]);
+    control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     if (!arguments_.memory.empty()) control_.memory = parse_bytes("--memory", arguments_.memory);
-    control_.stop = &stop_on_signal();
+    control_.stop = borrow(stop_on_signal());
   }
 
   void find_iso() {
@@ -218,9 +224,9 @@ class MeshJob {
 
   // Once, in a pass of its own.
   void choose() {
-    if (rule_.keeps_all() || components_) return;
-    components_ = choose_components(*open_input(arguments_.input), options_, rule_, control_);
-    options_.components = &*components_;
+    if (rule_.keeps_all() || options_.components != nullptr) return;
+    options_.components =
+        std::make_shared<ComponentChoice>(choose_components(*open_input(arguments_.input), options_, rule_, control_));
   }
 
   // The number of triangles to stop at. A part of all takes their number first.
@@ -228,7 +234,8 @@ class MeshJob {
     if (control_.memory > 0 && !arguments_.stop.ratio.empty()) foresee_share();
     options_.triangles = stop_triangles(arguments_.stop, [&] {
       choose();
-      return components_ ? components_->triangles : count_triangles(*open_input(arguments_.input), options_, control_);
+      if (options_.components != nullptr) return options_.components->triangles;
+      return count_triangles(*open_input(arguments_.input), options_, control_);
     });
   }
 
@@ -266,10 +273,10 @@ class MeshJob {
 
   void prepare_states() {
     control_.resume = resume_;
-    if (resume_ != nullptr && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
+    if (resume_ && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
     if (arguments_.checkpoint.empty()) return;
     parse_every(arguments_.every, control_.checkpoint);
-    if (resume_ == nullptr) lock_ = &own_lock_.emplace(make_checkpoint_folder(arguments_.checkpoint));
+    if (!resume_) lock_ = std::make_shared<CheckpointLock>(make_checkpoint_folder(arguments_.checkpoint));
     control_.checkpoint.folder = arguments_.checkpoint;
     control_.checkpoint.lock = lock_;
     control_.checkpoint.note = task_json(arguments_, options_).dump();
@@ -279,7 +286,7 @@ class MeshJob {
   MeshFileOptions level_file(std::size_t level, const std::string& folder) const {
     MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_);
     file.parts = folder;
-    if (resume_ != nullptr) {
+    if (resume_) {
       file.mark = resume_->marks[level];
     } else if (!folder.empty()) {
       make_part_folder(folder);
@@ -292,12 +299,12 @@ class MeshJob {
     const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
     const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
     print_volume_notes();
-    const std::unique_ptr<Watch> watch = start_watch(
-        arguments_.watch,
-        {info_, options_, arguments_.input.path, outputs_.back().name(), resume_ == nullptr ? 0 : resume_->layer});
+    const std::shared_ptr<Watch> watch =
+        start_watch(arguments_.watch,
+                    {info_, options_, arguments_.input.path, outputs_.back().name(), !resume_ ? 0 : resume_->layer});
     ProgressPrinter printer(mode);
     control_.progress = [&](const Progress& progress) { printer.show(progress); };
-    control_.observer = watch.get();
+    control_.observer = watch;
     const MeshReport report = mesh_volume(*volume_, sinks.pointers(), options_, control_);
     remove_level_folders(folders);
     if (watch) watch->complete(report);
@@ -311,8 +318,8 @@ class MeshJob {
   void print_volume_notes() const {
     if (quiet()) return;
     for (const std::string& note : info_.notes) print_note("warning: " + note);
-    if (values_ == nullptr) return;
-    for (const std::string& note : values_->info().notes) print_note("warning: " + note);
+    if (options_.values == nullptr) return;
+    for (const std::string& note : options_.values->info().notes) print_note("warning: " + note);
   }
 
   void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
@@ -337,16 +344,14 @@ class MeshJob {
   }
 
   const MeshArguments& arguments_;
-  const Checkpoint* resume_;
-  const CheckpointLock* lock_;
-  std::optional<CheckpointLock> own_lock_;  // of a run that begins
+  const std::optional<Checkpoint> resume_;
+  std::shared_ptr<const CheckpointLock> lock_;
   const ComponentRule rule_;
   const std::vector<OutputOptions> outputs_;
   MeshOptions options_;
   RunControl control_;
-  std::unique_ptr<SliceSource> volume_, values_;
+  std::unique_ptr<SliceSource> volume_;
   VolumeInfo info_;
-  std::optional<ComponentChoice> components_;
   MeshFileOptions file_;
   std::optional<Forecast> forecast_;  // of a run that is not resumed
   std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold
@@ -362,15 +367,15 @@ void run_mesh(MeshArguments arguments) {
     // A value between two labels is no label: slices are not resampled.
     const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
     if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
-    return MeshJob(arguments, nullptr, nullptr).run();
+    return MeshJob(arguments, std::nullopt, nullptr).run();
   }
   // A path that is no folder cannot be locked and holds no state.
-  std::optional<CheckpointLock> lock;
-  if (std::filesystem::is_directory(arguments.resume)) lock.emplace(arguments.resume);
+  std::shared_ptr<const CheckpointLock> lock;
+  if (std::filesystem::is_directory(arguments.resume)) lock = std::make_shared<CheckpointLock>(arguments.resume);
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);
   arguments = resumed_arguments(arguments, checkpoint);
   if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
-  MeshJob(arguments, &checkpoint, &*lock).run();
+  MeshJob(arguments, checkpoint, std::move(lock)).run();
 }
 
 // The task of a run that goes on is known; how it runs may be said anew.

@@ -43,7 +43,9 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const
   quiet.measure = false;
   quiet.progress = nullptr;
   MeshInMemory result(mesh.offset);
-  const SimplifyOptions options{{kMostError * size_of(mesh), false}, Quality::kNormal, triangles};
+  SimplifyOptions options;
+  options.error = Length::units(kMostError * size_of(mesh));
+  options.triangles = triangles;
   simplify_mesh(mesh, result, options, quiet);
   return result.copy();
 }

@@ -113,7 +113,9 @@ PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMe
 
 // Lengths in the unit of the mesh.
 SimplifyOptions simplify_options(const SimplifyArguments& arguments, std::string_view unit) {
-  SimplifyOptions options{stop_error(arguments.stop, "", unit), parse_quality(arguments.quality)};
+  SimplifyOptions options;
+  options.error = stop_error(arguments.stop, "", unit);
+  options.quality = parse_quality(arguments.quality);
   options.max_distance = stop_distance(arguments.stop, unit);
   options.levels = finer_levels(arguments.stop, unit);
   options.drop_specks = drops_specks(arguments.stop);
@@ -146,9 +148,9 @@ void run_simplify(const SimplifyArguments& arguments) {
   }
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
-  if (std::isinf(options.error.value)) options.error = {most_shape_error(mesh), false};
+  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
-  control.stop = &stop_on_signal();
+  control.stop = borrow(stop_on_signal());
   Evidence evidence(run, arguments.page);
   const LevelSinks sinks(outputs,
                          [&](std::size_t level) { return file_options(arguments, mesh, level, options.triangles); });

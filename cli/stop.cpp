@@ -35,7 +35,7 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
   if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, unit);
   if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, unit);
-  if (stop.error.empty() && stop.has_number()) return {std::numeric_limits<double>::infinity(), false};
+  if (stop.error.empty() && stop.has_number()) return Length::units(std::numeric_limits<double>::infinity());
   return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
 }
 
@@ -84,7 +84,7 @@ void print_target(const MeshReport& report, std::uint64_t asked, const Length& a
   print_note(
       fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
                   "them, or an --error above {}",
-                  allowed.voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value)));
+                  allowed.in_voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value)));
 }
 
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {

@@ -99,7 +99,7 @@ void run_view(ViewArguments arguments) {
   }
   if (!reported) report["version"] = ISOWEAVE_VERSION;
   report["output"] = mesh_path;
-  control.stop = &stop_on_signal();
+  control.stop = borrow(stop_on_signal());
   AtomicFile file(arguments.page.path);
   write_page(file, arguments.page, report, std::move(contents), control);
   if (!arguments.quiet) print_note(arguments.page.path + ": open it in a browser");

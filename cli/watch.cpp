@@ -146,7 +146,7 @@ class SweepWatch final : public Watch {
 
 }  // namespace
 
-std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run) {
+std::shared_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run) {
   if (!watch.given()) return nullptr;
   const int port = parse_port("--watch", watch.port);
   const World world(run.volume.geometry, run.options.space, mesh_offset(run.volume, run.options.space));

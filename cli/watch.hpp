@@ -47,6 +47,6 @@ class Watch : public SweepObserver {
 
 // Says where the page is, on standard error. Null where nobody watches: it was not asked for, or the port cannot be
 // had, which is a note and no error.
-std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run);
+std::shared_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run);
 
 }  // namespace isoweave::cli

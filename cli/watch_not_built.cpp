@@ -5,7 +5,7 @@
 
 namespace isoweave::cli {
 
-std::unique_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun&) {
+std::shared_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun&) {
   if (!watch.given()) return nullptr;
   throw std::logic_error("a page to watch in a build without it");
 }

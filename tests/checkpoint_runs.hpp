@@ -9,7 +9,7 @@ inline MeshOptions mesh_options(const SurfaceCase& surface) {
   MeshOptions options;
   options.iso = suggested_iso(surface.volume.kind, surface.volume.type);
   options.closed = surface.closed;
-  options.error = {surface.error, true};
+  options.error = Length::voxels(surface.error);
   options.quality = surface.quality;
   return options;
 }

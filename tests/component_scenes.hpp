@@ -40,10 +40,10 @@ struct Scene {
     MeshOptions options;
     options.iso = 0.5;
     options.closed = surface.closed;
-    options.error = {surface.error, true};
+    options.error = Length::voxels(surface.error);
     options.quality = surface.quality;
     options.drop_specks = surface.drop_specks;
-    options.max_distance = {surface.max_distance, true};
+    options.max_distance = Length::voxels(surface.max_distance);
     return options;
   }
 
@@ -109,7 +109,7 @@ inline SurfacePiece extract_all(const Scene& scene, bool normals = false) {
   SliceWindow window(*volume);
   window.advance(0, volume->info().dims[2]);
   SurfacePiece piece;
-  extractor.extract(window, extractor.layers_left(), piece);
+  extractor.extract(window, extractor.layers_left(), ~std::uint64_t{0}, piece);
   return piece;
 }
 
@@ -196,8 +196,8 @@ inline SurfaceRun reference(const Scene& scene, const Kept& kept, std::uint64_t 
 
 inline ComponentChoice choose(const Scene& scene, const ComponentRule& rule, std::int64_t slab = 3, int threads = 2) {
   MeshOptions options = scene.options();
-  options.slab = slab;
   RunControl control;
+  control.slab = slab;
   control.threads = threads;
   return choose_components(*scene.volume(), options, rule, control);
 }

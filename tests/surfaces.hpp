@@ -14,9 +14,10 @@
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "output/final_output.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/run_report.hpp"
 #include "sanitized.hpp"
 #include "simplify/simplifier.hpp"
+#include "volume/axes.hpp"
 
 namespace isoweave::testing {
 
@@ -125,7 +126,7 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
     const std::int64_t layers = std::min(slab, extractor.layers_left());
     const auto [first, end] = extractor.slices_for(layers);
     window.advance(first, end);
-    extractor.extract(window, layers, piece);
+    extractor.extract(window, layers, ~std::uint64_t{0}, piece);
     run.report.triangles_extracted += piece.triangles.size();
     run.report.vertices_extracted += piece.positions.size();
     simplifier.append(piece);

@@ -20,7 +20,7 @@ enum class Stop { kError, kTriangles };
 template <class Options>
 void stop_at(Stop stop, const Goal& goal, Options& options) {
   const bool counts = stop == Stop::kTriangles;
-  options.error = {counts ? std::numeric_limits<double>::infinity() : goal.length, false};
+  options.error = Length::units(counts ? std::numeric_limits<double>::infinity() : goal.length);
   options.triangles = counts ? goal.triangles : 0;
 }
 
@@ -42,7 +42,7 @@ class Extraction : public Task {
   void run() override {
     const std::unique_ptr<isoweave::SliceSource> source = volume_in_memory(volume_.info, volume_.samples);
     isoweave::MeshOptions options = mesh_options(volume_.iso, Quality::kNormal);
-    options.error = {0, false};
+    options.error = Length::units(0);
     mesh_volume(*source, mesh_, options, on(threads_));
   }
   std::size_t triangles() const override { return mesh_.triangles().size(); }

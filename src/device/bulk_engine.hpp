@@ -1,7 +1,7 @@
 // The engine of any device.
 //
-// The passes are those of the headers beside this one; a Device (simulated_device.hpp says what that is) runs them. Surface,
-// decisions and order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
+// The passes are those of the headers beside this one; a Device (simulated_device.hpp says what that is) runs them.
+// Surface, decisions and order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
 #pragma once
 
 #include <algorithm>

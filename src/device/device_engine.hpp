@@ -10,7 +10,7 @@
 
 #include "device/final_passes.hpp"
 #include "extract/cube_rules.hpp"
-#include "isoweave/simplify_options.hpp"
+#include "extract/extractor.hpp"
 #include "simplify/zone_view.hpp"
 #include "volume/slice_window.hpp"
 
@@ -21,12 +21,6 @@ struct BulkOptions {
   IsoRule rule;
   bool normals = false;
   ZoneOptions zone;
-};
-
-// What a slab has brought.
-struct SlabCounts {
-  std::int64_t layers = 0;
-  std::uint64_t cells_crossed = 0, triangles = 0, vertices = 0;
 };
 
 // Triangles that have become final, on the host. Vertices written for the first time come first.

@@ -67,8 +67,8 @@ std::pair<std::int64_t, std::int64_t> MarchingCubes::slices_for(std::int64_t lay
   return {next_layer_ - margin, next_layer_ + layers + 1 + margin};
 }
 
-std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece,
-                                    std::uint64_t most_vertices) {
+SlabCounts MarchingCubes::extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                                  SurfacePiece& piece) {
   piece.clear();
   piece.inherited = front_size_;
   auto count = static_cast<std::size_t>(layers);
@@ -94,7 +94,7 @@ std::int64_t MarchingCubes::extract(const SliceWindow& window, std::int64_t laye
   std::swap(slices_.front(), slices_[count]);
   list_front(piece);
   if (layers_left() > 0) piece.complete_below = static_cast<double>(first_[2] + next_layer_) * spacing_[2];
-  return static_cast<std::int64_t>(count);
+  return {static_cast<std::int64_t>(count), piece.cells_crossed, piece.triangles.size(), piece.positions.size()};
 }
 
 // Calls visit(layer, row, number of the row in the slab) for every row of so many layers.

@@ -13,6 +13,7 @@
 
 #include "extract/cell_kernels.hpp"
 #include "extract/cube_rules.hpp"
+#include "extract/extractor.hpp"
 #include "extract/row_kernels.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
@@ -30,26 +31,24 @@ struct ExtractOptions {
   std::optional<PartOfLattice> part_of{};
 };
 
-class MarchingCubes {
+class MarchingCubes final : public Extractor {
  public:
   MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor);
 
-  // Layers not yet extracted. Layer k lies between slices k and k + 1; the first is -1, in the pad, and empty in open
-  // mode.
-  std::int64_t layers_left() const { return end_layer_ - next_layer_; }
+  // The first layer is -1, in the pad, and empty in open mode.
+  std::int64_t layers_left() const override { return end_layer_ - next_layer_; }
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override;
 
-  // Slices [first, end) that the next `layers` layers read, unclipped.
-  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const;
+  // Throws OverMemory when the slab holds 2^32 vertices or triangles, or more.
+  SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                     SurfacePiece& piece) override;
 
-  // Extracts the next `layers` layers into `piece`, or fewer, though at least one, where they would make more than
-  // `most_vertices`. Returns how many. The window holds what slices_for() names, as far as the volume goes. Same result
-  // for any number of threads. Throws OverMemory when the slab holds 2^32 vertices or more.
-  std::int64_t extract(const SliceWindow& window, std::int64_t layers, SurfacePiece& piece,
-                       std::uint64_t most_vertices = ~std::uint64_t{0});
+  void exchange(StateWriter& state) override { exchange_with(state); }
+  void exchange(StateReader& state) override { exchange_with(state); }
 
-  // The state between two slabs.
+ private:
   template <class Archive>
-  void exchange(Archive& archive) {
+  void exchange_with(Archive& archive) {
     archive.value(next_layer_);
     archive.value(front_size_);
     archive.list(slices_.front().inside);
@@ -58,7 +57,6 @@ class MarchingCubes {
     archive.list(slices_.front().base);
   }
 
- private:
   // Bits and vertex numbers of one slice; one entry per word, row by row.
   struct Slice {
     std::vector<std::uint64_t> inside, cross_x, cross_y;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -17,13 +16,12 @@
 #include "files/atomic_file.hpp"
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
-#include "system/file_facts.hpp"
 
 namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 8\n";  // the number changes with fields and rules
+constexpr std::string_view kFormat = "isoweave state 9\n";  // the number changes with fields and rules
 
 constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
 
@@ -82,96 +80,12 @@ std::optional<Header> newest_state(const std::string& folder, std::string& why) 
   return newest;
 }
 
-// Without a stream, as each run says what it is: a process that has made none yet pays a third of a millisecond.
-std::string numbers_text(std::span<const double> numbers) {
-  std::string text;
-  for (const double number : numbers) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.begin(), digits.end(), number, std::chars_format::general, 17);
-    text += ' ';
-    text.append(digits.begin(), end.ptr);
-  }
-  return text;
-}
-
-std::string length_text(const Length& length) {
-  return numbers_text(std::array{length.value}) + (length.voxels ? " voxels" : "");
-}
-
-std::string levels_text(std::span<const Length> levels) {
-  std::string text;
-  for (const Length& level : levels) text += ", level" + length_text(level);
-  return text;
-}
-
-// What was chosen of the file that was opened, and size and time of change of that file or of the one that describes a
-// folder.
-std::string file_text(const VolumeInfo& volume) {
-  const std::string& path = volume.header.empty() ? volume.path : volume.header;
-  std::string part = volume.part.empty() ? "" : ", " + volume.part;
-  const std::optional<system::FileFacts> facts = system::facts_of_file(path);
-  if (!facts) return part;
-  return part + ", " + std::to_string(facts->bytes) + " bytes changed at " + std::to_string(facts->seconds) + "." +
-         std::to_string(facts->nanoseconds);
-}
-
-std::string volume_text(const VolumeInfo& volume) {
-  const auto& [nx, ny, nz] = volume.dims;
-  const Geometry& geometry = volume.geometry;
-  return std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz) + ' ' +
-         std::string(sample_type_name(volume.type)) + ", spacing" + numbers_text(geometry.spacing) + ", origin" +
-         numbers_text(geometry.origin) + ", axes" + numbers_text(geometry.direction) + ", scale" +
-         numbers_text(std::array{volume.slope, volume.intercept}) + file_text(volume);
-}
-
-std::string iso_text(const MeshOptions& options) {
-  return "iso" + numbers_text(std::array{options.iso}) + (options.inside_above ? " above" : " below") +
-         (options.closed ? " closed" : " open");
-}
-
 void require_same(const std::string& path, const char* what, const std::string& saved, const std::string& now) {
   if (saved == now) return;
   bad_input(path, std::string("the ") + what + " has changed: expected " + saved + ", found " + now);
 }
 
-const char* normals_text(Normals normals) {
-  if (normals == Normals::kAbsent) return "";
-  return normals == Normals::kGradient ? ", normals" : ", normals by quadrics";
-}
-
 }  // namespace
-
-std::string surface_text(const VolumeInfo& volume, const MeshOptions& options) {
-  return volume_text(volume) + ", " + iso_text(options);
-}
-
-RunIdentity identity_of(const VolumeInfo& volume, const MeshOptions& options, const std::array<double, 3>& offset,
-                        bool measured) {
-  RunIdentity identity;
-  identity.volume = volume_text(volume);
-  if (options.values != nullptr) identity.volume += ", values" + file_text(options.values->info());
-  std::string& text = identity.options;
-  text = iso_text(options) + ", error" + length_text(options.error) + ", triangles " +
-         std::to_string(options.triangles) + levels_text(options.levels) + ", quality " +
-         std::to_string(static_cast<int>(options.quality)) + ", space " +
-         std::to_string(static_cast<int>(options.space)) + normals_text(options.normals);
-  if (options.values != nullptr) text += ", values";
-  if (!measured) text += ", not measured";
-  if (offset != std::array<double, 3>{0, 0, 0}) text += ", offset" + numbers_text(offset);
-  if (options.drop_specks) text += ", no specks";
-  if (options.smooth > 0) text += ", smooth " + std::to_string(options.smooth);
-  if (options.max_distance.value > 0) text += ", distance" + length_text(options.max_distance);
-  if (options.components != nullptr) {
-    const ComponentRule& rule = options.components->rule;
-    text += ", components of " + std::to_string(rule.min_triangles) + (rule.largest ? ", the largest" : "");
-  }
-  return identity;
-}
-
-void require_unchanged(const VolumeInfo& volume, const MeshOptions& options, const RunIdentity& before) {
-  if (identity_of(volume, options).volume == before.volume) return;
-  throw BadInput(volume.path + ": expected a file that stays as it is while it is read, found it changed");
-}
 
 namespace {
 

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "isoweave/mesh_options.hpp"
+
 namespace isoweave {
 
 // Bytes for normals and values of vertices.
@@ -14,6 +16,8 @@ struct VertexExtras {
   std::uint64_t held = 0;         // in the zone
   std::uint64_t slice_bytes = 0;  // of the volume of values
 };
+
+VertexExtras vertex_extras(const AttributeOptions& attributes);
 
 struct MemoryModel {
   std::uint64_t resident = 0;  // bytes that the process holds before the run: the program and its libraries

@@ -8,10 +8,11 @@
 
 #include "isoweave/pipeline.hpp"
 #include "parallel/float_environment.hpp"
-#include "pipeline/checkpoint.hpp"
 #include "pipeline/label_sweep.hpp"
+#include "pipeline/loop.hpp"
+#include "pipeline/run_identity.hpp"
+#include "pipeline/run_report.hpp"
 #include "pipeline/slab_plan.hpp"
-#include "pipeline/sweep.hpp"
 #include "system/process_memory.hpp"
 #include "volume/labels.hpp"
 #include "volume/samples.hpp"
@@ -19,18 +20,19 @@
 namespace isoweave {
 namespace {
 
-void check_options(const MeshOptions& options, const RunControl& control) {
-  const auto refuse = [](const std::string& what) {
-    throw std::invalid_argument("labels: expected a run without " + what + ", which takes one surface");
-  };
-  if (options.triangles > 0) refuse("a number of triangles to stop at");
-  if (!options.levels.empty()) refuse("levels");
-  if (options.components != nullptr) refuse("components to be dropped");
-  if (options.values != nullptr) refuse("values of another volume");
-  if (control.device == Device::kCuda) refuse("a CUDA device");
-  if (control.observer != nullptr) refuse("an observer");
-  if (control.memory > 0) refuse("a cap on memory");
-  if (!control.checkpoint.folder.empty() || control.resume != nullptr) refuse("states to be saved or resumed");
+// The mask of a label has values 0 and 1, whatever the volume's surface was to be.
+MeshOptions mask_options(const MeshOptions& options) {
+  MeshOptions mask = options;
+  mask.iso = 0.5;
+  mask.inside_above = true;
+  return mask;
+}
+
+std::vector<MeshSink*> sinks_of(std::span<const LabelSink> labels) {
+  std::vector<MeshSink*> sinks;
+  for (const LabelSink& label : labels) sinks.push_back(label.sink);
+  require_different(sinks);
+  return sinks;
 }
 
 Region whole_of(const VolumeInfo& volume) { return {{0, 0, 0}, volume.dims}; }
@@ -83,18 +85,13 @@ class LabelsSweep {
   LabelsSweep(SliceSource& map, std::span<const LabelSink> labels, const MeshOptions& options,
               const RunControl& control)
       : numbers_(map),
-        volume_(checked_volume(numbers_.info())),
-        options_(options),
+        task_(resolve(numbers_.info(), mask_options(options), control, common_offset(sinks_of(labels)),
+                      RunKind::kLabels)),
+        volume_(task_.volume),
         control_(control),
         executor_(control.threads),
-        simplifies_(simplifies(volume_, options)),
         window_(numbers_) {
-    check_options(options, control);
-    zone_options(volume_, options);  // finds out now what is wrong with them
     warn_of_floats(map.info().type, labels);
-    std::vector<MeshSink*> sinks;
-    for (const LabelSink& label : labels) sinks.push_back(label.sink);
-    require_different(sinks);
     make_lanes(labels);
   }
 
@@ -107,7 +104,7 @@ class LabelsSweep {
       sweep_slab();
       record_slab();
     }
-    require_unchanged(volume_, options_, identity_);
+    require_unchanged(task_, identity_);
     finish_labels();
     total.lap(report_.total.seconds_total);
     report_.total.peak_bytes = system::peak_bytes();
@@ -122,7 +119,7 @@ class LabelsSweep {
       check_box(label, box);
       Lane& lane = lanes_.emplace_back();
       lane.label = &label;
-      if (!is_empty(box)) lane.box = box_to_sweep(box, volume_, options_);
+      if (!is_empty(box)) lane.box = box_to_sweep(box, volume_, task_.surface);
       all += samples_in(lane.box);
     }
     for (Lane& lane : lanes_) lane.large = samples_in(lane.box) * executor_.threads() > all;
@@ -151,27 +148,25 @@ class LabelsSweep {
   void start_report() {
     MeshReport& total = report_.total;
     total.threads = executor_.threads();
-    total.slab = options_.slab;
+    total.slab = control_.slab;
     total.schedule = control_.schedule == Schedule::kAutomatic ? Schedule::kLocal : control_.schedule;
-    total.error = length_in(volume_, options_.error);
-    warn_of_space(volume_, options_, total);
-    std::vector<MeshSink*> sinks;
-    for (const Lane& lane : lanes_) sinks.push_back(lane.label->sink);
-    warn_of_rounding(volume_, options_, common_offset(sinks), total);
+    total.error = task_.simplify.error;
+    warn_of_space(task_, total);
+    warn_of_rounding(task_, total);
   }
 
   // Layers of the next slab: no more triangles of all labels than keep all threads busy, and no more slices of all
   // boxes than the memory for slices has room for.
   std::int64_t next_layers() const {
-    if (options_.slab > 0) return std::min(options_.slab, volume_.dims[2] - done_);
-    const SlabGoal& goal = slab_goal(simplifies_);
+    if (control_.slab > 0) return std::min(control_.slab, volume_.dims[2] - done_);
+    const SlabGoal& goal = slab_goal(task_.simplify.needed);
     const std::int64_t doubled = recent_layers_ > 0 ? 2 * recent_layers_ : 8;
     constexpr double kFloatBytes = sizeof(float);
     constexpr double kSliceBytes = 64 << 20;
     double slice = 2 * static_cast<double>(volume_.slice_bytes());
     for (const Lane& lane : lanes_) {
       const bool is_on = lane.box.first[2] < done_ + doubled && done_ < lane.box.end[2];
-      if (is_on) slice += slice_area(lane.box) * (options_.smooth > 0 ? kFloatBytes : 1);
+      if (is_on) slice += slice_area(lane.box) * (task_.surface.smooth > 0 ? kFloatBytes : 1);
     }
     const double recent = static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
     const double per_layer = static_cast<double>(recent_triangles_) / recent;
@@ -183,7 +178,7 @@ class LabelsSweep {
   void read_slab() {
     Stopwatch clock;
     const std::int64_t layers = next_layers();
-    window_.advance(done_ - slices_kept(options_), done_ + layers, layers);
+    window_.advance(done_ - slices_kept(task_.surface), done_ + layers, layers);
     if (control_.measure) {
       for (std::int64_t k = done_; k < done_ + layers; ++k) {
         range_.merge(sample_range(window_.slice(k), volume_.type, volume_.slice_samples()));
@@ -208,7 +203,7 @@ class LabelsSweep {
 
   void sweep(Lane& lane, const Executor& executor) const {
     if (lane.sweep == nullptr) {
-      lane.sweep = std::make_unique<LabelSweep>(window_, lane.box, *lane.label, options_, control_, executor);
+      lane.sweep = std::make_unique<LabelSweep>(window_, lane.box, *lane.label, task_, control_, executor);
     }
     lane.sweep->sweep_below(done_);
   }
@@ -260,12 +255,11 @@ class LabelsSweep {
   }
 
   LabelNumbers numbers_;
-  const VolumeInfo volume_;
-  const MeshOptions& options_;
+  const Task task_;
+  const VolumeInfo& volume_;
   const RunControl& control_;
-  const RunIdentity identity_ = identity_of(volume_, options_);
+  const RunIdentity identity_ = identity_of(task_);
   const Executor executor_;
-  const bool simplifies_;
   SliceWindow window_;
   std::vector<Lane> lanes_;
   LabelsReport report_;

@@ -10,6 +10,7 @@
 #include "lattice/triangles.hpp"
 #include "parallel/collect.hpp"
 #include "parallel/vertex_owners.hpp"
+#include "pipeline/run_report.hpp"
 
 namespace isoweave {
 namespace {
@@ -84,16 +85,23 @@ std::uint64_t MeshSurface::inherited_with(std::uint64_t piece) const {
   return sum;
 }
 
-void MeshSurface::take(std::uint64_t wanted, SurfacePiece& piece) {
+// Each piece has passes over all that is held, so it is to bring as much.
+void MeshSurface::read(const Held& held, MeshReport&) { wanted_ = held.triangles; }
+
+void MeshSurface::make(SurfacePiece& piece, MeshReport& report) {
+  Stopwatch clock;
   piece.clear();
   piece.inherited = static_cast<std::uint32_t>(incomplete_.size());
   piece.manifold = false;
-  const std::uint64_t triangles = pieces_.exactly ? pieces_.triangles : std::max(pieces_.triangles, wanted);
+  const std::uint64_t triangles = pieces_.exactly ? pieces_.triangles : std::max(pieces_.triangles, wanted_);
   const std::uint64_t end = next_ + std::min(triangles, mesh_.triangles.size() - next_);
   add_new_vertices(end, piece);
   add_triangles(end, piece);
   list_incomplete(end, piece);
+  report.triangles_extracted += end - next_;
   next_ = end;
+  if (complete()) report.vertices_extracted = mesh_.vertices.size();
+  clock.lap(report.seconds_extract);
 }
 
 // In the order in which triangles name them.

@@ -8,6 +8,7 @@
 #include "isoweave/mesh.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
+#include "pipeline/piece_source.hpp"
 
 namespace isoweave {
 
@@ -16,7 +17,7 @@ namespace isoweave {
 //
 // A vertex is incomplete from the first of its triangles to the last. Where these lie far apart, as in a mesh whose
 // triangles have been shuffled, pieces are made larger, up to the whole mesh.
-class MeshSurface {
+class MeshSurface final : public PieceSource {
  public:
   struct Pieces {
     std::uint64_t triangles;  // of the smallest one; 1 at least where the mesh has any
@@ -27,10 +28,13 @@ class MeshSurface {
   // have, and OverMemory for a mesh of 2^32 triangles or more.
   MeshSurface(const TriangleMesh& mesh, const Executor& executor, const Pieces& pieces);
 
-  bool complete() const { return next_ == mesh_.triangles.size(); }
+  bool complete() const override { return next_ == mesh_.triangles.size(); }
 
-  // Fills `piece` with the next triangles: `wanted` or more of them where their number is free and there are as many.
-  void take(std::uint64_t wanted, SurfacePiece& piece);
+  // How many triangles the next piece is to have, where their number is free.
+  void read(const Held& held, MeshReport& report) override;
+
+  // Fills `piece` with the next triangles: as many as wanted or more, if there are so many.
+  void make(SurfacePiece& piece, MeshReport& report) override;
 
   // Triangles left out so far.
   std::uint64_t dropped() const { return dropped_; }
@@ -45,6 +49,7 @@ class MeshSurface {
   const TriangleMesh& mesh_;
   const Executor& executor_;
   Pieces pieces_;
+  std::uint64_t wanted_ = 0;               // of the next piece
   std::uint64_t next_ = 0;                 // the first triangle of the next piece
   Array<std::uint32_t> first_, last_;      // per vertex: triangles; first > last where there are none
   Array<std::uint32_t> number_;            // per vertex: in the last piece that names it

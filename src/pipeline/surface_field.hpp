@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "extract/cube_rules.hpp"
-#include "isoweave/pipeline.hpp"
+#include "isoweave/mesh_options.hpp"
 #include "parallel/parallel.hpp"
 #include "volume/smoothed_mask.hpp"
 
@@ -15,7 +15,7 @@ class SurfaceField {
  public:
   // measure: find the range of the samples of a volume that is smoothed. The volume and the executor are used as long
   // as this is. Throws std::invalid_argument for an iso-value that is not finite and for passes out of range.
-  SurfaceField(SliceSource& volume, const MeshOptions& options, const Executor& executor, bool measure);
+  SurfaceField(SliceSource& volume, const SurfaceOptions& options, const Executor& executor, bool measure);
 
   SliceSource& source() { return smoothed_ ? *smoothed_ : volume_; }
   const VolumeInfo& info() const { return smoothed_ ? smoothed_->info() : volume_.info(); }
@@ -28,10 +28,10 @@ class SurfaceField {
   const SampleRange* range(std::int64_t k) const { return smoothed_ ? smoothed_->range(k) : nullptr; }
 
   // What it holds, at most.
-  static std::uint64_t memory(const VolumeInfo& volume, const MeshOptions& options);
+  static std::uint64_t memory(const VolumeInfo& volume, const SurfaceOptions& options);
 
   // What it says of itself, before there is one.
-  static VolumeInfo info_of(const VolumeInfo& volume, const MeshOptions& options);
+  static VolumeInfo info_of(const VolumeInfo& volume, const SurfaceOptions& options);
 
  private:
   SliceSource& volume_;

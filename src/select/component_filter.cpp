@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "isoweave/error.hpp"
 #include "parallel/compact.hpp"
 #include "parallel/union_find.hpp"
 
@@ -15,16 +16,20 @@ std::span<std::uint32_t> span_of(Array<std::uint32_t>& array) { return {array.da
 
 }  // namespace
 
-bool ComponentFilter::apply(SurfacePiece& piece) {
+void ComponentFilter::apply(SurfacePiece& piece) {
   find_parts(piece);
   judge_parts(piece);
-  if (!agrees_with_front()) return false;
+  if (!agrees_with_front()) refuse();
   front_is_kept_.resize(piece.incomplete.size());
   for (std::size_t n = 0; n < front_is_kept_.size(); ++n) front_is_kept_[n] = kept_[piece.incomplete[n]];
   const bool all = std::find(kept_.begin(), kept_.end(), 0) == kept_.end();
   if (!all) drop(piece);
   triangles_ += piece.triangles.size();
-  return true;
+}
+
+void ComponentFilter::refuse() const {
+  throw BadInput(path_ +
+                 ": the volume has changed: expected the surface that components were chosen in, found another");
 }
 
 void ComponentFilter::find_parts(const SurfacePiece& piece) {

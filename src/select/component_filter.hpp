@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "extract/surface_piece.hpp"
+#include "extract/piece_stage.hpp"
 #include "isoweave/components.hpp"
 #include "lattice/lattice.hpp"
 #include "parallel/array.hpp"
@@ -12,26 +14,31 @@
 
 namespace isoweave {
 
-class ComponentFilter {
+class ComponentFilter final : public PieceStage {
  public:
-  // The choice must outlive the filter.
-  ComponentFilter(const ComponentChoice& choice, const Lattice& lattice, const Executor& executor)
-      : choice_(choice), lattice_(lattice), executor_(executor) {}
+  // path: of the volume. The choice must outlive the filter.
+  ComponentFilter(const ComponentChoice& choice, const Lattice& lattice, std::string path, const Executor& executor)
+      : choice_(choice), lattice_(lattice), path_(std::move(path)), executor_(executor) {}
 
-  // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more. False,
-  // and nothing is changed, when a component is kept in part: the choice is not one of this surface.
-  bool apply(SurfacePiece& piece);
+  // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more. Throws
+  // BadInput, and nothing is changed, when a component is kept in part: the choice is not one of this surface.
+  void apply(SurfacePiece& piece) override;
 
   std::uint64_t triangles() const { return triangles_; }  // kept so far
 
-  // The state between two pieces.
+  void exchange(StateWriter& state) override { exchange_with(state); }
+  void exchange(StateReader& state) override { exchange_with(state); }
+
+  // Throws BadInput: the surface is not the one that components were chosen in.
+  [[noreturn]] void refuse() const;
+
+ private:
   template <class Archive>
-  void exchange(Archive& archive) {
+  void exchange_with(Archive& archive) {
     archive.list(front_is_kept_);
     archive.value(triangles_);
   }
 
- private:
   void find_parts(const SurfacePiece& piece);
   void judge_parts(const SurfacePiece& piece);
   bool agrees_with_front() const;
@@ -41,6 +48,7 @@ class ComponentFilter {
 
   const ComponentChoice& choice_;
   const Lattice lattice_;
+  const std::string path_;
   const Executor& executor_;
   std::vector<std::uint8_t> front_is_kept_;  // of all vertices that the next piece inherits
   std::uint64_t triangles_ = 0;

@@ -20,7 +20,7 @@ std::span<std::uint32_t> span_of(Array<std::uint32_t>& array) { return {array.da
 
 }  // namespace
 
-void ComponentFinder::take(const SurfacePiece& piece) {
+void ComponentFinder::apply(SurfacePiece& piece) {
   begin(piece);
   const auto vertices = static_cast<std::uint32_t>(parents_.size());
   LayerEnd done{piece.inherited, 0};
@@ -173,5 +173,9 @@ std::uint64_t ComponentFinder::bytes() const {
   return seeds_.capacity() * sizeof(std::uint64_t) + seed_parents_.capacity() * sizeof(std::uint32_t) +
          seed_triangles_.capacity() * sizeof(std::uint64_t);
 }
+
+void ComponentFinder::exchange(StateWriter&) { throw std::logic_error("a search for components is not saved"); }
+
+void ComponentFinder::exchange(StateReader&) { throw std::logic_error("a search for components is not saved"); }
 
 }  // namespace isoweave

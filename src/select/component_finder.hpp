@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "extract/surface_piece.hpp"
+#include "extract/piece_stage.hpp"
 #include "isoweave/components.hpp"
 #include "lattice/lattice.hpp"
 #include "parallel/array.hpp"
@@ -20,18 +20,22 @@ namespace isoweave {
 //
 // An edge between two vertices of a slice lies in a face of a cell below it and of one above, so the layer below tells
 // what is connected on a slice. The first slice of an open volume has no layer below: there each vertex is a seed.
-class ComponentFinder {
+class ComponentFinder final : public PieceStage {
  public:
   ComponentFinder(const Lattice& lattice, const Executor& executor) : lattice_(lattice), executor_(executor) {}
 
-  // Takes the next piece, of one layer or more. Throws OverMemory at 2^32 seeds.
-  void take(const SurfacePiece& piece);
+  // Looks at the next piece, of one layer or more. Throws OverMemory at 2^32 seeds.
+  void apply(SurfacePiece& piece) override;
 
   // What the rule keeps of the surface, which is complete. Same result for any pieces and any number of threads. To be
   // called once.
   ComponentChoice choose(const ComponentRule& rule);
 
-  std::uint64_t bytes() const;
+  std::uint64_t bytes() const override;
+
+  // Throw std::logic_error: this pass is short, and made anew by a run that is resumed.
+  void exchange(StateWriter& state) override;
+  void exchange(StateReader& state) override;
 
  private:
   // The vertices and triangles of a piece up to the end of a layer.

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "isoweave/simplify_options.hpp"
+#include "isoweave/run.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/driver.hpp"
 #include "simplify/zone.hpp"

@@ -123,4 +123,20 @@ void apply_overrides(Geometry& geometry, const OpenOptions& options) {
   }
 }
 
+double cube_root(double x) {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  while (exponent % 3 != 0) {
+    mantissa *= 2;
+    --exponent;
+  }
+  double root = 1;
+  for (int step = 0; step < 8; ++step) root = (2 * root + mantissa / (root * root)) / 3;
+  return std::ldexp(root, exponent / 3);
+}
+
+double mean_voxel(const Geometry& geometry) {
+  return cube_root(geometry.spacing[0] * geometry.spacing[1] * geometry.spacing[2]);
+}
+
 }  // namespace isoweave

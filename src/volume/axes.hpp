@@ -31,6 +31,12 @@ Vector3 normal_of(const Vector3& a, const Vector3& b);
 // have a slope. What was opened from a file is; a caller's own source may not be.
 void require_usable(const VolumeInfo& volume);
 
+// Cube root by Newton's method: additions, multiplications and divisions only, so equal on every machine.
+double cube_root(double x);
+
+// Mean side of a voxel.
+double mean_voxel(const Geometry& geometry);
+
 // Applies the caller's overrides. Throws std::invalid_argument when they are not usable.
 void apply_overrides(Geometry& geometry, const OpenOptions& options);
 

@@ -134,11 +134,11 @@ TEST_F(CliLabels, WrongUseIsRefused) {
       {"--iso", "0.5"},        {"--inside", "below"},    {"--lods", "0.1,0.2"}, {"--triangles", "9"},
       {"--ratio", "0.5"},      {"--step", "2"},          {"--memory", "1G"},    {"--dry-run"},
       {"--checkpoint", "run"}, {"--html", "a.html"},     {"--watch"},           {"--color-by", kMap},
-      {"--largest"},           {"--min-component", "9"}, {"--one-file"},        {"--device", "cuda"},
-      {"--every", "9s"}};
+      {"--largest"},           {"--min-component", "9"}, {"--one-file"},        {"--every", "9s"}};
   for (const std::vector<std::string>& more : together) {
     expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, "--labels");
   }
+  expect_refused(folder_, mesh({"--labels", "all", "--device", "cuda"}), 2, "labels: expected a run without a CUDA");
   expect_refused(folder_, {"mesh", kMap, "--to-stdout", "ply", "--labels", "3"}, 2, "--labels");
   expect_refused(folder_, mesh({"--labels", "3", "--report", "seg_label3.ply"}), 2, "seg_label3.ply");
   expect_refused(folder_, mesh({"--labels", "3", "--error", "much"}), 2, "much");

@@ -38,9 +38,9 @@ void expect_kept(Scene scene, const ComponentRule& rule, const std::vector<int>&
                                         << ", threads " << threads);
       EXPECT_EQ(choose(scene, rule, slab, threads).seeds, choice.seeds);
       MeshOptions options = scene.options();
-      options.slab = slab;
-      options.components = &choice;
+      options.components = borrow(choice);
       RunControl control;
+      control.slab = slab;
       control.schedule = schedule;
       control.threads = threads;
       MemorySink sink;
@@ -50,7 +50,7 @@ void expect_kept(Scene scene, const ComponentRule& rule, const std::vector<int>&
       expect_dropped(report, kept);
       EXPECT_EQ(report.warnings.size(), kept.components == 0 ? 1U : 0U);
 
-      options.error = {0, true};
+      options.error = Length::voxels(0);
       MemorySink full;
       const MeshReport full_report = mesh_volume(*scene.volume(), full, options, control);
       expect_dropped(full_report, kept);
@@ -121,7 +121,7 @@ TEST(ComponentsOfOneSize, TheFirstIsTheLargest) {
   const Scene scene = twins();
   const ComponentChoice choice = choose(scene, {0, true});
   MeshOptions options = scene.options();
-  options.components = &choice;
+  options.components = borrow(choice);
   MemorySink sink;
   mesh_volume(*scene.volume(), sink, options);
   for (const Point& vertex : sink.mesh.vertices) {
@@ -136,10 +136,9 @@ class ComponentsAnd : public ::testing::Test {
  protected:
   MeshReport run(const Scene& scene, MeshOptions options, TriangleMesh* mesh = nullptr) const {
     const ComponentChoice choice = choose(scene, rule_);
-    options.components = &choice;
-    options.slab = 4;
+    options.components = borrow(choice);
     MemorySink sink;
-    MeshReport report = mesh_volume(*scene.volume(), sink, options);
+    MeshReport report = mesh_volume(*scene.volume(), sink, options, {.slab = 4});
     if (mesh != nullptr) *mesh = std::move(sink.mesh);
     return report;
   }
@@ -165,10 +164,10 @@ TEST_F(ComponentsAnd, NumbersOfTrianglesAreOfWhatIsKept) {
   const Kept kept = keep(extract_all(scene_), rule_);
   MeshOptions options = scene_.options();
   options.triangles = kept.piece.triangles.size() / 3;
-  options.error = {std::numeric_limits<double>::infinity(), false};
+  options.error = Length::units(std::numeric_limits<double>::infinity());
   expect_same(run(scene_, options), reference(scene_, kept, options.triangles).report);
   const ComponentChoice choice = choose(scene_, rule_);
-  options.components = &choice;
+  options.components = borrow(choice);
   EXPECT_EQ(count_triangles(*scene_.volume(), options), kept.piece.triangles.size());
 }
 
@@ -176,7 +175,7 @@ TEST_F(ComponentsAnd, NormalsStayWithTheirVertices) {
   const Kept kept = keep(extract_all(scene_, true), rule_);
   MeshOptions options = scene_.options();
   options.normals = Normals::kGradient;
-  options.error = {0, true};
+  options.error = Length::voxels(0);
   TriangleMesh mesh;
   run(scene_, options, &mesh);
   ASSERT_EQ(mesh.normals.size(), kept.piece.normals.size());
@@ -189,18 +188,17 @@ TEST_F(ComponentsAnd, NormalsStayWithTheirVertices) {
 TEST_F(ComponentsAnd, ValuesStayWithTheirVertices) {
   const Scene other = generated("white", scene_.surface.volume.dims);
   MeshOptions options = scene_.options();
-  options.error = {0, true};
-  const auto run_with = [&](const ComponentChoice* components) {
-    const auto values = other.volume();
-    options.values = values.get();
-    options.components = components;
+  options.error = Length::voxels(0);
+  const auto run_with = [&](std::shared_ptr<const ComponentChoice> components) {
+    options.values = other.volume();
+    options.components = std::move(components);
     MemorySink sink;
     mesh_volume(*scene_.volume(), sink, options);
     return std::move(sink.mesh);
   };
   const TriangleMesh all = run_with(nullptr);
   const ComponentChoice choice = choose(scene_, rule_);
-  const TriangleMesh kept = run_with(&choice);
+  const TriangleMesh kept = run_with(borrow(choice));
   ASSERT_EQ(kept.values.size(), kept.vertices.size());
   std::map<Point, float> value_at;
   for (std::size_t v = 0; v < all.vertices.size(); ++v) value_at[all.vertices[v]] = all.values[v];
@@ -210,13 +208,12 @@ TEST_F(ComponentsAnd, ValuesStayWithTheirVertices) {
 TEST_F(ComponentsAnd, LevelsAreOfWhatIsKept) {
   const ComponentChoice choice = choose(scene_, rule_);
   MeshOptions options = scene_.options();
-  options.components = &choice;
-  options.slab = 4;
-  options.error = {0.8, true};
+  options.components = borrow(choice);
+  options.error = Length::voxels(0.8);
   options.levels = {{0, true}, {0.3, true}};
   MemorySink sinks[3];
   MeshSink* const pointers[] = {&sinks[0], &sinks[1], &sinks[2]};
-  const MeshReport report = mesh_volume(*scene_.volume(), pointers, options);
+  const MeshReport report = mesh_volume(*scene_.volume(), pointers, options, {.slab = 4});
   const Kept kept = keep(extract_all(scene_), rule_);
   scene_.surface.error = 0.3;
   expect_same(report.levels[1], reference(scene_, kept).report);
@@ -240,9 +237,9 @@ TEST_F(ComponentsAnd, ObserversSeeWhatIsKept) {
   } watcher;
   const ComponentChoice choice = choose(scene_, rule_);
   MeshOptions options = scene_.options();
-  options.components = &choice;
+  options.components = borrow(choice);
   RunControl control;
-  control.observer = &watcher;
+  control.observer = borrow(watcher);
   MemorySink sink;
   EXPECT_EQ(mesh_volume(*scene_.volume(), sink, options, control).triangles, watcher.seen);
 }
@@ -250,7 +247,7 @@ TEST_F(ComponentsAnd, ObserversSeeWhatIsKept) {
 TEST_F(ComponentsAnd, AChoiceIsForOneSurface) {
   const ComponentChoice choice = choose(scene_, rule_);
   MeshOptions options = scene_.options();
-  options.components = &choice;
+  options.components = borrow(choice);
   MemorySink sink;
   options.iso = 0.6;
   EXPECT_THROW(mesh_volume(*scene_.volume(), sink, options), std::invalid_argument);
@@ -262,8 +259,8 @@ TEST_F(ComponentsAnd, AChoiceIsForOneSurface) {
   for (const Dims& first : {Dims{2, 2, 2}, Dims{0, 0, 17}, Dims{3, 6, 0}, Dims{5, 5, 8}}) {
     other.fill(first, {first[0] + 3, first[1] + 3, first[2] + 3});
     for (const std::int64_t slab : {1, 4, 50}) {
-      options.slab = slab;
-      EXPECT_THROW(mesh_volume(*other.volume(), sink, options), BadInput) << first[2] << ", slab " << slab;
+      EXPECT_THROW(mesh_volume(*other.volume(), sink, options, {.slab = slab}), BadInput)
+          << first[2] << ", slab " << slab;
     }
   }
   // Another leg of an arch, which a kept part and a dropped one turn out to share.
@@ -272,11 +269,10 @@ TEST_F(ComponentsAnd, AChoiceIsForOneSurface) {
   legs.fill({5, 1, 1}, {6, 2, 4});
   const ComponentChoice apart = choose(legs, {0, true});
   options = legs.options();
-  options.components = &apart;
+  options.components = borrow(apart);
   legs.fill({3, 1, 3}, {5, 2, 4});
   for (const std::int64_t slab : {1, 2, 50}) {
-    options.slab = slab;
-    EXPECT_THROW(mesh_volume(*legs.volume(), sink, options), BadInput) << "slab " << slab;
+    EXPECT_THROW(mesh_volume(*legs.volume(), sink, options, {.slab = slab}), BadInput) << "slab " << slab;
   }
   EXPECT_FALSE(sink.finished);
   RunControl control;
@@ -287,7 +283,7 @@ TEST_F(ComponentsAnd, AChoiceIsForOneSurface) {
 TEST_F(ComponentsAnd, TheFirstPassCanBeStopped) {
   const std::atomic<bool> stop = true;
   RunControl control;
-  control.stop = &stop;
+  control.stop = borrow(stop);
   EXPECT_THROW(choose_components(*scene_.volume(), scene_.options(), rule_, control), Interrupted);
 }
 

@@ -8,7 +8,7 @@
 #include "device/bulk_engine.hpp"
 #include "device/cuda_engine.hpp"
 #include "device/simulated_device.hpp"
-#include "pipeline/device_slabs.hpp"
+#include "pipeline/device_back_end.hpp"
 #include "surfaces.hpp"
 
 namespace isoweave::testing {
@@ -19,21 +19,23 @@ SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, b
   const Executor executor(2);
   const World world;
   MemorySink sink;
-  DeviceSlabs slabs(std::move(engine), normals, world, sink, executor, true);
-  SliceWindow window(source, slabs.slices_for(1).first);
+  DeviceExtractor extractor(*engine);
+  DeviceBackEnd back_end(*engine, normals, world, sink, executor, true);
+  SliceWindow window(source, extractor.slices_for(1).first);
+  SurfacePiece piece;
   SurfaceRun run;
-  while (slabs.layers_left() > 0) {
-    const std::int64_t layers = std::min(slab, slabs.layers_left());
-    const auto [first, end] = slabs.slices_for(layers);
+  while (extractor.layers_left() > 0) {
+    const std::int64_t layers = std::min(slab, extractor.layers_left());
+    const auto [first, end] = extractor.slices_for(layers);
     window.advance(first, end);
-    slabs.extract(window, layers, 1 << 30, run.report);
+    add_extracted(extractor.extract(window, layers, 1 << 30, piece), run.report);
     SlabRecord record;
-    slabs.simplify(record);
-    slabs.write(record, run.report);
+    back_end.simplify(piece, extractor.layers_left() == 0, record);
+    back_end.write(piece, record, run.report);
     run.report.sweep.push_back(record);
   }
-  slabs.wait_for_sink();
-  slabs.finish(run.report);
+  back_end.wait_for_sinks();
+  back_end.finish(run.report);
   run.mesh = std::move(sink.mesh);
   return run;
 }
@@ -150,9 +152,9 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
     options.iso = suggested_iso(volume.kind, volume.type);
     options.inside_above = above;
     options.normals = Normals::kGradient;
-    options.error = {0.1, true};
-    options.slab = 4;
+    options.error = Length::voxels(0.1);
     RunControl control;
+    control.slab = 4;
     control.schedule = Schedule::kRounds;
     MemorySink expected;
     mesh_volume(*generate_volume(volume), expected, options, control);
@@ -199,7 +201,7 @@ TEST(DeviceEngine, CutsSlabsAtTheLayerThatIsTooMuch) {
     window.advance(engine.slices_for(layers).first, engine.slices_for(layers).second);
     engine.upload(window, layers);
     const SlabCounts counts = engine.extract(layers, 3000);
-    EXPECT_EQ(counts.layers, host.extract(host_window, layers, piece, 3000));
+    EXPECT_EQ(counts.layers, host.extract(host_window, layers, 3000, piece).layers);
     EXPECT_EQ(counts.vertices, piece.positions.size());
     EXPECT_EQ(counts.triangles, piece.triangles.size());
     EXPECT_EQ(counts.cells_crossed, piece.cells_crossed);

@@ -96,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Volumes, Distances,
 MeshOptions mesh_options(const SurfaceCase& surface) {
   MeshOptions options;
   options.iso = surface.rule().iso;
-  options.error = {0.6, true};
-  options.max_distance = {0.25, true};
+  options.error = Length::voxels(0.6);
+  options.max_distance = Length::voxels(0.25);
   return options;
 }
 
@@ -109,27 +109,24 @@ std::uint64_t digest_of(const SurfaceCase& surface, const MeshOptions& options, 
 TEST(DistancesBeside, LevelsAndNumbersOfTrianglesHold) {
   const SurfaceCase surface = make_case("noise", true);
   MeshOptions options = mesh_options(surface);
-  options.slab = 1000;
-  const std::uint64_t expected = digest_of(surface, options);
-  options.error = {0.2, true};
-  const std::uint64_t finer = digest_of(surface, options);
-  options.error = {0.6, true};
+  const std::uint64_t expected = digest_of(surface, options, {.slab = 1000});
+  options.error = Length::voxels(0.2);
+  const std::uint64_t finer = digest_of(surface, options, {.slab = 1000});
+  options.error = Length::voxels(0.6);
   options.levels = {{0.2, true}};
-  options.slab = 2;
   MemorySink sinks[2];
   MeshSink* const pointers[] = {&sinks[0], &sinks[1]};
-  const MeshReport report = mesh_volume(*generate_volume(surface.volume), pointers, options);
+  const MeshReport report = mesh_volume(*generate_volume(surface.volume), pointers, options, {.slab = 2});
   EXPECT_EQ(digest_text(report.digest), digest_text(expected));
   EXPECT_EQ(digest_text(report.levels[0].digest), digest_text(finer));
 
   options = mesh_options(surface);
   options.triangles = report.levels[0].triangles;
-  options.slab = 1000;
   RunControl queue;
+  queue.slab = 1000;
   queue.schedule = Schedule::kQueue;
   const std::uint64_t counted = digest_of(surface, options, queue);
-  options.slab = 3;
-  EXPECT_EQ(digest_text(digest_of(surface, options)), digest_text(counted));
+  EXPECT_EQ(digest_text(digest_of(surface, options, {.slab = 3})), digest_text(counted));
 }
 
 TEST(DistancesBeside, MeshesKeepTheirDistanceToo) {
@@ -138,8 +135,8 @@ TEST(DistancesBeside, MeshesKeepTheirDistanceToo) {
   const TriangleMesh full = sweep(surface, Schedule::kLocal, 2, 6).mesh;
   MemorySink sink;
   SimplifyOptions options;
-  options.error = {1, true};
-  options.max_distance = {0.2, false};
+  options.error = Length::voxels(1);
+  options.max_distance = Length::units(0.2);
   const MeshReport report = simplify_mesh(full, sink, options);
   EXPECT_LT(report.triangles, full.triangles.size() * 3 / 4);
   EXPECT_LE(compare_meshes(sink.mesh, full).a_to_b.max, 0.2 * (1 + 1e-5));

@@ -102,7 +102,7 @@ void set_stop(const Arguments& arguments, double most, Options& options) {
   options.max_distance = arguments.length("--max-distance", "0");
   options.triangles = std::stoull(arguments.value("--triangles", "0"));
   options.error = arguments.length("--error", "0.2vox");
-  if (options.triangles > 0 && !arguments.has("--error")) options.error = {most, false};
+  if (options.triangles > 0 && !arguments.has("--error")) options.error = Length::units(most);
   options.levels = arguments.lengths("--lods");
   if (options.levels.empty()) return;
   options.error = options.levels.back();
@@ -158,7 +158,7 @@ std::vector<std::string> run_row(const Row& row, Meshes& meshes) {
   ComponentChoice choice;
   if (!rule.keeps_all()) {
     choice = choose_components(*generate_volume(volume), options, rule, one_thread());
-    options.components = &choice;
+    options.components = borrow(choice);
   }
   return digests_of(
       row, options.levels.size() + 1,
@@ -199,7 +199,7 @@ TEST(Golden, DigestOfAWideVolumeInAnySlabs) {
   RunControl control;
   control.threads = 3;
   for (const std::int64_t slab : {1, 7, 1000}) {
-    options.slab = slab;
+    control.slab = slab;
     MeshInMemory sink;
     mesh_volume(*generate_volume(volume), sink, options, control);
     EXPECT_EQ(digest_text(check_mesh(sink.copy()).digest), row->digests.at(0)) << slab;

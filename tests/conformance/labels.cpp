@@ -109,7 +109,7 @@ TEST_P(LabelSweeps, GiveTheMeshesOfRunsOnTheMasks) {
   MeshOptions options;
   options.closed = GetParam().closed;
   options.smooth = GetParam().smooth;
-  options.error = {GetParam().error, true};
+  options.error = Length::voxels(GetParam().error);
   options.normals = options.closed ? Normals::kGradient : Normals::kQuadric;
   options.quality = options.closed ? Quality::kNormal : Quality::kFine;
   options.drop_specks = !options.closed;
@@ -117,12 +117,12 @@ TEST_P(LabelSweeps, GiveTheMeshesOfRunsOnTheMasks) {
   ASSERT_GT(expected.reports[0].triangles, 100U);
   for (const std::int64_t slab : {1, 3, 0, 1000}) {
     if (kSanitized && slab != 3) continue;
-    options.slab = slab;
     for (const bool boxes : {true, false}) {
       const auto same = [&](Schedule schedule, int threads) {
         SCOPED_TRACE(::testing::Message() << "slab " << slab << ", boxes " << boxes << ", schedule "
                                           << static_cast<int>(schedule) << ", threads " << threads);
         RunControl control;
+        control.slab = slab;
         control.schedule = schedule;
         control.threads = threads;
         expect_same(run_labels(options, control, boxes), expected);
@@ -174,7 +174,6 @@ TEST(LabelTypes, GiveTheMeshesOfTheSameMapInAnotherType) {
   std::vector<std::uint64_t> expected;
   for (const MeshReport& report : run_each(options).reports) expected.push_back(report.digest);
   for (const std::int64_t slab : {1, 5}) {
-    options.slab = slab;
     const int threads = slab == 1 ? 1 : 3;
     const auto high = [](std::uint16_t label) { return label == 0 ? 0 : ~std::uint64_t{0} - label; };
     EXPECT_EQ((digests_as<std::uint64_t>(SampleType::kUint64, high, 1, options, threads)), expected);
@@ -207,12 +206,11 @@ TEST(LabelTypes, AFractionEndsTheSweep) {
 TEST(LabelSweepOptions, WithADistanceTheyAreTheSameToo) {
   MeshOptions options;
   options.smooth = 2;
-  options.error = {0.5, true};
-  options.max_distance = {0.3, true};
+  options.error = Length::voxels(0.5);
+  options.max_distance = Length::voxels(0.3);
   options.space = OutputSpace::kIndex;
   const LabelRun expected = run_each(options);
-  options.slab = 4;
-  expect_same(run_labels(options, {}, true), expected);
+  expect_same(run_labels(options, {.slab = 4}, true), expected);
 }
 
 TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
@@ -229,7 +227,7 @@ TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
   options.levels = {{0.1, true}};
   refused(options, {});
   options = {};
-  options.error = {-1, true};
+  options.error = Length::voxels(-1);
   refused(options, {});
   options = {};
   options.smooth = -1;
@@ -271,8 +269,8 @@ TEST(LabelSweepOptions, AnErrorInOneLabelEndsAll) {
       RunControl control;
       control.threads = threads;
       MeshOptions options;
-      options.error = {0, true};
-      options.slab = 2;
+      options.error = Length::voxels(0);
+      control.slab = 2;
       EXPECT_THROW(mesh_labels(*make_map(), labels, options, control), CannotWrite);
       for (const MemorySink& sink : sinks) EXPECT_FALSE(sink.finished);
     }
@@ -284,9 +282,9 @@ TEST(LabelSweepOptions, StopsWhenAsked) {
   const LabelSink labels[] = {{1, &sink, {}}};
   std::atomic<bool> stop = false;
   RunControl control;
-  control.stop = &stop;
+  control.stop = borrow(stop);
   MeshOptions options;
-  options.slab = 2;
+  control.slab = 2;
   std::int64_t last = 0;
   control.progress = [&](const Progress& progress) {
     EXPECT_EQ(progress.layers, kDims[2]);

@@ -46,7 +46,7 @@ LevelRun run_levels(const GenerateOptions& volume, MeshOptions options, const Ru
 LevelRun run_each(const GenerateOptions& volume, MeshOptions options) {
   LevelRun run;
   for (const double error : kErrors) {
-    options.error = {error, true};
+    options.error = Length::voxels(error);
     MemorySink sink;
     run.reports.push_back(mesh_volume(*generate_volume(volume), sink, options));
     run.meshes.push_back(std::move(sink.mesh));
@@ -89,11 +89,11 @@ TEST_P(Levels, AreTheMeshesOfRunsWithTheirErrors) {
     ASSERT_LT(expected.reports[3].triangles, expected.reports[1].triangles);
     for (const std::int64_t slab : {1, 4, 9, 1000}) {
       if (kSanitized && slab != 4) continue;
-      options.slab = slab;
       const auto same = [&](Schedule schedule, int threads) {
         SCOPED_TRACE(::testing::Message() << "slab " << slab << ", schedule " << static_cast<int>(schedule)
                                           << ", threads " << threads << ", quality " << static_cast<int>(quality));
         RunControl control;
+        control.slab = slab;
         control.schedule = schedule;
         control.threads = threads;
         expect_same(run_levels(volume, options, control), expected);
@@ -119,7 +119,7 @@ TEST(LevelOptions, AscendBelowTheLastError) {
   MeshSink* const pointers[] = {&sinks[0], &sinks[1], &sinks[2]};
   MeshOptions options;
   options.iso = suggested_iso(volume.kind, volume.type);
-  options.error = {0.5, true};
+  options.error = Length::voxels(0.5);
   const auto refused = [&](std::span<MeshSink* const> given) {
     EXPECT_THROW(mesh_volume(*generate_volume(volume), given, options), std::invalid_argument);
   };
@@ -142,7 +142,7 @@ TEST(LevelsOfMeshes, AreTheMeshesOfRunsWithTheirErrors) {
   const GenerateOptions volume = make_volume("noise");
   MeshOptions full;
   full.iso = suggested_iso(volume.kind, volume.type);
-  full.error = {0, true};
+  full.error = Length::voxels(0);
   MemorySink sink;
   mesh_volume(*generate_volume(volume), sink, full);
   for (const bool locked : {false, true}) {
@@ -151,7 +151,7 @@ TEST(LevelsOfMeshes, AreTheMeshesOfRunsWithTheirErrors) {
     SimplifyOptions options;
     LevelRun expected;
     for (const double error : kErrors) {
-      options.error = {error, true};
+      options.error = Length::voxels(error);
       MemorySink direct;
       expected.reports.push_back(simplify_mesh(mesh, direct, options));
       expected.meshes.push_back(std::move(direct.mesh));

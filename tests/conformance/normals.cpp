@@ -123,7 +123,7 @@ TEST(NormalsBeside, AreCloserToTheTruthAtTheSameNumberOfTriangles) {
   volume.dims = {32, 32, 32};
   MeshOptions options;
   options.iso = suggested_iso("sphere", volume.type);
-  options.error = {100, true};
+  options.error = Length::voxels(100);
   options.triangles = 300;
   const auto off = [&](Normals normals) {
     options.normals = normals;
@@ -143,15 +143,14 @@ TEST(NormalsBeside, LevelsNest) {
   MeshOptions options;
   options.iso = suggested_iso("noise", volume.type);
   options.normals = Normals::kQuadric;
-  options.error = {0.2, true};
+  options.error = Length::voxels(0.2);
   MemorySink alone;
   const MeshReport finer = mesh_volume(*generate_volume(volume), alone, options);
   options.levels = {{0.2, true}};
-  options.error = {0.9, true};
-  options.slab = 3;
+  options.error = Length::voxels(0.9);
   MemorySink sinks[2];
   MeshSink* const pointers[] = {&sinks[0], &sinks[1]};
-  const MeshReport both = mesh_volume(*generate_volume(volume), pointers, options);
+  const MeshReport both = mesh_volume(*generate_volume(volume), pointers, options, {.slab = 3});
   EXPECT_EQ(digest_text(both.levels[0].digest), digest_text(finer.digest));
   EXPECT_EQ(riders_digest(sinks[0].mesh), riders_digest(alone.mesh));
 }

@@ -25,6 +25,7 @@ struct Scene {
   std::vector<std::byte> samples{};
   std::vector<float> values{};  // of another volume, or none
   MeshOptions options{};
+  std::int64_t slab = 4;
 
   std::unique_ptr<SliceSource> open() const { return volume_in_memory(info, samples); }
 
@@ -39,9 +40,8 @@ struct Scene {
 
 Scene make_scene(const std::string& name) {
   Scene scene{name};
-  scene.options.error = {0.4, true};
+  scene.options.error = Length::voxels(0.4);
   scene.options.space = OutputSpace::kIndex;
-  scene.options.slab = 4;
   return scene;
 }
 
@@ -159,18 +159,18 @@ struct Result {
   MeshReport report;
 };
 
-RunControl one_thread() {
+RunControl one_thread(const Scene& scene) {
   RunControl control;
   control.threads = 1;
+  control.slab = scene.slab;
   return control;
 }
 
 Result mesh_of(const Scene& scene, MeshOptions options) {
-  const auto values = scene.open_values();
-  options.values = values.get();
+  options.values = scene.open_values();
   MeshInMemory sink;
   Result result;
-  result.report = mesh_volume(*scene.open(), sink, options, one_thread());
+  result.report = mesh_volume(*scene.open(), sink, options, one_thread(scene));
   result.mesh = sink.copy();
   return result;
 }
@@ -449,12 +449,12 @@ TEST(PlainRules, Levels) {
     Scene scene = generated("noise");
     scene.options.quality = quality;
     scene.options.levels = {{0.1, true}, {0.3, true}};
-    scene.options.error = {1, true};
+    scene.options.error = Length::voxels(1);
     scene.options.drop_specks = true;
     std::array<MeshInMemory, 3> meshes;
     std::array<MeshSink*, 3> sinks{};
     std::ranges::transform(meshes, sinks.begin(), [](MeshInMemory& mesh) { return &mesh; });
-    mesh_volume(*scene.open(), sinks, scene.options, one_thread());
+    mesh_volume(*scene.open(), sinks, scene.options, one_thread(scene));
     scene.options.levels = {};
     const plain::Surface surface = extracted_surface(scene);
     for (std::size_t level = 0; level < meshes.size(); ++level) {
@@ -473,7 +473,7 @@ TEST(PlainRules, DistancesThatAreBounded) {
       scene.options.closed = distance < 1;
       if (kind[0] == 'g') scene.info.geometry.spacing = {0.7, 0.9, 1.9};
       const std::uint64_t unbounded = mesh_of(scene, scene.options).report.postponed;
-      scene.options.max_distance = {distance, true};
+      scene.options.max_distance = Length::voxels(distance);
       const std::uint64_t postponed = compare(scene).postponed;
       if (distance < 0.2) {
         EXPECT_GT(postponed, unbounded) << name_of(scene);
@@ -527,8 +527,8 @@ TEST(PlainRules, ComponentsThatAreKept) {
   for (const std::string& kind : some({"smooth", "white", "shells"})) {
     for (const ComponentRule& rule : {ComponentRule{40, false}, ComponentRule{0, true}}) {
       Scene scene = generated(kind);
-      const ComponentChoice choice = choose_components(*scene.open(), scene.options, rule, one_thread());
-      scene.options.components = &choice;
+      const ComponentChoice choice = choose_components(*scene.open(), scene.options, rule, one_thread(scene));
+      scene.options.components = borrow(choice);
       plain::Surface surface = extracted_surface(scene);
       plain::keep(rule, surface);
       const Result library = mesh_of(scene, scene.options);
@@ -572,9 +572,9 @@ Scene any_scene(std::mt19937& random) {
   options.quality = pick(random, {Quality::kFast, Quality::kNormal, Quality::kFine});
   options.drop_specks = pick(random, {true, false});
   options.normals = pick(random, {Normals::kAbsent, Normals::kGradient, Normals::kQuadric});
-  options.max_distance = {pick(random, {0.0, 0.0, 0.2, 0.6, 1.5}), true};
+  options.max_distance = Length::voxels(pick(random, {0.0, 0.0, 0.2, 0.6, 1.5}));
   options.triangles = pick<std::uint64_t>(random, {0, 0, 60, 250});
-  options.slab = pick<std::int64_t>(random, {0, 1, 3, 100});
+  scene.slab = pick<std::int64_t>(random, {0, 1, 3, 100});
   return scene;
 }
 
@@ -604,7 +604,7 @@ TEST(PlainRules, Labels) {
   std::vector<MeshInMemory> meshes(labels.size());
   std::vector<LabelSink> sinks;
   for (std::size_t n = 0; n < labels.size(); ++n) sinks.push_back({labels[n].label, &meshes[n], labels[n].box});
-  const LabelsReport report = mesh_labels(*scene.open(), sinks, scene.options, one_thread());
+  const LabelsReport report = mesh_labels(*scene.open(), sinks, scene.options, one_thread(scene));
   ASSERT_GT(labels.size(), 1U);
   for (std::size_t n = 0; n < labels.size(); ++n) {
     Scene mask = scene;
@@ -620,15 +620,11 @@ TEST(PlainRules, Labels) {
 
 // Meshes of files: ids are positions there, lengths are in roots of twice the mean area of a triangle.
 plain::Outcome compare(const TriangleMesh& mesh, const MeshOptions& options, const std::string& what) {
-  SimplifyOptions simplify;
-  simplify.error = options.error;
-  simplify.quality = options.quality;
-  simplify.triangles = options.triangles;
-  simplify.drop_specks = options.drop_specks;
-  simplify.max_distance = options.max_distance;
-  simplify.piece = 50;
+  RunControl control;
+  control.threads = 1;
+  control.piece = 50;
   MeshInMemory sink;
-  const MeshReport report = simplify_mesh(mesh, sink, simplify, one_thread());
+  const MeshReport report = simplify_mesh(mesh, sink, options, control);
   const plain::Surface surface = plain::surface_of(mesh);
   plain::Outcome plain = plain::simplify(surface, plain_options(options, std::sqrt(surface.face)));
   expect_same(sink.copy(), report, plain,
@@ -641,7 +637,7 @@ void compare_all(const TriangleMesh& mesh, const std::string& what) {
   for (const double error : {0.02, 0.5, 3.0}) {
     for (const Quality quality : kQualities) {
       MeshOptions options;
-      options.error = {error, true};
+      options.error = Length::voxels(error);
       options.quality = quality;
       options.drop_specks = error > 1;
       compare(mesh, options, what);
@@ -692,7 +688,7 @@ TEST(PlainRules, ObliquePlanesOfAFile) {
   const TriangleMesh mesh = shuffled(mesh_of(scene, scene.options).mesh);
   EXPECT_GT(mesh.triangles.size(), 5000U);
   MeshOptions options;
-  options.error = {0.3, true};
+  options.error = Length::voxels(0.3);
   compare(mesh, options, "planes");
 }
 
@@ -723,8 +719,8 @@ TEST(PlainRules, MeshesWithHoles) {
     for (std::size_t n = 0; n < mesh.triangles.size(); n += 90) mesh.triangles[n][2] = mesh.triangles[n][0];
     compare_all(mesh, kind);
     MeshOptions options;
-    options.error = {1, true};
-    options.max_distance = {0.4, true};
+    options.error = Length::voxels(1);
+    options.max_distance = Length::voxels(0.4);
     EXPECT_GT(compare(mesh, options, kind).locked, 0U);
     options.max_distance = {};
     options.triangles = 300;

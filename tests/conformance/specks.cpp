@@ -94,7 +94,7 @@ TEST(Speck, GoesWhenHalfItsLongestEdgeIsWithinTheError) {
   for (const double error : {4.9, 5.1}) {
     MemorySink sink;
     SimplifyOptions options;
-    options.error = {error, false};
+    options.error = Length::units(error);
     options.drop_specks = true;
     const MeshReport report = simplify_mesh(needle, sink, options);
     EXPECT_EQ(report.triangles, error < 5 ? 4u : 0u);

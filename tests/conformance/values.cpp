@@ -39,9 +39,9 @@ MeshOptions mesh_options(const SurfaceCase& surface, SliceSource& values) {
   MeshOptions options;
   options.iso = surface.rule().iso;
   options.closed = false;
-  options.error = {0.7, true};
+  options.error = Length::voxels(0.7);
   options.space = OutputSpace::kIndex;
-  options.values = &values;
+  options.values = borrow(values);
   return options;
 }
 
@@ -58,7 +58,7 @@ TEST(Values, AreThoseBetweenTheSamplesOfTheEdge) {
   for (const double error : {0.0, 0.0001}) {
     MemoryVolume values = make_values(ramp);
     MeshOptions options = mesh_options(make_case("noise"), values);
-    options.error = {error, true};
+    options.error = Length::voxels(error);
     const TriangleMesh mesh = mesh_of(make_case("noise"), options);
     ASSERT_GT(mesh.vertices.size(), 1000U);
     if (error > 0) continue;
@@ -91,8 +91,8 @@ TEST(Values, AreTheSameForAllSlabsThreadsAndSchedules) {
           [](auto i, auto j, auto k) { return mix_bits(static_cast<std::uint64_t>(i + 31 * j + 997 * k)) % 1000; });
       MeshOptions options = mesh_options(make_case(kind), values);
       options.closed = closed;
-      options.slab = 1000;
       RunControl control;
+      control.slab = 1000;
       control.schedule = Schedule::kQueue;
       control.threads = 1;
       const std::uint64_t expected = riders_digest(mesh_of(make_case(kind), options, control));
@@ -103,8 +103,8 @@ TEST(Values, AreTheSameForAllSlabsThreadsAndSchedules) {
       for (const Schedule schedule : {Schedule::kLocal, Schedule::kRounds, Schedule::kQueue}) {
         for (const std::int64_t slab : {1, 3, 7}) {
           MemoryVolume again = values;
-          options.values = &again;
-          options.slab = slab;
+          options.values = borrow(again);
+          control.slab = slab;
           control.schedule = schedule;
           control.threads = static_cast<int>(slab);
           const TriangleMesh mesh = mesh_of(make_case(kind), options, control);
@@ -123,7 +123,7 @@ TEST(Values, SamplesThatAreNoNumbersHaveNoSay) {
     MemoryVolume values = make_values([&](auto i, auto, auto) { return is_nan(i) ? nan : 7.0F; });
     MeshOptions options = mesh_options(make_case("box"), values);
     options.closed = true;
-    options.error = {error, true};
+    options.error = Length::voxels(error);
     const TriangleMesh mesh = mesh_of(make_case("box"), options);
     std::size_t count = 0;
     for (const float value : mesh.values) {
@@ -151,7 +151,7 @@ TEST(Values, RefuseAVolumeOfAnotherSizeAndWarnOfAnotherPlace) {
     EXPECT_NE(std::string(error.what()).find("found 3 x 3 x 3"), std::string::npos) << error.what();
   }
   MemoryVolume elsewhere = make_values(ramp);
-  options.values = &elsewhere;
+  options.values = borrow(elsewhere);
   MemorySink other;
   const MeshReport report = mesh_volume(*generate_volume(make_case("box").volume), other, options);
   ASSERT_EQ(report.warnings.size(), 1U);

@@ -65,11 +65,10 @@ GenerateOptions noise() {
   return volume;
 }
 
-MeshOptions options_of(int slab) {
+MeshOptions options_of() {
   MeshOptions options;
   options.iso = 127.5;
-  options.error = {0.3, true};
-  options.slab = slab;
+  options.error = Length::voxels(0.3);
   return options;
 }
 
@@ -97,10 +96,11 @@ class FailingMemory : public ::testing::TestWithParam<int> {};
 
 TEST_P(FailingMemory, MeshingAVolumeThrows) {
   RunControl control;
+  control.slab = 4;
   control.threads = GetParam();
   expect_exceptions(GetParam() == 1 ? 1 : 3, [&] {
     MeshInMemory mesh;
-    mesh_volume(*generate_volume(noise()), mesh, options_of(4), control);
+    mesh_volume(*generate_volume(noise()), mesh, options_of(), control);
   });
 }
 
@@ -108,8 +108,8 @@ TEST_P(FailingMemory, SimplifyingAMeshThrows) {
   TriangleMesh mesh;
   {
     MeshInMemory full;
-    MeshOptions options = options_of(0);
-    options.error = {0, true};
+    MeshOptions options = options_of();
+    options.error = Length::voxels(0);
     mesh_volume(*generate_volume(noise()), full, options);
     mesh.vertices.assign(full.vertices().begin(), full.vertices().end());
     mesh.triangles.assign(full.triangles().begin(), full.triangles().end());
@@ -117,7 +117,7 @@ TEST_P(FailingMemory, SimplifyingAMeshThrows) {
   RunControl control;
   control.threads = GetParam();
   SimplifyOptions options;
-  options.error = {0.3, false};
+  options.error = Length::units(0.3);
   expect_exceptions(GetParam() == 1 ? 1 : 3, [&] {
     MeshInMemory simplified;
     simplify_mesh(mesh, simplified, options, control);

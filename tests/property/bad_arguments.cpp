@@ -35,7 +35,7 @@ VolumeInfo small_volume() {
 MeshOptions usual_options() {
   MeshOptions options;
   options.iso = 0.5;
-  options.error = {0.2, true};
+  options.error = Length::voxels(0.2);
   return options;
 }
 
@@ -85,7 +85,7 @@ TEST(BadArguments, OneSinkForTwoMeshes) {
   options.levels = {{0.1, true}};
   SimplifyOptions simplify;
   simplify.levels = {{0.1, false}};
-  simplify.error = {0.2, false};
+  simplify.error = Length::units(0.2);
   for (MeshSink* second : {static_cast<MeshSink*>(&mesh), static_cast<MeshSink*>(nullptr)}) {
     MeshSink* const sinks[] = {&mesh, second};
     const LabelSink labels[] = {{Label(1), &mesh}, {Label(2), second}};

@@ -42,7 +42,7 @@ class InterruptedRun {
       RunControl control;
       control.schedule = schedules[part % schedules.size()];
       control.threads = static_cast<int>(1 + part % 3);
-      options_.slab = static_cast<std::int64_t>(2 + part % 4);
+      control.slab = static_cast<std::int64_t>(2 + part % 4);
       try {
         return run_part(control, part > 0, slabs_each);
       } catch (const Interrupted&) {
@@ -57,18 +57,17 @@ class InterruptedRun {
  private:
   MeshReport run_part(RunControl control, bool resume, int slabs) {
     std::atomic<bool> stop = false;
-    control.stop = &stop;
+    control.stop = borrow(stop);
     control.progress = [&](const Progress&) { stop = --slabs == 0; };
     control.checkpoint.folder = state_folder();
     Checkpoint checkpoint;
     if (resume) checkpoint = read_checkpoint(state_folder());
-    if (resume) control.resume = &checkpoint;
+    if (resume) control.resume = checkpoint;
     const std::string mark = resume ? checkpoint.marks.at(0) : "";
     MeshFileOptions file{options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark};
     file.values = with_values;
     const auto sink = open_mesh_file(mesh_path(), file);
-    const auto values = generate_volume(values_beside(surface_));
-    options_.values = with_values ? values.get() : nullptr;
+    options_.values = with_values ? generate_volume(values_beside(surface_)) : nullptr;
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
   }
 
@@ -104,7 +103,7 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
       SurfaceCase surface{{GetParam(), {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, closed, error};
       MeshOptions options = mesh_options(surface);
       options.normals = error == 0 ? Normals::kGradient : closed ? Normals::kQuadric : Normals::kAbsent;
-      options.max_distance = {closed ? 0.3 : 0, true};
+      options.max_distance = Length::voxels(closed ? 0.3 : 0);
       const MeshReport whole = run_whole(surface, options);
       InterruptedRun run(surface, options);
       const MeshReport resumed = run.finish_in_steps(1);
@@ -142,7 +141,7 @@ TEST(Checkpoints, DroppedComponentsStayDropped) {
     const ComponentChoice choice = choose_components(*generate_volume(surface.volume), options, {12, false});
     EXPECT_GT(choice.components, 1U);
     EXPECT_GT(choice.components_dropped, 1U);
-    options.components = &choice;
+    options.components = borrow(choice);
     const MeshReport whole = run_whole(surface, options);
     InterruptedRun run(surface, options);
     const MeshReport resumed = run.finish_in_steps(1);
@@ -173,7 +172,7 @@ TEST(Checkpoints, WhatRidesOnVerticesGoesOn) {
     MeshOptions options = mesh_options(surface);
     options.normals = normals;
     const auto values = generate_volume(values_beside(surface));
-    options.values = values.get();
+    options.values = borrow(*values);
     testing::MemorySink whole;
     mesh_volume(*generate_volume(surface.volume), whole, options);
     InterruptedRun run(surface, options);
@@ -212,18 +211,18 @@ TEST(Checkpoints, LevelsGoOnToTheSameMeshes) {
   const MeshReport whole = mesh_volume(*generate_volume(surface.volume), pointers, options);
 
   const files::Folder folder;
-  options.slab = 5;
   MeshReport resumed;
   int interruptions = 0;
   for (bool done = false; !done;) {
     std::atomic<bool> stop = false;
     RunControl control;
-    control.stop = &stop;
+    control.stop = borrow(stop);
     control.progress = [&](const Progress&) { stop = true; };
+    control.slab = 5;
     control.checkpoint.folder = folder.path();
     Checkpoint checkpoint;
     if (interruptions > 0) checkpoint = read_checkpoint(folder.path());
-    if (interruptions > 0) control.resume = &checkpoint;
+    if (interruptions > 0) control.resume = checkpoint;
     std::vector<std::unique_ptr<MeshSink>> sinks;
     std::vector<MeshSink*> opened;
     for (std::size_t level = 0; level < 3; ++level) {
@@ -255,13 +254,13 @@ TEST(Checkpoints, LevelsGoOnToTheSameMeshes) {
 TEST(Checkpoints, AVolumeThatFailsInTheMiddleCanBeResumed) {
   const SurfaceCase surface{{"noise", {24, 24, 40}, SampleType::kUint8}, true, 0.3};
   MeshOptions options = mesh_options(surface);
-  options.slab = 3;
   const MeshReport whole = run_whole(surface, options);
   for (const std::int64_t bad_slice : {0, 1, 17, 39}) {
     const files::Folder folder;
     RunControl control;
     control.checkpoint.folder = folder.path();
     control.checkpoint.note = "a note";
+    control.slab = 3;
     {
       FailingVolume failing(generate_volume(surface.volume), bad_slice);
       const auto sink = open_mesh_file(folder / "a.stl", {false, {}, folder.path()});
@@ -272,7 +271,7 @@ TEST(Checkpoints, AVolumeThatFailsInTheMiddleCanBeResumed) {
     EXPECT_EQ(checkpoint.layers, 41);
     EXPECT_LE(checkpoint.layer, bad_slice + 1);
     EXPECT_GT(checkpoint.layer, bad_slice - 8) << "as far as the slices before the bad one go";
-    control.resume = &checkpoint;
+    control.resume = checkpoint;
     const auto sink = open_mesh_file(folder / "a.stl", {false, {}, folder.path(), checkpoint.marks.at(0)});
     const MeshReport resumed = mesh_volume(*generate_volume(surface.volume), *sink, options, control);
     expect_same_result(resumed, whole);
@@ -298,8 +297,8 @@ TEST(Sweep, AFileThatIsWrittenWhileItIsReadIsAnError) {
   for (const bool disturbed : {false, true}) {
     MeshOptions options;
     options.iso = 0.5;
-    options.slab = 2;
     RunControl control;
+    control.slab = 2;
     control.progress = [&](const Progress& progress) {
       if (disturbed && progress.layer == 2) std::ofstream(path, std::ios::app | std::ios::binary) << 'x';
     };

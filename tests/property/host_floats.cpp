@@ -38,9 +38,9 @@ std::uint64_t digest_of_run(const std::vector<float>& samples, int threads) {
   info.geometry.spacing = {0.3, 0.7, 1.1};
   MeshOptions options;
   options.iso = 0;
-  options.error = {0.5, true};
-  options.slab = 3;
+  options.error = Length::voxels(0.5);
   RunControl control;
+  control.slab = 3;
   control.threads = threads;
   MeshInMemory mesh;
   return mesh_volume(*volume_in_memory(info, std::as_bytes(std::span(samples))), mesh, options, control).digest;

@@ -14,7 +14,7 @@ using testing::MemorySink;
 MeshOptions options_for(const GenerateOptions& volume, double error) {
   MeshOptions options;
   options.iso = suggested_iso(volume.kind, volume.type);
-  options.error = {error, true};
+  options.error = Length::voxels(error);
   return options;
 }
 
@@ -152,14 +152,14 @@ TEST(Slabs, AreCutWhereTheyTurnOutTooFull) {
   SliceWindow window(*source);
   window.advance(0, 64);
   SurfacePiece piece;
-  EXPECT_EQ(whole.extract(window, whole.layers_left(), piece), 65);
+  EXPECT_EQ(whole.extract(window, whole.layers_left(), ~std::uint64_t{0}, piece).layers, 65);
   const std::size_t vertices = piece.positions.size();
   const std::size_t triangles = piece.triangles.size();
   std::size_t cut_vertices = 0;
   std::size_t cut_triangles = 0;
   std::size_t pieces = 0;
   for (; cut.layers_left() > 0; ++pieces) {
-    const std::int64_t layers = cut.extract(window, cut.layers_left(), piece, vertices / 10);
+    const std::int64_t layers = cut.extract(window, cut.layers_left(), vertices / 10, piece).layers;
     ASSERT_GE(layers, 1);
     EXPECT_TRUE(layers == 1 || piece.positions.size() <= vertices / 10);
     cut_vertices += piece.positions.size();
@@ -221,7 +221,7 @@ TEST(Sizes, SpecksBeyondTheReachOf32BitsLieWhereTheyAre) {
   WideVolume volume;
   MeshOptions options;
   options.iso = 100;
-  options.error = {0.1, true};
+  options.error = Length::voxels(0.1);
   MemorySink sink;
   RunControl control;
   control.measure = false;

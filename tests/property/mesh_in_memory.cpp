@@ -35,7 +35,7 @@ class InMemory : public ::testing::TestWithParam<std::tuple<int, std::string, bo
     volume_.spacing = {0.7, 0.9, 1.6};
     volume_.seed = 5;
     options_.iso = suggested_iso(volume_.kind, volume_.type);
-    options_.slab = 6;
+    control_.slab = 6;
     options_.normals = Normals::kGradient;
   }
 
@@ -56,8 +56,8 @@ class InMemory : public ::testing::TestWithParam<std::tuple<int, std::string, bo
 
 TEST_P(InMemory, Extracted) {
   const auto values = source();
-  options_.error = {0, true};
-  options_.values = values.get();
+  options_.error = Length::voxels(0);
+  options_.values = borrow(*values);
   MeshInMemory found;
   MemorySink expected;
   const MeshReport report = mesh_volume(*source(), found, options_, control_);
@@ -67,9 +67,9 @@ TEST_P(InMemory, Extracted) {
 
 TEST_P(InMemory, SimplifiedInLevels) {
   const auto values = source();
-  options_.error = {0.3, true};
+  options_.error = Length::voxels(0.3);
   options_.levels = {{0.05, true}, {0.1, true}};
-  options_.values = values.get();
+  options_.values = borrow(*values);
   std::vector<MeshInMemory> found(3);
   std::vector<MemorySink> expected(3);
   mesh_volume(*source(), pointers(found), options_, control_);
@@ -78,12 +78,13 @@ TEST_P(InMemory, SimplifiedInLevels) {
 }
 
 TEST_P(InMemory, FromAMesh) {
-  options_.error = {0, true};
+  options_.error = Length::voxels(0);
   MemorySink full;
   mesh_volume(*source(), full, options_, control_);
   MeshInMemory found;
   MemorySink expected;
-  const SimplifyOptions options{.error = {0.2, false}, .piece = 700};
+  const SimplifyOptions options{.error = Length::units(0.2)};
+  control_.piece = 700;
   simplify_mesh(full.mesh, found, options, control_);
   simplify_mesh(full.mesh, expected, options, control_);
   expect_same(found, expected);

@@ -24,9 +24,9 @@ struct Result {
   MeshReport report;
 };
 
-Result simplify(const TriangleMesh& mesh, SimplifyOptions options, std::uint64_t piece, int threads) {
-  options.piece = piece;
+Result simplify(const TriangleMesh& mesh, const SimplifyOptions& options, std::uint64_t piece, int threads) {
   RunControl control;
+  control.piece = piece;
   control.threads = threads;
   std::vector<MemorySink> sinks(options.levels.size() + 1);
   std::vector<MeshSink*> pointers;
@@ -88,7 +88,7 @@ TriangleMesh extracted(const std::string& kind, bool closed) {
   MeshOptions full;
   full.iso = suggested_iso(volume.kind, volume.type);
   full.closed = closed;
-  full.error = {0, true};
+  full.error = Length::voxels(0);
   MemorySink sink;
   mesh_volume(*generate_volume(volume), sink, full);
   return std::move(sink.mesh);
@@ -130,7 +130,7 @@ TriangleMesh soup(unsigned seed) {
 
 SimplifyOptions at(double error) {
   SimplifyOptions options;
-  options.error = {error, true};
+  options.error = Length::voxels(error);
   return options;
 }
 

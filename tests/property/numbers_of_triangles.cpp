@@ -35,7 +35,7 @@ TriangleMesh tetrahedra(std::uint32_t count) {
 MeshReport simplify_to(const TriangleMesh& mesh, std::uint64_t triangles, double error = kNoLimit) {
   MemorySink sink;
   SimplifyOptions options;
-  options.error = {error, false};
+  options.error = Length::units(error);
   options.triangles = triangles;
   return simplify_mesh(mesh, sink, options);
 }
@@ -69,10 +69,10 @@ MeshReport mesh_to(const SurfaceCase& surface, std::uint64_t triangles, double e
                    std::int64_t slab, TriangleMesh* mesh = nullptr) {
   MeshOptions options;
   options.iso = suggested_iso(surface.volume.kind, surface.volume.type);
-  options.error = {error, false};
+  options.error = Length::units(error);
   options.triangles = triangles;
-  options.slab = slab;
   RunControl control;
+  control.slab = slab;
   control.schedule = schedule;
   control.threads = 2;
   MemorySink sink;
@@ -125,7 +125,7 @@ TEST(NumbersOfTriangles, ForecastsKnowWhatIsLeftAtLeast) {
   volume.dims = {96, 96, 96};
   MeshOptions options;
   options.iso = suggested_iso(volume.kind, volume.type);
-  options.error = {most_shape_error(generate_volume(volume)->info()), false};
+  options.error = Length::units(most_shape_error(generate_volume(volume)->info()));
   options.triangles = 10;
   const Forecast forecast = forecast_mesh(*generate_volume(volume), options);
   MemorySink sink;

@@ -24,11 +24,10 @@ using testing::SurfaceCase;
 class SavedState : public ::testing::Test {
  protected:
   void SetUp() override {
-    options_.slab = 4;
     RunControl control = saving();
     std::atomic<bool> stop = false;
     int slabs = 3;
-    control.stop = &stop;
+    control.stop = borrow(stop);
     control.progress = [&](const Progress&) { stop = --slabs == 0; };
     const auto sink = open_mesh_file(folder_ / "a.obj", {false, {}, folder_.path()});
     ASSERT_THROW(mesh_volume(*generate_volume(surface_.volume), *sink, options_, control), Interrupted);
@@ -39,13 +38,14 @@ class SavedState : public ::testing::Test {
     RunControl control;
     control.checkpoint.folder = folder_.path();
     control.checkpoint.layers = 1;
+    control.slab = 4;
     return control;
   }
 
   MeshReport resume(SliceSource& volume, const MeshOptions& options) {
     const Checkpoint checkpoint = read_checkpoint(folder_.path());
     RunControl control = saving();
-    control.resume = &checkpoint;
+    control.resume = checkpoint;
     const auto sink = open_mesh_file(folder_ / "a.obj", {false, {}, folder_.path(), checkpoint.marks.at(0)});
     return mesh_volume(volume, *sink, options, control);
   }
@@ -99,21 +99,21 @@ class DiesAtTheEnd final : public MeshSink {
 TEST_F(SavedState, LevelsGoOnWhenOnlyTheFirstHasItsName) {
   const files::Folder folder, fine, coarse, meshes;
   options_.levels = {{0.1, true}};
-  const auto run = [&](const Checkpoint* resume, bool dies) {
+  const auto run = [&](const std::optional<Checkpoint>& resume, bool dies) {
     RunControl control = saving();
     control.checkpoint.folder = folder.path();
     control.resume = resume;
-    const auto mark = [&](std::size_t level) { return resume == nullptr ? "" : resume->marks.at(level); };
+    const auto mark = [&](std::size_t level) { return !resume ? "" : resume->marks.at(level); };
     const auto first = open_mesh_file(meshes / "fine.ply", {false, {}, fine.path(), mark(0)});
     const auto second = open_mesh_file(meshes / "coarse.ply", {false, {}, coarse.path(), mark(1)});
     DiesAtTheEnd dying(*second);
     const std::vector<MeshSink*> sinks{first.get(), dies ? &dying : second.get()};
     return mesh_volume(*generate_volume(surface_.volume), sinks, options_, control);
   };
-  EXPECT_THROW(run(nullptr, true), CannotWrite);
+  EXPECT_THROW(run(std::nullopt, true), CannotWrite);
   EXPECT_EQ(meshes.entries().size(), 1U);
   const Checkpoint checkpoint = read_checkpoint(folder.path());
-  const MeshReport report = run(&checkpoint, false);
+  const MeshReport report = run(checkpoint, false);
   EXPECT_EQ(report.digest, whole_);
   EXPECT_EQ(check_mesh(read_mesh(meshes / "coarse.ply")).digest, whole_);
   EXPECT_EQ(check_mesh(read_mesh(meshes / "fine.ply")).digest, report.levels.at(0).digest);
@@ -147,8 +147,8 @@ TEST_F(SavedState, AnotherTaskIsRefused) {
   const ComponentChoice choice = choose_components(*generate_volume(surface_.volume), options_, {60, false});
   for (const auto& change : std::vector<std::function<void(MeshOptions&)>>{
            [](MeshOptions& o) { o.iso += 1; }, [](MeshOptions& o) { o.closed = false; },
-           [](MeshOptions& o) { o.error.value = 0.31; }, [](MeshOptions& o) { o.error.voxels = false; },
-           [](MeshOptions& o) { o.quality = Quality::kFine; }, [&](MeshOptions& o) { o.components = &choice; },
+           [](MeshOptions& o) { o.error.value = 0.31; }, [](MeshOptions& o) { o.max_distance = Length::voxels(1); },
+           [](MeshOptions& o) { o.quality = Quality::kFine; }, [&](MeshOptions& o) { o.components = borrow(choice); },
            [](MeshOptions& o) { o.inside_above = false; }, [](MeshOptions& o) { o.space = OutputSpace::kIndex; }}) {
     MeshOptions options = options_;
     change(options);
@@ -163,27 +163,27 @@ TEST_F(SavedState, OfARunThatMeasuredNothingIsRefusedByOneThatDoes) {
   RunControl control = saving();
   control.checkpoint.folder = folder.path();
   control.measure = false;
-  control.stop = &stop;
+  control.stop = borrow(stop);
   control.progress = [&](const Progress&) { stop = true; };
-  const auto run = [&](const Checkpoint* resume) {
+  const auto run = [&](const std::optional<Checkpoint>& resume) {
     control.resume = resume;
-    const std::string mark = resume == nullptr ? "" : resume->marks.at(0);
+    const std::string mark = !resume ? "" : resume->marks.at(0);
     const auto sink = open_mesh_file(folder_ / "b.obj", {false, {}, folder.path(), mark});
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
   };
-  EXPECT_THROW(run(nullptr), Interrupted);
+  EXPECT_THROW(run(std::nullopt), Interrupted);
   const Checkpoint checkpoint = read_checkpoint(folder.path());
   control.stop = nullptr;
   control.measure = true;
-  expect_refused<BadInput>([&] { run(&checkpoint); }, "the task has changed");
+  expect_refused<BadInput>([&] { run(checkpoint); }, "the task has changed");
   control.measure = false;
-  run(&checkpoint);
+  run(checkpoint);
   EXPECT_EQ(check_mesh(read_mesh(folder_ / "b.obj")).digest, whole_);
 }
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 8\n"));
+  writer.list(std::string("isoweave state 9\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -197,7 +197,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 8\n"));
+  writer.list(std::string("isoweave state 9\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");

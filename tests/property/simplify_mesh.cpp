@@ -22,7 +22,7 @@ struct Result {
 Result simplify(const TriangleMesh& mesh, int threads = 1) {
   MemorySink sink;
   SimplifyOptions options;
-  options.error = {0.5, true};
+  options.error = Length::voxels(0.5);
   RunControl control;
   control.threads = threads;
   Result result;

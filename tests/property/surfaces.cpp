@@ -79,12 +79,12 @@ TEST(Surface, DistanceFollowsTheErrorAskedFor) {
   volume.kind = "smooth";
   volume.dims = {40, 40, 40};
   MeshOptions options;
-  options.error = {0, true};
+  options.error = Length::voxels(0);
   const Result full = run(volume, options);
   ASSERT_EQ(full.report.triangles, full.report.triangles_extracted);
   double last = 0;
   for (const double error : {0.05, 0.2, 0.8}) {
-    options.error = {error, true};
+    options.error = Length::voxels(error);
     const Result reduced = run(volume, options);
     const MeshDistance distance = compare_meshes(reduced.mesh, full.mesh, {20000, 1, 2});
     EXPECT_LT(distance.rms, error);
@@ -103,10 +103,9 @@ TEST(Surface, WithoutErrorIsWhatCheckSees) {
           volume.kind = kind;
           volume.dims = dims;
           MeshOptions options;
-          options.error = {0, true};
+          options.error = Length::voxels(0);
           options.closed = closed;
-          options.slab = slab;
-          const Result result = run(volume, options);
+          const Result result = run(volume, options, {.slab = slab});
           const MeshCheck check = check_mesh(result.mesh);
           SCOPED_TRACE(std::string(kind) + (closed ? " closed" : " open") + ", slab " + std::to_string(slab) + ", " +
                        std::to_string(dims[1]) + " rows");
@@ -131,16 +130,16 @@ TEST(Surface, FineIsNearerThanFastAtEqualCount) {
   const std::int64_t n = kSanitized ? 20 : 40;
   volume.dims = {n, n, n};
   MeshOptions options;
-  options.error = {0, true};
+  options.error = Length::voxels(0);
   const Result full = run(volume, options);
-  options.error = {0.8, true};
+  options.error = Length::voxels(0.8);
   options.quality = Quality::kFast;
   const Result fast = run(volume, options);
   options.quality = Quality::kFine;
   Result fine;
   for (double error = 0.4; fine.mesh.triangles.empty() || fine.mesh.triangles.size() > fast.mesh.triangles.size();
        error *= 1.03) {
-    options.error = {error, true};
+    options.error = Length::voxels(error);
     fine = run(volume, options);
   }
   const DistanceOptions sampling{50000, 1, 2};
@@ -251,8 +250,7 @@ TEST(Surface, NormalsPointOutwards) {
   volume.dims = {40, 40, 40};
   MeshOptions options;
   options.normals = Normals::kGradient;
-  options.slab = 3;
-  const Result result = run(volume, options);
+  const Result result = run(volume, options, {.slab = 3});
   ASSERT_EQ(result.mesh.normals.size(), result.mesh.vertices.size());
   for (std::size_t v = 0; v < result.mesh.vertices.size(); ++v) {
     const Point p = result.mesh.vertices[v], n = result.mesh.normals[v];
@@ -297,7 +295,7 @@ TEST(Adversarial, SamplesEqualToTheIsoValueAreInsideAndMakeNoDegenerateTriangles
   MemoryVolume volume({9, 9, 9}, samples);
   MeshOptions options;
   options.iso = 1;
-  options.error = {0, true};
+  options.error = Length::voxels(0);
   const Result result = run(volume, options);
   const MeshCheck check = check_mesh(result.mesh);
   EXPECT_EQ(check.open_edges + check.nonmanifold_edges + check.nonmanifold_vertices + check.misoriented_edges, 0u);
@@ -326,8 +324,7 @@ TEST(Adversarial, ThinVolumesWork) {
       volume.dims = dims;
       MeshOptions options;
       options.closed = closed;
-      options.slab = 2;
-      const Result result = run(volume, options);
+      const Result result = run(volume, options, {.slab = 2});
       const MeshCheck check = check_mesh(result.mesh);
       EXPECT_EQ(check.nonmanifold_edges + check.nonmanifold_vertices + check.misoriented_edges, 0u);
       if (closed) {
@@ -385,8 +382,7 @@ TEST(Sweep, MemoryDoesNotGrowWithTheNumberOfLayers) {
     volume.dims = {32, 32, layers};
     MeshOptions options;
     options.closed = false;
-    options.slab = 16;
-    const Result result = run(volume, options);
+    const Result result = run(volume, options, {.slab = 16});
     std::uint64_t bytes = 0;
     for (const SlabRecord& record : result.report.sweep) bytes = std::max(bytes, record.bytes);
     return static_cast<double>(bytes);
@@ -401,11 +397,11 @@ TEST(Sweep, StopsWhenAsked) {
   const auto volume = generate_volume(generated);
   std::atomic<bool> stop{false};
   RunControl control;
-  control.stop = &stop;
+  control.stop = borrow(stop);
   control.progress = [&](const Progress&) { stop = true; };
   MeshOptions options;
   options.iso = suggested_iso("noise", SampleType::kFloat32);
-  options.slab = 4;
+  control.slab = 4;
   MemorySink sink;
   EXPECT_THROW(mesh_volume(*volume, sink, options, control), Interrupted);
   EXPECT_FALSE(sink.finished);
@@ -418,7 +414,7 @@ TEST(Sweep, RefusesOptionsOutOfRange) {
   options.iso = std::nan("");
   EXPECT_THROW(mesh_volume(*volume, sink, options), std::invalid_argument);
   options.iso = 0;
-  options.error = {-1, false};
+  options.error = Length::units(-1);
   EXPECT_THROW(mesh_volume(*volume, sink, options), std::invalid_argument);
 }
 
@@ -431,11 +427,11 @@ TEST(Sweep, LargerVolumesGiveOneDigestToo) {
   MeshOptions options;
   RunControl control;
   control.schedule = Schedule::kQueue;
-  options.slab = n + 2;
+  control.slab = n + 2;
   const std::uint64_t expected = run(volume, options, control).report.digest;
   for (const std::int64_t slab : {std::int64_t{0}, std::int64_t{16}, n + 2}) {
     for (const int threads : kSanitized ? std::vector{4} : std::vector{2, 4}) {
-      options.slab = slab;
+      control.slab = slab;
       control.threads = threads;
       control.schedule = Schedule::kRounds;
       EXPECT_EQ(digest_text(run(volume, options, control).report.digest), digest_text(expected))

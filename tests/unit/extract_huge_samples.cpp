@@ -60,7 +60,7 @@ class HugeBall final : public SliceSource {
 
 TEST(HugeSamples, AVolumeOfThemHasTheMeshAndTheNormalsOfSmallOnes) {
   MeshOptions options;
-  options.error = {0, false};
+  options.error = Length::units(0);
   options.normals = Normals::kGradient;
   HugeBall small(1), huge(1.7e308);
   MeshInMemory expected, found;

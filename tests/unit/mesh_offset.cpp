@@ -46,7 +46,7 @@ MeshFileOptions at_offset(const Offset& offset) {
 
 MeshOptions at_error(double voxels) {
   MeshOptions options;
-  options.error = {voxels, true};
+  options.error = Length::voxels(voxels);
   return options;
 }
 
@@ -136,12 +136,12 @@ TEST(MeshOffset, SimplifiesAMeshInItsPlace) {
   TriangleMesh near = mesh;
   near.offset = kNone;
   MeshInMemory small(mesh.offset), expected;
-  const MeshReport report = simplify_mesh(mesh, small, {.error = {0.003, false}});
-  simplify_mesh(near, expected, {.error = {0.003, false}});
+  const MeshReport report = simplify_mesh(mesh, small, {.error = Length::units(0.003)});
+  simplify_mesh(near, expected, {.error = Length::units(0.003)});
   EXPECT_TRUE(small.copy().vertices == expected.copy().vertices);
   EXPECT_EQ(report.digest, check_mesh(small.copy()).digest);
   MeshInMemory without;
-  EXPECT_EQ(simplify_mesh(mesh, without, {.error = {0.003, false}}).warnings.size(), 1U);
+  EXPECT_EQ(simplify_mesh(mesh, without, {.error = Length::units(0.003)}).warnings.size(), 1U);
 }
 
 // A cube of 0.01 at a place that is not one of floats.
@@ -173,14 +173,14 @@ TEST(MeshOffset, FilesGiveBackTheSamePlacesAndTheSameFile) {
 TEST(MeshOffset, ARunThatIsResumedHasIt) {
   const files::Folder folder, state;
   MeshOptions options = at_error(0.3);
-  options.slab = 3;
   testing::MemoryVolume whole = ball(kUtm, 0.01);
   MeshFileOptions file = at_offset(mesh_offset(whole.info(), options.space));
-  const MeshReport expected = mesh_volume(whole, *open_mesh_file(folder / "whole.ply", file), options);
+  const MeshReport expected = mesh_volume(whole, *open_mesh_file(folder / "whole.ply", file), options, {.slab = 3});
 
   std::atomic<bool> stop{false};
   RunControl control;
-  control.stop = &stop;
+  control.stop = borrow(stop);
+  control.slab = 3;
   control.checkpoint.folder = state.path();
   control.progress = [&](const Progress& progress) { stop = progress.layer > 8; };
   file.parts = state.path();
@@ -191,7 +191,7 @@ TEST(MeshOffset, ARunThatIsResumedHasIt) {
   }
   const Checkpoint checkpoint = read_checkpoint(state.path());
   control.stop = nullptr;
-  control.resume = &checkpoint;
+  control.resume = checkpoint;
   testing::MemoryVolume volume = ball(kUtm, 0.01);
   MeshInMemory elsewhere;
   EXPECT_THROW(mesh_volume(volume, elsewhere, options, control), BadInput) << "a sink without the offset";

@@ -35,11 +35,13 @@ Taken take_all(const TriangleMesh& mesh, const MeshSurface::Pieces& pieces, int 
   const Executor executor(threads);
   MeshSurface surface(mesh, executor, pieces);
   Taken taken;
+  MeshReport report;
   std::vector<std::uint32_t> incomplete;
   std::map<std::uint32_t, int> seen;
   while (!surface.complete()) {
     SurfacePiece piece;
-    surface.take(0, piece);
+    surface.read({}, report);
+    surface.make(piece, report);
     EXPECT_EQ(piece.inherited, incomplete.size());
     std::vector<std::uint32_t> vertices = incomplete;
     for (std::size_t n = 0; n < piece.ids.size(); ++n) {
@@ -108,11 +110,15 @@ TEST(MeshSurface, MoreCanBeWanted) {
   const Executor executor(1);
   MeshSurface surface(mesh, executor, {.triangles = 50});
   SurfacePiece piece;
-  surface.take(300, piece);
+  MeshReport report;
+  surface.read({.triangles = 300}, report);
+  surface.make(piece, report);
   EXPECT_EQ(piece.triangles.size(), 300u);
-  surface.take(10, piece);
+  surface.read({.triangles = 10}, report);
+  surface.make(piece, report);
   EXPECT_GE(piece.triangles.size(), 50u);
-  surface.take(10000, piece);
+  surface.read({.triangles = 10000}, report);
+  surface.make(piece, report);
   EXPECT_TRUE(surface.complete());
 }
 

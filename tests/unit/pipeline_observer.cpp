@@ -49,7 +49,8 @@ void run(Watched& watched, const GenerateOptions& volume, MeshOptions options, b
   const auto source = generate_volume(volume);
   RunControl control;
   control.threads = 2;
-  if (watch) control.observer = &watched.seen;
+  control.slab = 7;
+  if (watch) control.observer = borrow(watched.seen);
   watched.report = mesh_volume(*source, watched.sink, options, control);
 }
 
@@ -88,8 +89,7 @@ std::vector<std::pair<Point, Point>> open_edges(std::span<const TriangleCorners>
 TEST(SweepObserver, SeesTheMeshInTheOrderOfTheOutput) {
   for (const double error : {0.0, 0.3}) {
     MeshOptions options;
-    options.error = {error, true};
-    options.slab = 7;
+    options.error = Length::voxels(error);
     Watched watched;
     run(watched, gyroid(), options);
     EXPECT_EQ(watched.seen.final, corners_of(watched.sink.mesh)) << error;
@@ -105,8 +105,7 @@ TEST(SweepObserver, SeesTheMeshInTheOrderOfTheOutput) {
 
 TEST(SweepObserver, FinalAndUndecidedAreOneSurfaceUpToTheFront) {
   MeshOptions options;
-  options.error = {0.3, true};
-  options.slab = 7;
+  options.error = Length::voxels(0.3);
   Watched watched;
   run(watched, gyroid(), options);
   std::size_t held = 0;
@@ -137,9 +136,9 @@ TEST(SweepObserver, SeesCoordinatesAndOrientationOfTheOutput) {
   Watched watched;
   MeshOptions options;
   options.iso = suggested_iso(volume.kind, volume.type);
-  options.slab = 9;
   RunControl control;
-  control.observer = &watched.seen;
+  control.slab = 9;
+  control.observer = borrow(watched.seen);
   mesh_volume(mirrored, watched.sink, options, control);
   EXPECT_EQ(watched.seen.final, corners_of(watched.sink.mesh));
   const auto& slab = watched.seen.slabs[2];
@@ -154,7 +153,7 @@ TEST(SweepObserver, IsNotCalledByACount) {
   const auto source = generate_volume(gyroid());
   Recorder seen;
   RunControl control;
-  control.observer = &seen;
+  control.observer = borrow(seen);
   MeshOptions options;
   EXPECT_GT(count_triangles(*source, options, control), 1000U);
   EXPECT_TRUE(seen.final.empty());
@@ -173,7 +172,7 @@ TEST(SweepObserver, WhatItThrowsEndsTheRun) {
   Full seen;
   MemorySink sink;
   RunControl control;
-  control.observer = &seen;
+  control.observer = borrow(seen);
   EXPECT_THROW(mesh_volume(*source, sink, MeshOptions{}, control), std::runtime_error);
   EXPECT_FALSE(sink.finished);
 }

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "lattice/lattice.hpp"
-#include "pipeline/sweep.hpp"
 #include "simplify/edge_rules.hpp"
 #include "simplify/radix_heap.hpp"
+#include "volume/axes.hpp"
 
 namespace isoweave {
 namespace {

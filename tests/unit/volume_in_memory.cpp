@@ -62,10 +62,11 @@ TEST(VolumeInMemory, GivesTheSameSurface) {
   std::vector<float> samples(37 * 29 * 23);
   generate_volume(generate)->read(0, 23, std::as_writable_bytes(std::span(samples)));
   MemoryVolume read(generate.dims, samples);
-  const auto digest = [](SliceSource& volume, const MeshOptions& options, int threads) {
+  const auto digest = [](SliceSource& volume, const MeshOptions& options, std::int64_t slab, int threads) {
     MemorySink sink;
     RunControl control;
     control.threads = threads;
+    control.slab = slab;
     const MeshReport report = mesh_volume(volume, sink, options, control);
     EXPECT_GT(report.triangles, 1000u);
     return report.digest + riders_digest(sink.mesh);
@@ -75,13 +76,12 @@ TEST(VolumeInMemory, GivesTheSameSurface) {
       for (const std::int64_t slab : {0, 1, 5}) {
         MeshOptions options;
         options.iso = suggested_iso("noise", SampleType::kFloat32);
-        options.error = {0.3, true};
+        options.error = Length::voxels(0.3);
         options.normals = normals;
         options.smooth = smooth;
-        options.slab = slab;
         MemoryVolume read_again(generate.dims, samples);
         const auto held = volume_in_memory(read.info(), std::as_bytes(std::span(std::as_const(samples))));
-        EXPECT_EQ(digest(*held, options, 4), digest(read_again, options, 1))
+        EXPECT_EQ(digest(*held, options, slab, 4), digest(read_again, options, slab, 1))
             << "slab " << slab << ", smooth " << smooth;
       }
     }

@@ -112,7 +112,7 @@ TEST(CroppedVolume, GivesThePartOfTheSurface) {
   MeshOptions options;
   options.iso = suggested_iso(volume.kind, volume.type);
   options.closed = false;
-  options.error = {0, false};
+  options.error = Length::units(0);
   MemorySink whole, part;
   mesh_volume(*generate_volume(volume), whole, options);
   mesh_volume(*crop_volume(generate_volume(volume), {{5, 6, 7}, {20, 21, 22}}), part, options);

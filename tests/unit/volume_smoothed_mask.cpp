@@ -151,7 +151,7 @@ struct Mesh {
 Mesh full_mesh(SliceSource& volume, double iso, int smooth, bool closed) {
   MeshOptions options;
   options.iso = iso;
-  options.error = {0, true};
+  options.error = Length::voxels(0);
   options.smooth = smooth;
   options.closed = closed;
   MemorySink sink;
@@ -274,8 +274,8 @@ TEST(SmoothSurface, IsTheSameForAnySlabThreadsAndSchedule) {
   for (const std::int64_t slab : {1000, 1, 4, 0}) {
     for (const Schedule schedule : {Schedule::kQueue, Schedule::kLocal, Schedule::kRounds}) {
       for (const int threads : {1, 4}) {
-        options.slab = slab;
         RunControl control;
+        control.slab = slab;
         control.schedule = schedule;
         control.threads = threads;
         MemorySink sink;

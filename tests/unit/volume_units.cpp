@@ -86,7 +86,7 @@ TEST(LengthUnits, RatiosAreRoundedOnce) {
 TEST(ParseLength, ConvertsToTheUnitOfTheInput) {
   const auto parsed = [](const char* text, const char* unit) {
     const Length length = parse_length(text, unit);
-    EXPECT_FALSE(length.voxels);
+    EXPECT_FALSE(length.in_voxels);
     return length.value;
   };
   EXPECT_EQ(parsed("0.05", "um"), 0.05);
@@ -97,7 +97,7 @@ TEST(ParseLength, ConvertsToTheUnitOfTheInput) {
   EXPECT_EQ(parsed("1in", "mm"), 25.4);
   EXPECT_EQ(parsed("2ft", "in"), 24);
   EXPECT_EQ(parsed("25.4mm", "in"), 1);
-  EXPECT_TRUE(parse_length("0.2vox", "").voxels);
+  EXPECT_TRUE(parse_length("0.2vox", "").in_voxels);
   for (const char* text : {"", "mm", "-1mm", "1 furlong", "inf", "1px", "1e999"}) {
     EXPECT_THROW(parse_length(text, "mm"), std::invalid_argument) << text;
   }

@@ -13,11 +13,13 @@
 #include "pipeline/forecast/forecast_tile.hpp"
 #include "pipeline/memory_cap.hpp"
 #include "pipeline/memory_model.hpp"
+#include "pipeline/run_report.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "pipeline/surface_field.hpp"
-#include "pipeline/sweep.hpp"
+#include "pipeline/task.hpp"
 #include "simplify/count_target.hpp"
 #include "system/process_memory.hpp"
+#include "volume/axes.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -64,8 +66,9 @@ class Forecaster {
       : volume_(volume), rows_(volume), info_(checked_volume(volume.info())), options_(options) {
     control_.threads = control.threads;
     control_.measure = true;
+    control_.slab = control.slab;
     control_.stop = control.stop;
-    error_ = options.error.value * (options.error.voxels ? mean_voxel(info_.geometry) : 1);
+    error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
     // Tiles tell how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
     refuse_reader(control.memory);
@@ -247,14 +250,15 @@ class Forecaster {
     MeshOptions options = options_;
     options.closed = false;
     if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
-    options.values = nullptr;
+    options.values.reset();
     options.levels.clear();
     options.triangles = 0;
-    options.components = nullptr;
+    options.components.reset();
     options.space = OutputSpace::kIndex;
-    options.error = {error, false};
-    options.slab = slab;
-    return mesh_volume(block, sink, options, control_);
+    options.error = Length::units(error);
+    RunControl control = control_;
+    control.slab = slab;
+    return mesh_volume(block, sink, options, control);
   }
 
   // Rows of a slice, and layers between them, for one in a band.
@@ -302,7 +306,7 @@ class Forecaster {
     forecast.triangles = to_count(left);
     if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
-    forecast.peak_bytes = to_count(peak(profiles, options_.slab));
+    forecast.peak_bytes = to_count(peak(profiles, control_.slab));
     forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;

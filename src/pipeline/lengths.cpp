@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,8 @@
 
 namespace isoweave {
 namespace {
+
+constexpr double kShapePart = 0.05;  // of a diagonal
 
 // So many of the unit of the suffix in the other unit; nothing where one of them is not known. An input without a unit
 // is in mm.
@@ -32,6 +35,26 @@ Length parse_length(std::string_view text, std::string_view unit) {
                                 "': expected a number of 0 or more and vox, mm, um, nm, in or nothing");
   }
   return {*length, suffix == "vox"};
+}
+
+double most_shape_error(const VolumeInfo& volume) {
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double side = volume.geometry.spacing[axis] * static_cast<double>(volume.dims[axis]);
+    squared += side * side;
+  }
+  return kShapePart * std::sqrt(squared);
+}
+
+double most_shape_error(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::ranges::minmax(mesh.vertices, {}, [&](const Point& p) { return p[axis]; });
+    const double side = double{high[axis]} - double{low[axis]};
+    squared += side * side;
+  }
+  return kShapePart * std::sqrt(squared);
 }
 
 }  // namespace isoweave

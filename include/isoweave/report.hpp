@@ -1,0 +1,48 @@
+// What a run says of itself and of the meshes that it has written.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isoweave/run.hpp"
+
+namespace isoweave {
+
+// A surface as it was written.
+struct SurfaceReport {
+  // In the volume's unit: as asked for; where a number of triangles was asked for, the largest of a collapse as it was
+  // made, 0 if there was none.
+  double error = 0;
+  std::uint64_t triangles = 0, vertices = 0;
+  // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
+  // construction and is not looked at.
+  std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
+  std::int64_t euler = 0;
+  std::uint64_t digest = 0;
+};
+
+// Of the run, and of the mesh with the largest error.
+struct MeshReport : SurfaceReport {
+  int threads = 0;
+  std::int64_t slab = 0;
+  Schedule schedule = Schedule::kQueue;
+  Device device = Device::kCpu;
+  double min = 0, max = 0;  // values read; min > max when all were NaN
+  std::uint64_t nan = 0;    // samples
+  std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
+  std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
+  std::uint64_t specks = 0;  // components dropped
+  // By MeshOptions::components; their triangles are among those extracted. `specks` are others.
+  std::uint64_t components_dropped = 0, triangles_dropped = 0;
+  std::vector<SurfaceReport> levels;  // finer meshes, as MeshOptions::levels
+  std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
+  std::int64_t resumed_at = 0;        // layers that an earlier process has done
+  // Finer levels are handed to their sinks while simplifying.
+  double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
+  std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
+  std::vector<SlabRecord> sweep;
+  std::vector<std::string> warnings;  // one line each
+};
+
+}  // namespace isoweave

@@ -1,0 +1,29 @@
+// The seam for what looks at a surface, or changes it, between extraction and simplification.
+#pragma once
+
+#include <cstdint>
+
+#include "extract/surface_piece.hpp"
+#include "files/state_file.hpp"
+
+namespace isoweave {
+
+class PieceStage {
+ public:
+  PieceStage() = default;
+  PieceStage(const PieceStage&) = delete;
+  PieceStage& operator=(const PieceStage&) = delete;
+  virtual ~PieceStage() = default;
+
+  // Takes the next piece. Stages after this one see what is left of it.
+  virtual void apply(SurfacePiece& piece) = 0;
+
+  // Bytes that it holds from piece to piece, where these grow.
+  virtual std::uint64_t bytes() const { return 0; }
+
+  // The state between two pieces.
+  virtual void exchange(StateWriter& state) = 0;
+  virtual void exchange(StateReader& state) = 0;
+};
+
+}  // namespace isoweave

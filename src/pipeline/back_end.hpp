@@ -1,0 +1,43 @@
+// Where pieces of a surface are simplified, and from where they leave: processors, or a device.
+#pragma once
+
+#include <cstdint>
+
+#include "files/state_file.hpp"
+#include "isoweave/report.hpp"
+#include "pipeline/piece_source.hpp"
+
+namespace isoweave {
+
+class BackEnd {
+ public:
+  BackEnd() = default;
+  BackEnd(const BackEnd&) = delete;
+  BackEnd& operator=(const BackEnd&) = delete;
+  virtual ~BackEnd() = default;
+
+  // Takes the next piece in, the last one of the surface if that is complete now, and decides what can be decided.
+  // Fills in what is held.
+  virtual void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) = 0;
+
+  // Hands what is final to the sinks. Fills in what is still held, and in the report what has been written so far.
+  virtual void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) = 0;
+
+  // In the memory of the process.
+  virtual Held held() const = 0;
+
+  // Hands over the triangles held over to the next piece, where they are in the memory of the process.
+  virtual void view_undecided(const SweepObserver::Visitor&) const {}
+
+  // Returns when the sinks have everything. Throws what they threw.
+  virtual void wait_for_sinks() = 0;
+
+  // The counters of the whole run.
+  virtual void finish(MeshReport& report) const = 0;
+
+  // The state between two pieces.
+  virtual void exchange(StateWriter& state) = 0;
+  virtual void exchange(StateReader& state) = 0;
+};
+
+}  // namespace isoweave

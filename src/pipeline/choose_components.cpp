@@ -1,0 +1,77 @@
+// Passes over a volume that keep nothing of its surface: which components it has, and how many triangles.
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "isoweave/pipeline.hpp"
+#include "parallel/float_environment.hpp"
+#include "pipeline/run_identity.hpp"
+#include "pipeline/volume_sweep.hpp"
+#include "select/component_filter.hpp"
+#include "select/component_finder.hpp"
+
+namespace isoweave {
+namespace {
+
+// One pass, in which a stage sees the surface.
+class Pass {
+ public:
+  Pass(SliceSource& volume, const SurfaceOptions& surface, const RunControl& control)
+      : control_(passing_control(control)),
+        task_(resolve(volume.info(), full_surface(surface), control_, {0, 0, 0}, RunKind::kComponents)),
+        identity_(identity_of(task_)),
+        sweep_(volume, task_, control_, report_),
+        extractor_(sweep_.make_extractor()) {}
+
+  const Task& task() const { return task_; }
+  const Executor& executor() const { return sweep_.executor(); }
+
+  // Returns the number of triangles that were extracted.
+  std::uint64_t run(PieceStage* stage) {
+    sweep_.begin(*extractor_, stage != nullptr ? std::vector{stage} : std::vector<PieceStage*>{}, nullptr);
+    sweep_.open();
+    while (!sweep_.complete()) {
+      check_stop(control_);
+      sweep_.step();
+    }
+    require_unchanged(task_, identity_);
+    return report_.triangles_extracted;
+  }
+
+ private:
+  const RunControl control_;
+  const Task task_;
+  const RunIdentity identity_;
+  MeshReport report_;
+  VolumeSweep sweep_;
+  std::unique_ptr<Extractor> extractor_;
+};
+
+}  // namespace
+
+ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& options, const ComponentRule& rule,
+                                  const RunControl& control) {
+  const StandardFloats floats;
+  SurfaceOptions all = options;
+  all.components = nullptr;
+  all.smooth = 0;  // which connects what is connected
+  Pass pass(volume, all, control);
+  ComponentFinder finder(Lattice{volume.info().dims}, pass.executor());
+  pass.run(&finder);
+  ComponentChoice choice = finder.choose(rule);
+  choice.surface = surface_text(pass.task().volume, all);
+  return choice;
+}
+
+std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options, const RunControl& control) {
+  const StandardFloats floats;
+  SurfaceOptions counted = options;
+  counted.smooth = 0;  // it has as many
+  Pass pass(volume, counted, control);
+  if (counted.components == nullptr) return pass.run(nullptr);
+  ComponentFilter filter(*counted.components, Lattice{volume.info().dims}, volume.info().path, pass.executor());
+  pass.run(&filter);
+  return filter.triangles();
+}
+
+}  // namespace isoweave

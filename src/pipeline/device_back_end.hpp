@@ -1,0 +1,62 @@
+// Extraction and simplification on a device: samples go there, final triangles come back, the rest stays.
+#pragma once
+
+#include <utility>
+
+#include "device/device_engine.hpp"
+#include "extract/extractor.hpp"
+#include "output/surface_output.hpp"
+#include "pipeline/back_end.hpp"
+
+namespace isoweave {
+
+// The surface that is extracted stays on the device: pieces are empty.
+class DeviceExtractor final : public Extractor {
+ public:
+  // The engine must stay.
+  explicit DeviceExtractor(DeviceEngine& engine) : engine_(engine) {}
+
+  std::int64_t layers_left() const override { return engine_.layers_left(); }
+  std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {
+    return engine_.slices_for(layers);
+  }
+  SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
+                     SurfacePiece& piece) override;
+  std::int64_t most_layers() const override { return engine_.most_layers(); }
+  std::uint64_t room_for_vertices(std::uint64_t cap) const override { return engine_.room_for_vertices(cap); }
+  bool takes_slices_early() const override { return true; }
+  void take_slices(const SliceWindow& window, std::int64_t layers) override { engine_.upload(window, layers); }
+
+  // Throw std::logic_error: states are not saved with a device.
+  void exchange(StateWriter& state) override;
+  void exchange(StateReader& state) override;
+
+ private:
+  DeviceEngine& engine_;
+};
+
+class DeviceBackEnd final : public BackEnd {
+ public:
+  // All of these must stay.
+  DeviceBackEnd(DeviceEngine& engine, bool normals, const World& world, MeshSink& sink, const Executor& executor,
+                bool measure)
+      : engine_(engine), normals_(normals), output_(world, sink, executor, measure) {}
+
+  void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
+  void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
+  Held held() const override { return {}; }
+  void wait_for_sinks() override { output_.wait(); }
+  void finish(MeshReport& report) const override;
+
+  // Throw std::logic_error, likewise.
+  void exchange(StateWriter& state) override;
+  void exchange(StateReader& state) override;
+
+ private:
+  DeviceEngine& engine_;
+  bool normals_;
+  SurfaceOutput output_;
+  FinalPiece piece_;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,76 @@
+#include "pipeline/host_back_end.hpp"
+
+#include "output/sweep_view.hpp"
+#include "pipeline/run_report.hpp"
+
+namespace isoweave {
+
+HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks,
+                         const Executor& executor, const RunControl& control, const std::atomic<bool>* stop)
+    : task_(task),
+      world_(world),
+      executor_(executor),
+      simplifier_({task.zone, control.schedule, task.level_costs, control.measure}, executor, stop),
+      full_output_(world, *sinks.back(), executor, control.measure, control.observer.get()) {
+  for (std::size_t level = 0; level < simplifier_.levels(); ++level) {
+    SweepObserver* const observer = simplifier_.is_last(level) ? control.observer.get() : nullptr;
+    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, level, observer));
+  }
+  if (task.triangles > 0) target_.emplace(simplifier_, executor, task.triangles);
+}
+
+void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) {
+  if (!task_.needed) return;
+  simplifier_.append(piece);
+  record.live_triangles = simplifier_.live_triangles();
+  zone_bytes_ = simplifier_.zone().bytes();
+  record.bytes += zone_bytes_;
+  for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
+    simplifier_.decide(level);
+    outputs_[level]->take(simplifier_);
+  }
+  simplifier_.decide(simplifier_.levels() - 1);
+  if (target_) complete ? target_->finish() : target_->thin_out();
+}
+
+void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) {
+  if (task_.needed) {
+    outputs_.back()->take(simplifier_);
+    outputs_.back()->report(report);
+    record.undecided_triangles = simplifier_.live_triangles();
+  } else {
+    full_output_.take(piece);
+    full_output_.report(report);
+  }
+}
+
+Held HostBackEnd::held() const {
+  if (!task_.needed) return {};
+  return {simplifier_.live_triangles(), zone_bytes_, 0};
+}
+
+void HostBackEnd::view_undecided(const SweepObserver::Visitor& visitor) const {
+  if (task_.needed) view_zone(simplifier_.zone(), world_, executor_, visitor);
+}
+
+void HostBackEnd::wait_for_sinks() {
+  for (const auto& output : outputs_) output->wait();
+  full_output_.wait();
+}
+
+void HostBackEnd::finish(MeshReport& report) const {
+  report.schedule = simplifier_.schedule();
+  report.locked_vertices = simplifier_.zone().locked;
+  report_simplifier(simplifier_, report);
+  for (std::size_t level = 0; level < simplifier_.levels(); ++level) {
+    SurfaceReport& mesh = simplifier_.is_last(level) ? report : report.levels[level];
+    if (!simplifier_.is_last(level)) {
+      outputs_[level]->report(mesh);
+      report_defects(simplifier_.defects(level), mesh);
+    }
+    if (report.locked_vertices > 0) outputs_[level]->report_locked(mesh);
+  }
+  if (target_) report_target(simplifier_, task_, report);
+}
+
+}  // namespace isoweave

@@ -1,0 +1,51 @@
+// Simplification on processors.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "output/final_output.hpp"
+#include "output/full_output.hpp"
+#include "pipeline/back_end.hpp"
+#include "pipeline/task.hpp"
+#include "simplify/count_target.hpp"
+
+namespace isoweave {
+
+class HostBackEnd final : public BackEnd {
+ public:
+  // A sink for each level of the task. World, sinks and executor must stay. stop: set, and simplify() throws
+  // Interrupted, if it is not null. Of the control, schedule, measure and observer count.
+  HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks, const Executor& executor,
+              const RunControl& control, const std::atomic<bool>* stop);
+
+  void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
+  void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
+  Held held() const override;
+  void view_undecided(const SweepObserver::Visitor& visitor) const override;
+  void wait_for_sinks() override;
+  void finish(MeshReport& report) const override;
+  void exchange(StateWriter& state) override { exchange_with(state); }
+  void exchange(StateReader& state) override { exchange_with(state); }
+
+ private:
+  template <class Archive>
+  void exchange_with(Archive& archive) {
+    simplifier_.exchange(archive);
+    for (const auto& output : outputs_) output->exchange(archive);
+    full_output_.exchange(archive);
+  }
+
+  const SimplifyTask task_;
+  const World& world_;
+  const Executor& executor_;
+  Simplifier simplifier_;
+  std::optional<CountTarget> target_;
+  std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
+  FullOutput full_output_;
+  std::uint64_t zone_bytes_ = 0;  // with the last piece
+};
+
+}  // namespace isoweave

@@ -1,0 +1,60 @@
+// The one loop, which every run goes through: a piece of a surface is read and made, goes through stages, is decided as
+// far as is safe, and what is final of it is written.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "extract/piece_stage.hpp"
+#include "pipeline/back_end.hpp"
+#include "pipeline/piece_source.hpp"
+
+namespace isoweave {
+
+// Throws Interrupted when the run is to stop.
+void check_stop(const RunControl& control);
+
+class Loop {
+ public:
+  // All of these must stay. back_end: null where pieces are only looked at.
+  Loop(PieceSource& source, std::vector<PieceStage*> stages, BackEnd* back_end, MeshReport& report)
+      : source_(source), stages_(std::move(stages)), back_end_(back_end), report_(report) {}
+
+  bool complete() const { return source_.complete(); }
+
+  // Takes the next piece, and tells what was held with it.
+  SlabRecord step();
+
+  // Returns when the sinks have everything. Throws what they threw.
+  void wait_for_sinks();
+
+  // Completes the report of a surface that is complete.
+  void finish();
+
+  // In the memory of the process, between two pieces.
+  Held held() const;
+
+  // Hands over what is held and not final.
+  void view_undecided(const SweepObserver::Visitor& visitor) const {
+    if (back_end_ != nullptr) back_end_->view_undecided(visitor);
+  }
+
+  // The state between two pieces, but that of the source.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    for (PieceStage* stage : stages_) stage->exchange(archive);
+    if (back_end_ != nullptr) back_end_->exchange(archive);
+  }
+
+ private:
+  void read();
+
+  PieceSource& source_;
+  const std::vector<PieceStage*> stages_;
+  BackEnd* const back_end_;
+  MeshReport& report_;
+  SurfacePiece piece_;
+  bool is_read_ = false;  // what the next piece is made of
+};
+
+}  // namespace isoweave

@@ -1,0 +1,104 @@
+#include "pipeline/run_identity.hpp"
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <span>
+
+#include "isoweave/error.hpp"
+#include "system/file_facts.hpp"
+
+namespace isoweave {
+namespace {
+
+// Without a stream, as each run says what it is: a process that has made none yet pays a third of a millisecond.
+std::string numbers_text(std::span<const double> numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.begin(), digits.end(), number, std::chars_format::general, 17);
+    text += ' ';
+    text.append(digits.begin(), end.ptr);
+  }
+  return text;
+}
+
+// What was chosen of the file that was opened, and size and time of change of that file or of the one that describes a
+// folder.
+std::string file_text(const VolumeInfo& volume) {
+  const std::string& path = volume.header.empty() ? volume.path : volume.header;
+  std::string part = volume.part.empty() ? "" : ", " + volume.part;
+  const std::optional<system::FileFacts> facts = system::facts_of_file(path);
+  if (!facts) return part;
+  return part + ", " + std::to_string(facts->bytes) + " bytes changed at " + std::to_string(facts->seconds) + "." +
+         std::to_string(facts->nanoseconds);
+}
+
+std::string volume_text(const VolumeInfo& volume) {
+  const auto& [nx, ny, nz] = volume.dims;
+  const Geometry& geometry = volume.geometry;
+  return std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz) + ' ' +
+         std::string(sample_type_name(volume.type)) + ", spacing" + numbers_text(geometry.spacing) + ", origin" +
+         numbers_text(geometry.origin) + ", axes" + numbers_text(geometry.direction) + ", scale" +
+         numbers_text(std::array{volume.slope, volume.intercept}) + file_text(volume);
+}
+
+// Fields are taken apart by name: one that is added to a task does not compile before it is told here.
+std::string simplify_text(const SimplifyTask& task) {
+  [[maybe_unused]] const auto& [side, unit, error, level_errors, triangles, needed, zone, level_costs] = task;
+  [[maybe_unused]] const auto& [numbering, a0, retire, drop_specks, most_distance, cell, largest, normals_count,
+                                quality] = zone;
+  std::string text = ", error" + numbers_text(std::array{error}) + ", triangles " + std::to_string(triangles);
+  for (const double level : level_errors) text += ", level" + numbers_text(std::array{level});
+  text += ", quality " + std::to_string(static_cast<int>(quality));
+  if (drop_specks) text += ", no specks";
+  if (most_distance > 0) text += ", distance" + numbers_text(std::array{most_distance});
+  return text;
+}
+
+std::string level_set_text(const SurfaceOptions& surface) {
+  return "iso" + numbers_text(std::array{surface.iso}) + (surface.inside_above ? " above" : " below") +
+         (surface.closed ? " closed" : " open");
+}
+
+std::string surface_text(const SurfaceOptions& surface) {
+  [[maybe_unused]] const auto& [iso, inside_above, closed, smooth, components] = surface;
+  std::string text = level_set_text(surface);
+  if (smooth > 0) text += ", smooth " + std::to_string(smooth);
+  if (components == nullptr) return text;
+  const auto& [min_triangles, largest] = components->rule;
+  return text + ", components of " + std::to_string(min_triangles) + (largest ? ", the largest" : "");
+}
+
+std::string attributes_text(const AttributeOptions& attributes) {
+  const auto& [normals, values] = attributes;
+  constexpr std::array<const char*, 3> kNormals{"", ", normals", ", normals by quadrics"};
+  return std::string(kNormals.at(static_cast<std::size_t>(normals))) + (values != nullptr ? ", values" : "");
+}
+
+std::string input_text(const Task& task) {
+  const SliceSource* const values = task.attributes.values.get();
+  return volume_text(task.volume) + (values != nullptr ? ", values" + file_text(values->info()) : "");
+}
+
+}  // namespace
+
+std::string surface_text(const VolumeInfo& volume, const SurfaceOptions& surface) {
+  return volume_text(volume) + ", " + level_set_text(surface);
+}
+
+RunIdentity identity_of(const Task& task) {
+  [[maybe_unused]] const auto& [volume, surface, attributes, space, offset, rule, simplify, measured] = task;
+  RunIdentity identity{input_text(task), surface_text(surface) + simplify_text(simplify) + attributes_text(attributes)};
+  identity.options += ", space " + std::to_string(static_cast<int>(space));
+  if (!measured) identity.options += ", not measured";
+  if (offset != std::array<double, 3>{0, 0, 0}) identity.options += ", offset" + numbers_text(offset);
+  return identity;
+}
+
+void require_unchanged(const Task& task, const RunIdentity& before) {
+  if (input_text(task) == before.volume) return;
+  throw BadInput(task.volume.path + ": expected a file that stays as it is while it is read, found it changed");
+}
+
+}  // namespace isoweave

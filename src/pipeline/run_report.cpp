@@ -1,0 +1,120 @@
+#include "pipeline/run_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "output/world.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::uint64_t kLeastTriangles = 4;  // of a closed component
+
+std::string short_number(double number) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.begin(), digits.end(), number, std::chars_format::general, 4);
+  return {digits.begin(), end.ptr};
+}
+
+// Why more triangles are left than a run was to stop at.
+std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error, std::string_view unit) {
+  const std::string length = short_number(most_error) + (unit.empty() ? "" : " ") + std::string(unit);
+  const std::string within = std::isfinite(most_error) ? " within an error of " + length : "";
+  std::string held = "no other collapse" + within + " keeps the topology and the sides of faces";
+  const std::uint64_t least = kLeastTriangles * report.components;
+  if (report.open_edges > 0 || least <= asked) return held;
+  const std::string kept = "each of " + std::to_string(report.components) + " components keeps " +
+                           std::to_string(kLeastTriangles) + " at least, " + std::to_string(least) + " in all";
+  return report.triangles > least ? kept + "; " + held : kept;
+}
+
+}  // namespace
+
+void report_errors(const SimplifyTask& task, MeshReport& report) {
+  report.error = task.error;
+  report.levels.resize(task.level_errors.size());
+  for (std::size_t n = 0; n < task.level_errors.size(); ++n) report.levels[n].error = task.level_errors[n];
+}
+
+void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report) {
+  const double most_error = report.error;
+  const auto dearest = static_cast<CostBits>(simplifier.counts().dearest);
+  // Lower costs are all the same.
+  const bool none = dearest <= cost_bits(kCostFloor);
+  report.error = none ? 0 : task.side * std::sqrt(static_cast<double>(cost_value(dearest)));
+  if (report.triangles <= task.triangles) return;
+  report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " +
+                            std::to_string(task.triangles) +
+                            " were asked for: " + why_more_are_left(report, task.triangles, most_error, task.unit));
+}
+
+void warn_of_space(const Task& task, MeshReport& report) {
+  const bool turned = task.space == OutputSpace::kLps || task.space == OutputSpace::kRas;
+  if (!turned || task.volume.geometry.space != Space::kUnknown) return;
+  report.warnings.push_back(task.volume.path + ": the file does not say which space it is in; coordinates are kept");
+}
+
+void warn_of_rounding(const Task& task, MeshReport& report) {
+  const VolumeInfo& volume = task.volume;
+  const bool has_offset = task.offset != std::array<double, 3>{0, 0, 0};
+  const double moved = rounding_of_places(volume, task.space, has_offset);
+  if (!(has_offset || mesh_offset(volume, task.space) != task.offset) || !(moved > most_rounding(volume))) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << volume.path << ": lies so far from the origin that coordinates of " << (has_offset ? 64 : 32)
+       << " bits move vertices by up to " << moved;
+  if (!has_offset) text << ", as the sink was opened without the offset of the volume";
+  report.warnings.push_back(text.str());
+}
+
+void warn_of_values(const Task& task, MeshReport& report) {
+  if (task.attributes.values == nullptr) return;
+  const VolumeInfo& values = task.attributes.values->info();
+  const Geometry& a = values.geometry;
+  const Geometry& b = task.volume.geometry;
+  if (a.spacing == b.spacing && a.origin == b.origin && a.direction == b.direction) return;
+  report.warnings.push_back(values.path + ": lies elsewhere than " + task.volume.path +
+                            " by its spacing, origin or axes; sample by sample it is taken for the same place");
+}
+
+void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report) {
+  if (report.triangles > 0) return;
+  if (report.components_dropped > 0) {
+    report.warnings.push_back(task.volume.path + ": nothing is left: each of " +
+                              std::to_string(report.components_dropped) + " components has fewer than " +
+                              std::to_string(task.surface.components->rule.min_triangles) + " triangles");
+    return;
+  }
+  const std::string samples =
+      no_samples ? ", no samples are numbers"
+                 : ", samples from " + std::to_string(report.min) + " to " + std::to_string(report.max);
+  report.warnings.push_back(task.volume.path + ": the surface is empty: iso " + std::to_string(task.surface.iso) +
+                            samples);
+}
+
+void add_extracted(const SlabCounts& slab, MeshReport& report) {
+  report.cells_crossed += slab.cells_crossed;
+  report.triangles_extracted += slab.triangles;
+  report.vertices_extracted += slab.vertices;
+}
+
+void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
+  const DecisionCounts counts = simplifier.counts();
+  report.collapses = counts.collapses;
+  report.postponed = counts.postponed;
+  report.rekeyed = counts.rekeyed;
+  report.specks = counts.specks;
+  report.rounds = simplifier.rounds();
+  report_defects(simplifier.defects(), report);
+}
+
+void report_defects(const SurfaceDefects& defects, SurfaceReport& report) {
+  report.nonmanifold_edges = defects.nonmanifold_edges;
+  report.nonmanifold_vertices = defects.nonmanifold_vertices;
+}
+
+}  // namespace isoweave

@@ -1,0 +1,56 @@
+// What goes into a report: times, warnings, counters of the simplifier.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+
+#include "extract/extractor.hpp"
+#include "isoweave/pipeline.hpp"
+#include "pipeline/task.hpp"
+#include "simplify/simplifier.hpp"
+
+namespace isoweave {
+
+// Adds the time since the last lap to one of the report's stages.
+class Stopwatch {
+ public:
+  void lap(double& stage) {
+    const auto now = std::chrono::steady_clock::now();
+    stage += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// Errors of the mesh and of its finer levels, which are in the report from then on.
+void report_errors(const SimplifyTask& task, MeshReport& report);
+
+// A warning when coordinates cannot be turned into the space that is asked for.
+void warn_of_space(const Task& task, MeshReport& report);
+
+// Where rounding moves vertices by more than it should: the sinks have no offset, or 64 bits are too few.
+void warn_of_rounding(const Task& task, MeshReport& report);
+
+// Where a volume of values lies elsewhere than the volume.
+void warn_of_values(const Task& task, MeshReport& report);
+
+// Why a mesh has no triangles: each component is dropped, or there is no surface. no_samples: all were NaN.
+void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report);
+
+// The outcome of a run to a number of triangles: `report.error`, which is the error that was asked for, becomes the
+// largest of a collapse, and where more triangles are left a warning says why. To be called when all else is in the
+// report.
+void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report);
+
+// Adds what a slab has brought.
+void add_extracted(const SlabCounts& slab, MeshReport& report);
+
+// Copies the simplifier's counters.
+void report_simplifier(const Simplifier& simplifier, MeshReport& report);
+void report_defects(const SurfaceDefects& defects, SurfaceReport& report);
+
+}  // namespace isoweave

@@ -1,0 +1,185 @@
+#include "pipeline/task.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <stdexcept>
+
+#include "isoweave/error.hpp"
+#include "lattice/lattice.hpp"
+#include "volume/axes.hpp"
+#include "volume/samples.hpp"
+#include "volume/threshold.hpp"
+
+namespace isoweave {
+namespace {
+
+double length_in(const Length& length, double side) { return length.value * (length.in_voxels ? side : 1); }
+
+double most_distance(const Length& length, double side) {
+  const double distance = length_in(length, side);
+  if (distance >= 0 && std::isfinite(distance)) return distance;
+  throw std::invalid_argument("max distance: expected a length of 0 or more, found " + std::to_string(distance));
+}
+
+std::vector<double> level_errors(const SimplifyOptions& options, double error, double side) {
+  std::vector<double> errors;
+  if (!options.levels.empty() && options.triangles > 0) {
+    throw std::invalid_argument("levels: expected errors alone, found a number of triangles as well");
+  }
+  for (const Length& level : options.levels) {
+    const double length = length_in(level, side);
+    if (!(length >= 0 && length < error && (errors.empty() || length > errors.back()))) {
+      throw std::invalid_argument("levels: expected ascending errors of 0 or more and below " + std::to_string(error) +
+                                  ", found " + std::to_string(length));
+    }
+    errors.push_back(length);
+  }
+  return errors;
+}
+
+SurfaceMeasure measure_of(const VolumeInfo& volume) {
+  const Lattice lattice{volume.dims};
+  const double voxel = mean_voxel(volume.geometry);
+  const auto& spacing = volume.geometry.spacing;
+  const Vec3 cell{spacing[0], spacing[1], spacing[2]};
+  return {voxel * voxel, voxel, {lattice.row(), lattice.plane()}, cell, cell, volume.geometry.unit};
+}
+
+// An open volume of one sample along an axis has crossings and no triangles, which only the simplifier can stand.
+bool has_cells(const VolumeInfo& volume, const SurfaceOptions& surface) {
+  return surface.closed || std::ranges::min(volume.dims) > 1;
+}
+
+std::string size_text(const VolumeInfo& volume) {
+  return std::to_string(volume.dims[0]) + " x " + std::to_string(volume.dims[1]) + " x " +
+         std::to_string(volume.dims[2]);
+}
+
+// A volume of values has a sample wherever the other one has.
+void check_values(const VolumeInfo& volume, const AttributeOptions& attributes) {
+  if (attributes.values == nullptr) return;
+  const VolumeInfo& values = attributes.values->info();
+  if (values.dims == volume.dims) return;
+  throw BadInput(values.path + ": expected " + size_text(volume) + " samples as in " + volume.path + ", found " +
+                 size_text(values));
+}
+
+}  // namespace
+
+SimplifyTask resolve_simplification(const SimplifyOptions& options, const SurfaceMeasure& measure) {
+  SimplifyTask task;
+  task.side = measure.side;
+  task.unit = measure.unit;
+  task.error = length_in(options.error, measure.side);
+  task.level_errors = level_errors(options, task.error, measure.side);
+  task.triangles = options.triangles;
+  task.zone = {measure.numbering,
+               measure.a0,
+               retire_cost(task.error, measure.a0, options.triangles),
+               options.drop_specks,
+               most_distance(options.max_distance, measure.side),
+               measure.cell,
+               measure.largest,
+               false,
+               options.quality};
+  for (const double error : task.level_errors) task.level_costs.push_back(retire_cost(error, measure.a0));
+  return task;
+}
+
+Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunControl& control,
+             const std::array<double, 3>& offset, RunKind kind) {
+  require_possible(kind, options, control);
+  Task task;
+  task.volume = checked_volume(volume);
+  task.surface = options;
+  task.attributes = options;
+  task.space = options.space;
+  task.offset = offset;
+  task.rule = stored_rule(volume, options);
+  task.simplify = resolve_simplification(options, measure_of(volume));
+  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options);
+  task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
+  task.measured = control.measure;
+  check_values(volume, options);
+  return task;
+}
+
+MeshOptions full_surface(const SurfaceOptions& surface) {
+  MeshOptions full;
+  static_cast<SurfaceOptions&>(full) = surface;
+  full.error = Length::units(0);
+  return full;
+}
+
+RunControl passing_control(const RunControl& control) {
+  RunControl passing = control;
+  passing.measure = false;
+  passing.checkpoint = {};
+  passing.resume.reset();
+  passing.observer.reset();
+  return passing;
+}
+
+const VolumeInfo& checked_volume(const VolumeInfo& volume) {
+  require_usable(volume);
+  if (!Lattice::fits(volume.dims)) {
+    throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + size_text(volume));
+  }
+  return volume;
+}
+
+IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options) {
+  if (!std::isfinite(options.iso)) throw std::invalid_argument("iso: expected a finite number");
+  IsoRule rule;
+  rule.iso = (options.iso - volume.intercept) / volume.slope;
+  rule.above = options.inside_above == (volume.slope > 0);
+  rule.closed = options.closed;
+  return rule;
+}
+
+bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) {
+  return visit_sample_type(type, [&]<class T>() {
+    T stored{};
+    std::memcpy(&stored, sample.data(), sizeof stored);
+    const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
+    return threshold.reachable && (rule.above ? stored >= threshold.value : stored <= threshold.value);
+  });
+}
+
+CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
+  if (std::isinf(error) && error > 0 && triangles > 0) return kRetiredCost - 1;
+  if (!(error >= 0) || std::isinf(error)) {
+    throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
+  }
+  // Edges whose keys are not known yet have cost 0 and must stay live, also when nothing is simplified.
+  return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
+}
+
+void require_different(std::span<MeshSink* const> sinks) {
+  std::set<const MeshSink*> seen;
+  for (const MeshSink* sink : sinks) {
+    if (sink == nullptr) throw std::invalid_argument("expected a sink for each mesh, found none");
+    if (!seen.insert(sink).second) throw std::invalid_argument("expected a sink for each mesh, found one for two");
+  }
+}
+
+void check_sinks(std::span<MeshSink* const> sinks, std::size_t levels) {
+  if (sinks.size() != levels + 1) {
+    throw std::invalid_argument("levels: expected " + std::to_string(levels + 1) + " sinks, found " +
+                                std::to_string(sinks.size()));
+  }
+  require_different(sinks);
+}
+
+std::array<double, 3> common_offset(std::span<MeshSink* const> sinks) {
+  for (const MeshSink* sink : sinks) {
+    if (sink->offset() != sinks.front()->offset()) {
+      throw std::invalid_argument("sinks: expected the same offset of all, found several");
+    }
+  }
+  return sinks.empty() ? std::array<double, 3>{0, 0, 0} : sinks.front()->offset();
+}
+
+}  // namespace isoweave

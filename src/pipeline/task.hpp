@@ -1,0 +1,92 @@
+// The task of a run: all that its result depends on, resolved and checked once, before anything is read. Lengths are in
+// the unit of what is meshed, costs in units of a0, iso-values those of samples as they are stored.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "extract/cube_rules.hpp"
+#include "isoweave/pipeline.hpp"
+#include "simplify/simplifier.hpp"
+#include "volume/row_source.hpp"
+
+namespace isoweave {
+
+// How a surface is simplified.
+struct SimplifyTask {
+  double side = 1;                   // the root of a0, in which Length::voxels counts
+  std::string unit;                  // of lengths; may be empty
+  double error = 0;                  // root of the largest cost of a collapse
+  std::vector<double> level_errors;  // of finer meshes, ascending, below `error`
+  std::uint64_t triangles = 0;       // to stop at; 0: no such number
+  bool needed = true;                // whether the surface goes through the simplifier at all
+  ZoneOptions zone;
+  std::vector<CostBits> level_costs;
+};
+
+// What the simplifier has to know of a surface, beside the options.
+struct SurfaceMeasure {
+  double a0 = 1;  // a mean face, length squared
+  double side = 1;
+  EdgeNumbering numbering{};
+  Vec3 cell{};     // lengths of a box that holds a few triangles
+  Vec3 largest{};  // lengths of a box that no triangle exceeds
+  std::string unit;
+};
+
+// Throws std::invalid_argument for an error or a distance that is negative or no number, for an infinite error where no
+// number of triangles stops the run, for levels that do not ascend up to the error, and for levels beside a number.
+SimplifyTask resolve_simplification(const SimplifyOptions& options, const SurfaceMeasure& measure);
+
+// The mesh of a volume.
+struct Task {
+  VolumeInfo volume;
+  SurfaceOptions surface;
+  AttributeOptions attributes;
+  OutputSpace space = OutputSpace::kAsVolume;
+  std::array<double, 3> offset{0, 0, 0};  // of the output
+  IsoRule rule;
+  SimplifyTask simplify;
+  bool measured = true;  // as RunControl::measure
+
+  bool has_normals() const { return attributes.normals != Normals::kAbsent; }
+};
+
+// Throws std::invalid_argument for options out of range and for what does not go together, and BadInput for a volume
+// with more samples than can be numbered and for values of another size.
+Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunControl& control,
+             const std::array<double, 3>& offset = {0, 0, 0}, RunKind kind = RunKind::kMesh);
+
+// The same surface, not simplified and without attributes.
+MeshOptions full_surface(const SurfaceOptions& surface);
+
+// Passes over the volume that keep nothing, on the way to the run that is controlled.
+RunControl passing_control(const RunControl& control);
+
+// Throws BadInput when a volume has more samples than can be numbered.
+const VolumeInfo& checked_volume(const VolumeInfo& volume);
+
+// The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument
+// for an iso-value that is not finite.
+IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options);
+
+// Whether a sample of that type lies inside.
+bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
+
+// The cost, in units of a0, above which edges are retired.
+CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
+
+// Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
+void require_different(std::span<MeshSink* const> sinks);
+
+// Throws std::invalid_argument unless there is a sink for each level and one more, all different.
+void check_sinks(std::span<MeshSink* const> sinks, std::size_t levels);
+
+// That of all sinks. Throws std::invalid_argument where they have several.
+std::array<double, 3> common_offset(std::span<MeshSink* const> sinks);
+
+}  // namespace isoweave

@@ -1,0 +1,78 @@
+// Pieces of the surface of a volume: slabs of slices are read and extracted.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "extract/extractor.hpp"
+#include "parallel/parallel.hpp"
+#include "pipeline/piece_source.hpp"
+#include "pipeline/slab_planner.hpp"
+#include "pipeline/surface_field.hpp"
+#include "pipeline/task.hpp"
+#include "volume/samples.hpp"
+#include "volume/slice_window.hpp"
+
+namespace isoweave {
+
+class VolumePieces final : public PieceSource {
+ public:
+  // Reads on from where the extractor is. All of these must stay.
+  VolumePieces(const Task& task, SurfaceField& field, Extractor& extractor, SlabPlanner& planner,
+               const Executor& executor);
+
+  // Reads the field, and the volume of values, from where the extractor is. To be called once, before the first piece.
+  void open();
+
+  bool complete() const override { return extractor_.layers_left() == 0; }
+  void read(const Held& held, MeshReport& report) override;
+  void make(SurfacePiece& piece, MeshReport& report) override;
+  bool reads_early() const override { return extractor_.takes_slices_early(); }
+  std::uint64_t bytes() const override;
+
+  // Whether an exception came from reading: what has been made is whole then.
+  bool failed_reading() const { return failed_reading_; }
+
+  std::uint64_t voxels() const { return voxels_; }  // read
+  const SampleRange& range() const { return range_; }
+  void set_range(const SampleRange& range) { range_ = range; }
+
+  // Of the slice where an earlier run was cut off. Another one is refused with the name of the state. To be called
+  // before open().
+  void expect_next_slice(std::uint32_t crc, const std::string& state);
+
+  // The first slice that the next slab needs, if it has been read: its checksum, or nothing.
+  std::optional<std::uint32_t> crc_of_next_slice() const;
+
+  // The state between two slabs, with that of extractor and planner.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    extractor_.exchange(archive);
+    planner_.exchange(archive);
+    archive.value(range_);
+    archive.value(voxels_);
+  }
+
+ private:
+  void read_slices();
+  void measure_samples(std::int64_t slices);
+  void check_expected();
+
+  const Task& task_;
+  SurfaceField& field_;
+  Extractor& extractor_;
+  SlabPlanner& planner_;
+  const Executor& executor_;
+  std::optional<SliceWindow> window_;
+  std::optional<SliceWindow> values_window_;
+  SlabPlan plan_;  // of the slices that have been read
+  SampleRange range_;
+  std::uint64_t voxels_ = 0;
+  std::optional<std::uint32_t> expected_crc_;
+  std::string state_;  // that told it
+  bool failed_reading_ = false;
+};
+
+}  // namespace isoweave

@@ -1,0 +1,78 @@
+#include "pipeline/volume_sweep.hpp"
+
+#include <string>
+#include <utility>
+
+#include "extract/marching_cubes.hpp"
+#include "volume/row_source.hpp"
+
+namespace isoweave {
+
+VolumeSweep::VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report)
+    : source_(source),
+      task_(task),
+      control_(control),
+      report_(report),
+      reader_bytes_(held_by_slices(source)),
+      executor_(control.threads),
+      field_(source, task.surface, executor_, control.measure) {}
+
+std::unique_ptr<Extractor> VolumeSweep::make_extractor() const {
+  return std::make_unique<MarchingCubes>(field_.info(), ExtractOptions{field_.rule(), task_.has_normals()}, executor_);
+}
+
+void VolumeSweep::begin(Extractor& extractor, std::vector<PieceStage*> stages, BackEnd* back_end) {
+  extractor_ = &extractor;
+  layers_ = extractor.layers_left();
+  planner_.emplace(task_, control_, field_.info(), extractor, executor_.threads(), reader_bytes_);
+  pieces_.emplace(task_, field_, extractor, *planner_, executor_);
+  loop_.emplace(*pieces_, std::move(stages), back_end, report_);
+  find_constant();
+}
+
+// A volume of one value that is outside has no surface, and may declare more samples than anyone can look at.
+void VolumeSweep::find_constant() {
+  const VolumeInfo& volume = task_.volume;
+  const std::optional<SampleBytes> sample = constant_sample(source_);
+  if (!sample || is_inside(*sample, volume.type, task_.rule)) return;
+  all_outside_ = true;
+  SampleRange range = sample_range(sample->data(), volume.type, 1);
+  range.nan *= static_cast<std::uint64_t>(volume.slice_samples() * volume.dims[2]);
+  pieces_->set_range(range);
+}
+
+void VolumeSweep::step() {
+  SlabRecord record = loop_->step();
+  record.layer = layers_done();
+  planner_->weigh_zone(record, loop_->held());
+  report_.sweep.push_back(record);
+  tell(record);
+}
+
+void VolumeSweep::tell(const SlabRecord& record) {
+  const Progress progress{record.layer,           layers_,     pieces_->voxels(), record.live_triangles,
+                          record.final_triangles, record.bytes};
+  if (control_.progress) control_.progress(progress);
+  if (control_.observer == nullptr) return;
+  control_.observer->end_slab(progress, record,
+                              [&](const SweepObserver::Visitor& visitor) { loop_->view_undecided(visitor); });
+}
+
+void VolumeSweep::finish() {
+  loop_->finish();
+  report_samples();
+}
+
+void VolumeSweep::report_samples() {
+  const VolumeInfo& volume = task_.volume;
+  const SampleRange& range = pieces_->range();
+  const double low = volume.slope * range.min + volume.intercept;
+  const double high = volume.slope * range.max + volume.intercept;
+  report_.min = volume.slope > 0 || range.empty() ? low : high;
+  report_.max = volume.slope > 0 || range.empty() ? high : low;
+  report_.nan = range.nan;
+  if (range.nan == 0) return;
+  report_.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
+}
+
+}  // namespace isoweave

@@ -1,0 +1,67 @@
+// The loop over a volume, whatever becomes of its surface.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pipeline/loop.hpp"
+#include "pipeline/slab_planner.hpp"
+#include "pipeline/surface_field.hpp"
+#include "pipeline/task.hpp"
+#include "pipeline/volume_pieces.hpp"
+
+namespace isoweave {
+
+class VolumeSweep {
+ public:
+  // All of these must stay.
+  VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report);
+
+  const Executor& executor() const { return executor_; }
+  const SurfaceField& field() const { return field_; }
+
+  // Marching cubes over the field.
+  std::unique_ptr<Extractor> make_extractor() const;
+
+  // How the surface is extracted and where it goes; all must stay. back_end: may be null. To be called once.
+  void begin(Extractor& extractor, std::vector<PieceStage*> stages, BackEnd* back_end);
+
+  // Reading begins where the extractor is.
+  void open() { pieces_->open(); }
+
+  // Whether no slab is left that could hold some surface.
+  bool complete() const { return all_outside_ || loop_->complete(); }
+
+  // Takes the next slab in, and tells the caller of it.
+  void step();
+
+  Loop& loop() { return *loop_; }
+  VolumePieces& pieces() { return *pieces_; }
+  std::int64_t layers() const { return layers_; }
+  std::int64_t layers_done() const { return layers_ - extractor_->layers_left(); }
+
+  // Completes the report.
+  void finish();
+
+ private:
+  void find_constant();
+  void tell(const SlabRecord& record);
+  void report_samples();
+
+  SliceSource& source_;
+  const Task& task_;
+  const RunControl& control_;
+  MeshReport& report_;
+  const std::uint64_t reader_bytes_;
+  const Executor executor_;
+  SurfaceField field_;
+  Extractor* extractor_ = nullptr;
+  std::optional<SlabPlanner> planner_;
+  std::optional<VolumePieces> pieces_;
+  std::optional<Loop> loop_;
+  std::int64_t layers_ = 0;
+  bool all_outside_ = false;  // as is known without reading a sample
+};
+
+}  // namespace isoweave
