@@ -77,7 +77,6 @@ class OutputDescriptor {
 
  private:
   void write_now(std::span<const std::byte> bytes);
-  std::uint64_t append_in_kernel(const OutputDescriptor& source);
   void add_to_checksum(const OutputDescriptor& source);
   void replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes);
   void save_overwritten(std::uint64_t offset, std::uint64_t count);

@@ -1,0 +1,9 @@
+// The process among others.
+#pragma once
+
+namespace isoweave::system {
+
+// The number by which the system, and whoever looks at its processes, knows this one.
+int process_number();
+
+}  // namespace isoweave::system
