@@ -1,7 +1,5 @@
 #include "files/atomic_file.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -120,11 +118,6 @@ std::string checked_target(const std::string& path) {
 }
 
 }  // namespace
-
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  if (bytes.empty()) return crc;  // zlib takes no bytes for a wish to begin
-  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
 
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
@@ -252,8 +245,7 @@ void OutputDescriptor::append(OutputDescriptor& source) {
 // The copy has the bytes that were written to the source, or the file is found out when it is verified.
 void OutputDescriptor::add_to_checksum(const OutputDescriptor& source) {
   if (!source.checksum_) throw std::logic_error(path_ + ": a file with a checksum takes files with one only");
-  checksum_ =
-      static_cast<std::uint32_t>(::crc32_combine(*checksum_, *source.checksum_, static_cast<z_off_t>(source.size_)));
+  checksum_ = join_crcs(*checksum_, *source.checksum_, source.size_);
 }
 
 // A CRC is linear: bytes that change by a difference change it by the CRC of that difference, in front of as many zeros
@@ -263,7 +255,7 @@ void OutputDescriptor::replace_in_checksum(std::uint64_t offset, std::span<const
   read_back(offset, before);
   const std::uint32_t change = add_to_crc(0, before) ^ add_to_crc(0, bytes);
   const std::uint64_t behind = size_ - offset - bytes.size();
-  *checksum_ ^= static_cast<std::uint32_t>(::crc32_combine(change, 0, static_cast<z_off_t>(behind)));
+  *checksum_ ^= join_crcs(change, 0, behind);
 }
 
 void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t count) {

@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace isoweave {
+#include "files/crc32.hpp"
 
-// The CRC-32 of more bytes.
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes);
+namespace isoweave {
 
 // An open file descriptor with a write buffer; closes it when destroyed.
 class OutputDescriptor {

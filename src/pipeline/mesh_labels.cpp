@@ -88,7 +88,7 @@ class LabelsSweep {
         control_(control),
         executor_(control.threads),
         simplifies_(simplifies(volume_, options)),
-        window_(numbers_) {
+        window_(numbers_, 0, SliceWindow::reading_with(executor_.threads())) {
     check_options(options, control);
     zone_options(volume_, options);  // finds out now what is wrong with them
     warn_of_floats(map.info().type, labels);
