@@ -8,6 +8,7 @@ target_compile_options(isoweave_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
   $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 warns inside std::string (GCC bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>  # tells that arguments are passed as they were before GCC 10
   $<$<BOOL:${ISOWEAVE_WERROR}>:-Werror>)
 
 if(ISOWEAVE_SANITIZE)

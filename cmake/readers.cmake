@@ -57,6 +57,12 @@ function(isoweave_link_readers target)
   endforeach()
 endfunction()
 
+# What the formats need, whether there are options for it or not.
+function(isoweave_link_formats target)
+  target_link_libraries(${target} PRIVATE ZLIB::ZLIB $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+  isoweave_link_readers(${target})
+endfunction()
+
 # Drops the tests that write files through a library that is not there.
 function(isoweave_select_reader_tests sources)
   set(left ${${sources}})

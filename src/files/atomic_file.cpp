@@ -1,17 +1,9 @@
 #include "files/atomic_file.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <random>
 #include <stdexcept>
 #include <string_view>
@@ -19,12 +11,17 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "system/descriptor.hpp"
+#include "system/durable_file.hpp"
+#include "system/file_facts.hpp"
 
 namespace isoweave {
 namespace {
 
+using system::FileStatus;
+using system::Opening;
+
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr mode_t kNewFileMode = 0666;          // the umask takes its share, as for any new file
 constexpr std::size_t kLongestNameKept = 200;  // of the 255 bytes of a name; the rest is for the decoration
 constexpr int kAttempts = 100;
 
@@ -78,7 +75,7 @@ std::string new_name(const std::string& path) { return path + ".new"; }
 
 // A part that has become the mesh already, under a second name, must not be written to: it goes on as a copy.
 void own_part(const std::string& path, std::uint64_t size) {
-  const int from = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  const int from = system::open_descriptor(path, Opening::kWrite);
   if (from < 0) cannot_write(path, "cannot be opened", errno);
   OutputDescriptor part(from, path, size);
   AtomicFile copy(path);
@@ -87,15 +84,14 @@ void own_part(const std::string& path, std::uint64_t size) {
 }
 
 OutputDescriptor open_part_again(const std::string& path, const PartMark& mark) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  const int fd = system::open_descriptor(path, Opening::kWrite);
   if (fd < 0) bad_part(path, mark, std::generic_category().message(errno));
   OutputDescriptor file(fd, path, mark.size);
-  struct stat status {};
-  if (::fstat(fd, &status) != 0) cannot_write(path, "cannot be looked up", errno);
-  const auto found = static_cast<std::uint64_t>(status.st_size);
-  if (found < mark.size) bad_part(path, mark, std::to_string(found) + " bytes");
-  if (status.st_nlink == 1) return file;
-  own_part(path, found);
+  const std::optional<FileStatus> status = system::status_of(fd);
+  if (!status) cannot_write(path, "cannot be looked up", errno);
+  if (status->bytes < mark.size) bad_part(path, mark, std::to_string(status->bytes) + " bytes");
+  if (status->names == 1) return file;
+  own_part(path, status->bytes);
   return open_part_again(path, mark);
 }
 
@@ -104,47 +100,24 @@ std::string name_of(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-std::string resolve_links(const std::string& path) {
-  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr), &std::free);
-  if (!real) cannot_write(path, "cannot resolve the link", errno);
-  return real.get();
-}
-
 // Refuses what a rename would destroy or fail on, and returns the name to rename to.
 std::string checked_target(const std::string& path) {
   if (path.empty()) throw CannotWrite("the name of the output file is empty");
   const std::string name = name_of(path);
   if (name.empty() || name == "." || name == "..") throw CannotWrite(path + ": is a folder, expected a file name");
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    if (errno != ENOENT) cannot_write(path, "cannot be looked up", errno);
-    return path;
-  }
-  if (S_ISDIR(status.st_mode)) throw CannotWrite(path + ": is a folder, expected a file name");
-  if (!S_ISREG(status.st_mode)) throw CannotWrite(path + ": exists and is not a regular file");
-  if (::access(path.c_str(), W_OK) != 0) cannot_write(path, "exists and cannot be replaced", errno);
-  struct stat link {};
-  if (::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode)) return resolve_links(path);
-  return path;
-}
-
-std::string descriptor_name(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
-
-// A file without a name, which the system frees however the process ends; -1 where there is no such thing, or no way to
-// give it a name later.
-int open_unnamed(const std::string& folder) {
-  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kNewFileMode);
-  if (fd < 0 || ::access(descriptor_name(fd).c_str(), F_OK) == 0) return fd;
-  ::close(fd);
-  return -1;
+  const std::optional<FileStatus> status = system::status_of(path);
+  if (!status && errno != ENOENT) cannot_write(path, "cannot be looked up", errno);
+  if (!status) return path;
+  if (status->kind == FileStatus::Kind::kFolder) throw CannotWrite(path + ": is a folder, expected a file name");
+  if (status->kind != FileStatus::Kind::kRegular) throw CannotWrite(path + ": exists and is not a regular file");
+  if (!system::may_write(path)) cannot_write(path, "exists and cannot be replaced", errno);
+  if (!system::is_link(path)) return path;
+  std::string target = system::resolve_links(path);
+  if (target.empty()) cannot_write(path, "cannot resolve the link", errno);
+  return target;
 }
 
 }  // namespace
-
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  if (bytes.empty()) return crc;  // zlib takes no bytes for a wish to begin
-  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
 
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
@@ -168,10 +141,10 @@ namespace {
 
 // Creates a new file in the folder of `target`; says its name in `temporary` if it has one.
 int open_temporary(const std::string& path, const std::string& target, std::string& temporary) {
-  if (const int fd = open_unnamed(folder_of(target)); fd >= 0) return fd;
+  if (const int fd = system::create_unnamed(folder_of(target)); fd >= 0) return fd;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::string name = temporary_name(target);
-    const int fd = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
+    const int fd = system::open_descriptor(name, Opening::kCreateNew);
     if (fd >= 0) {
       temporary = name;
       return fd;
@@ -184,15 +157,8 @@ int open_temporary(const std::string& path, const std::string& target, std::stri
 
 }  // namespace
 
-// A folder that may be written but not read, or a file system without this operation,
-// leaves that to the system; the file itself is complete.
 void sync_folder(const std::string& path, const std::string& target) {
-  const int fd = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  const int result = ::fsync(fd);
-  const int error = errno;
-  ::close(fd);
-  if (result != 0 && error != EINVAL && error != ENOTSUP) cannot_write(path, "cannot flush the folder", error);
+  if (!system::sync_names(folder_of(target))) cannot_write(path, "cannot flush the folder", errno);
 }
 
 OutputDescriptor::OutputDescriptor(int fd, std::string path, std::uint64_t size)
@@ -209,7 +175,7 @@ OutputDescriptor::OutputDescriptor(OutputDescriptor&& other) noexcept
       is_checked_(other.is_checked_) {}
 
 OutputDescriptor::~OutputDescriptor() {
-  if (fd_ >= 0) ::close(fd_);
+  if (fd_ >= 0) system::close_descriptor(fd_);
 }
 
 void OutputDescriptor::fail(const char* what, int error) const { cannot_write(path_, what, error); }
@@ -232,14 +198,7 @@ void OutputDescriptor::flush() {
 }
 
 void OutputDescriptor::write_now(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
-    if (written > 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    } else if (written == 0 || errno != EINTR) {
-      fail("cannot write", written == 0 ? ENOSPC : errno);
-    }
-  }
+  if (!system::write_all(fd_, bytes)) fail("cannot write", errno);
 }
 
 void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -252,29 +211,17 @@ void OutputDescriptor::overwrite(std::uint64_t offset, std::span<const std::byte
 }
 
 void OutputDescriptor::pwrite_now(std::uint64_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written > 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-      offset += static_cast<std::uint64_t>(written);
-    } else if (written == 0 || errno != EINTR) {
-      fail("cannot write", written == 0 ? ENOSPC : errno);
-    }
-  }
+  if (!system::write_all_at(fd_, offset, bytes)) fail("cannot write", errno);
 }
 
 void OutputDescriptor::read_back(std::uint64_t offset, std::span<std::byte> bytes) {
   flush();
   while (!bytes.empty()) {
-    const ssize_t got = ::pread(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got > 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(got));
-      offset += static_cast<std::uint64_t>(got);
-    } else if (got == 0) {
-      throw CannotWrite(path_ + ": holds less than was written to it");
-    } else if (errno != EINTR) {
-      fail("cannot read back", errno);
-    }
+    const std::int64_t got = system::read_at(fd_, offset, bytes);
+    if (got < 0) fail("cannot read back", errno);
+    if (got == 0) throw CannotWrite(path_ + ": holds less than was written to it");
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+    offset += static_cast<std::uint64_t>(got);
   }
 }
 
@@ -282,7 +229,7 @@ void OutputDescriptor::append(OutputDescriptor& source) {
   is_checked_ = false;
   source.flush();
   flush();
-  std::uint64_t done = append_in_kernel(source);
+  std::uint64_t done = system::copy_within_system(source.fd_, fd_, source.size_);  // its errors are left to the loop
   std::vector<std::byte> block(
       static_cast<std::size_t>(std::min<std::uint64_t>(4 * kBufferBytes, source.size_ - done)));
   while (done < source.size_) {
@@ -298,8 +245,7 @@ void OutputDescriptor::append(OutputDescriptor& source) {
 // The copy has the bytes that were written to the source, or the file is found out when it is verified.
 void OutputDescriptor::add_to_checksum(const OutputDescriptor& source) {
   if (!source.checksum_) throw std::logic_error(path_ + ": a file with a checksum takes files with one only");
-  checksum_ =
-      static_cast<std::uint32_t>(::crc32_combine(*checksum_, *source.checksum_, static_cast<z_off_t>(source.size_)));
+  checksum_ = join_crcs(*checksum_, *source.checksum_, source.size_);
 }
 
 // A CRC is linear: bytes that change by a difference change it by the CRC of that difference, in front of as many zeros
@@ -309,7 +255,7 @@ void OutputDescriptor::replace_in_checksum(std::uint64_t offset, std::span<const
   read_back(offset, before);
   const std::uint32_t change = add_to_crc(0, before) ^ add_to_crc(0, bytes);
   const std::uint64_t behind = size_ - offset - bytes.size();
-  *checksum_ ^= static_cast<std::uint32_t>(::crc32_combine(change, 0, static_cast<z_off_t>(behind)));
+  *checksum_ ^= join_crcs(change, 0, behind);
 }
 
 void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t count) {
@@ -320,24 +266,24 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
   read_back(offset, std::span(overwritten_).last(static_cast<std::size_t>(count)));
   const std::string name = overwritten_name(path_);
   const std::string unfinished = new_name(name);  // a process was killed as it wrote that
-  const int fd = ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kNewFileMode);
+  const int fd = system::open_descriptor(unfinished, Opening::kCreateEmpty);
   if (fd < 0) cannot_write(unfinished, "cannot be created", errno);
   OutputDescriptor file(fd, unfinished);
   file.write(overwritten_);
   file.close();
-  if (::rename(unfinished.c_str(), name.c_str()) != 0) cannot_write(name, "cannot be renamed into place", errno);
+  if (!system::rename(unfinished, name)) cannot_write(name, "cannot be renamed into place", errno);
   sync_folder(path_, name);
 }
 
 void OutputDescriptor::restore_overwritten() {
   const std::string name = overwritten_name(path_);
-  const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = system::open_descriptor(name, Opening::kRead);
   if (fd < 0 && errno == ENOENT) return forget_overwritten();
   if (fd < 0) cannot_write(name, "cannot be opened", errno);
-  struct stat status {};
   OutputDescriptor file(fd, name);
-  if (::fstat(fd, &status) != 0) cannot_write(name, "cannot be looked up", errno);
-  std::vector<std::byte> saved(static_cast<std::size_t>(status.st_size));
+  const std::optional<FileStatus> status = system::status_of(fd);
+  if (!status) cannot_write(name, "cannot be looked up", errno);
+  std::vector<std::byte> saved(static_cast<std::size_t>(status->bytes));
   file.read_back(0, saved);
   std::vector<OverwrittenBytes> records = overwritten_in(saved, name);
   std::reverse(records.begin(), records.end());  // what was overwritten last is put back first
@@ -350,8 +296,8 @@ void OutputDescriptor::restore_overwritten() {
 
 void OutputDescriptor::forget_overwritten() const {
   const std::string name = overwritten_name(path_);
-  ::unlink(name.c_str());
-  ::unlink(new_name(name).c_str());
+  system::remove_name(name);
+  system::remove_name(new_name(name));
 }
 
 void OutputDescriptor::verify() {
@@ -359,20 +305,9 @@ void OutputDescriptor::verify() {
   if (crc_of_file(*this) != *checksum_) throw CannotWrite(path_ + ": holds other bytes than were written to it");
 }
 
-// Copies as far as the file system can do it by itself; returns how far. Errors are left for the plain copy to meet.
-std::uint64_t OutputDescriptor::append_in_kernel(const OutputDescriptor& source) {
-  off_t offset = 0;
-  while (static_cast<std::uint64_t>(offset) < source.size_) {
-    const std::size_t rest = static_cast<std::size_t>(source.size_ - static_cast<std::uint64_t>(offset));
-    const ssize_t copied = ::copy_file_range(source.fd_, &offset, fd_, nullptr, rest, 0);
-    if (copied <= 0 && !(copied < 0 && errno == EINTR)) break;
-  }
-  return static_cast<std::uint64_t>(offset);
-}
-
 void OutputDescriptor::copy_to(int descriptor, const std::string& name) {
   flush();
-  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  const int copy = system::duplicate(descriptor);
   if (copy < 0) cannot_write(name, "cannot write", errno);
   OutputDescriptor other(copy, name);
   std::vector<std::byte> block(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_)));
@@ -385,28 +320,25 @@ void OutputDescriptor::copy_to(int descriptor, const std::string& name) {
 
 void OutputDescriptor::sync() {
   flush();
-  if (::fsync(fd_) != 0) fail("cannot flush to the disk", errno);
+  if (!system::sync_file(fd_)) fail("cannot flush to the disk", errno);
 }
 
 void OutputDescriptor::cut_off() {
   flush();
-  const auto end = static_cast<off_t>(size_);
-  if (::ftruncate(fd_, end) != 0 || ::lseek(fd_, end, SEEK_SET) != end) fail("cannot be cut off", errno);
+  if (!system::cut_off(fd_, size_)) fail("cannot be cut off", errno);
 }
 
 bool OutputDescriptor::try_lock() const { return isoweave::try_lock(fd_, path_); }
 
-bool OutputDescriptor::link_as(const std::string& name) const {
-  return ::linkat(AT_FDCWD, descriptor_name(fd_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
-}
+bool OutputDescriptor::link_as(const std::string& name) const { return system::give_name(fd_, name); }
 
 void OutputDescriptor::check() {
   sync();
-  struct stat status {};
-  if (::fstat(fd_, &status) != 0) fail("cannot be looked up", errno);
-  if (static_cast<std::uint64_t>(status.st_size) != size_) {
+  const std::optional<FileStatus> status = system::status_of(fd_);
+  if (!status) fail("cannot be looked up", errno);
+  if (status->bytes != size_) {
     throw CannotWrite(path_ + ": wrote " + std::to_string(size_) + " bytes, the disk holds " +
-                      std::to_string(status.st_size));
+                      std::to_string(status->bytes));
   }
   verify();
   is_checked_ = true;
@@ -415,7 +347,7 @@ void OutputDescriptor::check() {
 void OutputDescriptor::close() {
   if (!is_checked_) check();
   // Whatever close says, the descriptor is gone afterwards.
-  if (::close(std::exchange(fd_, -1)) != 0) fail("cannot close", errno);
+  if (!system::close_descriptor(std::exchange(fd_, -1))) fail("cannot close", errno);
 }
 
 AtomicFile::AtomicFile(const std::string& path)
@@ -425,7 +357,7 @@ AtomicFile::AtomicFile(const std::string& path, const PartFile& part)
     : path_(path), target_(checked_target(path)), temporary_(part.path), kept_(true), file_(open_part(part)) {}
 
 AtomicFile::~AtomicFile() {
-  if (!temporary_.empty() && !kept_) ::unlink(temporary_.c_str());
+  if (!temporary_.empty() && !kept_) system::remove_name(temporary_);
 }
 
 void AtomicFile::commit() {
@@ -437,7 +369,7 @@ void AtomicFile::commit() {
   }
   kept_ = false;
   file_.close();
-  if (!temporary_.empty() && ::rename(temporary_.c_str(), target_.c_str()) != 0) {
+  if (!temporary_.empty() && !system::rename(temporary_, target_)) {
     cannot_write(path_, "cannot be renamed into place", errno);
   }
   temporary_.clear();
@@ -469,17 +401,15 @@ void AtomicFile::copy_into_place() {
 }
 
 bool try_lock(int fd, const std::string& path) {
-  while (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) return false;
-    if (errno != EINTR) cannot_write(path, "cannot be locked against other processes", errno);
-  }
-  return true;
+  const std::optional<bool> locked = system::try_lock(fd);
+  if (!locked) cannot_write(path, "cannot be locked against other processes", errno);
+  return *locked;
 }
 
 namespace {
 
 OutputDescriptor create_part(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
+  const int fd = system::open_descriptor(path, Opening::kCreateNew);
   if (fd < 0 && errno == EEXIST) {
     throw CannotWrite(path + ": is there already: resume the unfinished run that it belongs to, or remove it");
   }
@@ -504,10 +434,10 @@ OutputDescriptor open_part(const PartFile& part) {
 }
 
 void remove_part(const std::string& path) {
-  ::unlink(path.c_str());
+  system::remove_name(path);
   const std::string overwritten = overwritten_name(path);
-  ::unlink(overwritten.c_str());
-  ::unlink(new_name(overwritten).c_str());
+  system::remove_name(overwritten);
+  system::remove_name(new_name(overwritten));
 }
 
 int open_scratch(const std::string& path) { return open_scratch_in(folder_of(checked_target(path)), path); }
@@ -515,7 +445,7 @@ int open_scratch(const std::string& path) { return open_scratch_in(folder_of(che
 int open_scratch_in(const std::string& folder, const std::string& path) {
   std::string temporary;
   const int fd = open_temporary(path, folder + "/scratch", temporary);
-  if (!temporary.empty()) ::unlink(temporary.c_str());
+  if (!temporary.empty()) system::remove_name(temporary);
   return fd;
 }
 

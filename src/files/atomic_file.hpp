@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace isoweave {
+#include "files/crc32.hpp"
 
-// The CRC-32 of more bytes.
-std::uint32_t add_to_crc(std::uint32_t crc, std::span<const std::byte> bytes);
+namespace isoweave {
 
 // An open file descriptor with a write buffer; closes it when destroyed.
 class OutputDescriptor {
@@ -77,7 +76,6 @@ class OutputDescriptor {
 
  private:
   void write_now(std::span<const std::byte> bytes);
-  std::uint64_t append_in_kernel(const OutputDescriptor& source);
   void add_to_checksum(const OutputDescriptor& source);
   void replace_in_checksum(std::uint64_t offset, std::span<const std::byte> bytes);
   void save_overwritten(std::uint64_t offset, std::uint64_t count);

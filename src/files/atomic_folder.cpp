@@ -1,19 +1,16 @@
 #include "files/atomic_folder.hpp"
 
-#include <sys/stat.h>
-
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "files/atomic_file.hpp"
 #include "isoweave/error.hpp"
+#include "system/durable_file.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr mode_t kNewFolderMode = 0777;  // the umask takes its share
 constexpr int kAttempts = 100;
 
 [[noreturn]] void cannot_write(const std::string& path, const std::string& what, int error) {
@@ -24,7 +21,7 @@ constexpr int kAttempts = 100;
 std::string make_temporary(const std::string& path) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::string name = temporary_name(path);
-    if (::mkdir(name.c_str(), kNewFolderMode) == 0) return name;
+    if (system::make_folder(name)) return name;
     if (errno != EEXIST) cannot_write(path, "cannot create a folder in '" + folder_of(path) + "'", errno);
   }
   throw CannotWrite(path + ": no free temporary name in '" + folder_of(path) + "'");
@@ -64,7 +61,7 @@ void AtomicFolder::write_file(const std::string& name, std::span<const std::byte
 
 void AtomicFolder::commit() {
   // An empty folder of that name is replaced, and nothing else can be.
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) cannot_write(path_, "cannot be renamed into place", errno);
+  if (!system::rename(temporary_, path_)) cannot_write(path_, "cannot be renamed into place", errno);
   temporary_.clear();
   sync_folder(path_, path_);
 }

@@ -4,10 +4,19 @@
 #include <charconv>
 #include <system_error>
 
+#include "files/from_chars.hpp"
+
 namespace isoweave {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+std::from_chars_result parse(const char* first, const char* last, std::int64_t& value) {
+  return std::from_chars(first, last, value);
+}
+std::from_chars_result parse(const char* first, const char* last, double& value) {
+  return double_from_chars(first, last, value);
+}
 
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
@@ -15,7 +24,7 @@ std::optional<Number> parse_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   Number value{};
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const auto [stop, error] = parse(text.data(), end, value);
   if (error != std::errc{} || stop != end) return std::nullopt;
   return value;
 }

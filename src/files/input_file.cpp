@@ -1,9 +1,5 @@
 #include "files/input_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -11,6 +7,9 @@
 
 #include "files/printable.hpp"
 #include "isoweave/error.hpp"
+#include "system/descriptor.hpp"
+#include "system/durable_file.hpp"
+#include "system/file_facts.hpp"
 
 namespace isoweave {
 
@@ -35,22 +34,20 @@ std::string InputFile::size_text() const {
 
 DescriptorFile::DescriptorFile(int descriptor, std::string path, std::uint64_t size, bool unnamed)
     : InputFile(std::move(path), size), descriptor_(descriptor), unnamed_(unnamed) {
-  static_cast<void>(::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL));  // advice: nothing depends on it
+  system::expect_in_order(descriptor_);
 }
 
-DescriptorFile::~DescriptorFile() { ::close(descriptor_); }
+DescriptorFile::~DescriptorFile() { system::close_descriptor(descriptor_); }
 
 void DescriptorFile::forget(std::uint64_t offset, std::uint64_t bytes) const {
-  static_cast<void>(
-      ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes), POSIX_FADV_DONTNEED));
+  system::expect_no_more(descriptor_, offset, bytes);
 }
 
 std::size_t DescriptorFile::read_at(std::uint64_t offset, std::span<std::byte> out) const {
   if (offset >= size()) return 0;
   std::size_t done = 0;
   while (done < out.size()) {
-    const ssize_t got = ::pread(descriptor_, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
+    const std::int64_t got = system::read_at(descriptor_, offset + done, out.subspan(done));
     if (got < 0) bad_input(path(), std::string("cannot be read: ") + std::strerror(errno));
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
@@ -58,24 +55,19 @@ std::size_t DescriptorFile::read_at(std::uint64_t offset, std::span<std::byte> o
   return done;
 }
 
-std::string DescriptorFile::system_path() const {
-  return unnamed_ ? "/proc/self/fd/" + std::to_string(descriptor_) : path();
-}
+std::string DescriptorFile::system_path() const { return unnamed_ ? system::path_of(descriptor_) : path(); }
 
 FilePtr open_file(const std::string& path, std::string_view wanted) {
-  // Without O_NONBLOCK, opening a named pipe would wait for a writer.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) bad_input(path, std::string("cannot be opened: ") + std::strerror(errno));
-  struct stat status {};
-  const bool known = ::fstat(descriptor, &status) == 0;
-  const int error = errno;
-  if (known && S_ISREG(status.st_mode) && status.st_size > 0) {
-    return std::make_shared<DescriptorFile>(descriptor, path, static_cast<std::uint64_t>(status.st_size), false);
+  system::Descriptor descriptor(system::open_descriptor(path, system::Opening::kReadAtOnce));
+  if (descriptor.get() < 0) bad_input(path, std::string("cannot be opened: ") + std::strerror(errno));
+  const std::optional<system::FileStatus> status = system::status_of(descriptor.get());
+  if (!status) bad_input(path, std::string("cannot be examined: ") + std::strerror(errno));
+  const bool regular = status->kind == system::FileStatus::Kind::kRegular;
+  if (regular && status->bytes > 0) {
+    return std::make_shared<DescriptorFile>(descriptor.release(), path, status->bytes, false);
   }
-  ::close(descriptor);
-  if (!known) bad_input(path, std::string("cannot be examined: ") + std::strerror(error));
-  if (S_ISDIR(status.st_mode)) bad_input(path, wanted, "a directory");
-  if (!S_ISREG(status.st_mode)) bad_input(path, "a regular file", "a device, pipe or socket");
+  if (status->kind == system::FileStatus::Kind::kFolder) bad_input(path, wanted, "a directory");
+  if (!regular) bad_input(path, "a regular file", "a device, pipe or socket");
   bad_input(path, wanted, "an empty file");
 }
 

@@ -1,4 +1,4 @@
-// The whole of what the passes need from a thread library: run a loop over disjoint blocks.
+// The whole of what the passes need from threads: run a loop over disjoint blocks.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,21 @@
 
 namespace isoweave {
 
+class Arena;
+
 // How many threads a pass may use. Passes give the same result for any number.
 class Executor {
  public:
   static constexpr int kMostThreads = 4096;
 
   // 0: one per processor. 1: everything runs in the calling thread. Throws std::invalid_argument for others than 0 to
-  // kMostThreads.
+  // kMostThreads. In a build without threads it is 1 for any number.
   explicit Executor(int threads = 0);
 
   int threads() const { return threads_; }
+
+  // Whether this build may start threads at all.
+  static bool has_threads();
 
   // Calls body(begin, end) for consecutive ranges that cover [0, count), of `grain` elements each but the last,
   // in any order and at the same time. The ranges depend on count and grain only, never on the number of
@@ -41,10 +46,8 @@ class Executor {
   using BlockFunction = void (*)(void*, std::int64_t, std::int64_t);
   void run(std::int64_t count, std::int64_t grain, void* body, BlockFunction call) const;
 
-  struct Arena;
-
   int threads_;
-  std::shared_ptr<Arena> arena_;  // of worker threads; shared by copies
+  std::shared_ptr<Arena> arena_;  // of worker threads; shared by copies, none for one thread
 };
 
 }  // namespace isoweave

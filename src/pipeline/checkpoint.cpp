@@ -1,21 +1,21 @@
 #include "pipeline/checkpoint.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include "files/atomic_file.hpp"
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
+#include "system/descriptor.hpp"
+#include "system/durable_file.hpp"
+#include "system/process.hpp"
 
 namespace isoweave {
 namespace {
@@ -93,16 +93,14 @@ constexpr int kLockAttempts = 100;
 
 // Whether the file that was locked is still the one of that name: who held it before removes it.
 bool is_still_there(int fd, const std::string& path) {
-  struct stat locked {};
-  struct stat named {};
-  return ::fstat(fd, &locked) == 0 && ::stat(path.c_str(), &named) == 0 && locked.st_dev == named.st_dev &&
-         locked.st_ino == named.st_ino;
+  const std::optional<system::FileStatus> locked = system::status_of(fd);
+  const std::optional<system::FileStatus> named = system::status_of(path);
+  return locked && named && locked->same_file(*named);
 }
 
 [[noreturn]] void refuse_lock(const std::string& folder, int fd) {
   std::array<char, 20> digits{};
-  const ssize_t got = ::pread(fd, digits.data(), digits.size(), 0);
-  ::close(fd);
+  const std::int64_t got = system::read_at(fd, 0, std::as_writable_bytes(std::span(digits)));
   const std::string process(digits.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
   const bool known = !process.empty() && process.find_first_not_of("0123456789") == std::string::npos;
   throw CannotWrite(folder + ": expected a folder of saved states that nobody uses, found a run that goes on in it" +
@@ -111,14 +109,12 @@ bool is_still_there(int fd, const std::string& path) {
 
 // A locked descriptor; -1 when the file has gone meanwhile.
 int open_lock(const std::string& folder, const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);  // the umask takes its share
-  if (fd < 0) {
+  system::Descriptor fd(system::open_descriptor(path, system::Opening::kWriteOrCreate));
+  if (fd.get() < 0) {
     throw CannotWrite(folder + ": cannot be locked against other processes: " + std::generic_category().message(errno));
   }
-  if (!try_lock(fd, path)) refuse_lock(folder, fd);
-  if (is_still_there(fd, path)) return fd;
-  ::close(fd);
-  return -1;
+  if (!try_lock(fd.get(), path)) refuse_lock(folder, fd.get());
+  return is_still_there(fd.get(), path) ? fd.release() : -1;
 }
 
 }  // namespace
@@ -126,9 +122,10 @@ int open_lock(const std::string& folder, const std::string& path) {
 CheckpointLock::CheckpointLock(const std::string& folder) : path_(folder + "/lock") {
   for (int attempt = 0; fd_ < 0 && attempt < kLockAttempts; ++attempt) fd_ = open_lock(folder, path_);
   if (fd_ < 0) throw CannotWrite(folder + ": cannot be locked against other processes: they take turns at it");
-  const std::string process = std::to_string(::getpid());
+  const std::string process = std::to_string(system::process_number());
   // Only who is refused reads it, for the message.
-  [[maybe_unused]] const bool told = ::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, process.data(), process.size(), 0) > 0;
+  [[maybe_unused]] const bool told =
+      system::cut_off(fd_, 0) && system::write_all(fd_, std::as_bytes(std::span(process)));
 }
 
 CheckpointLock::CheckpointLock(CheckpointLock&& other) noexcept
@@ -136,8 +133,8 @@ CheckpointLock::CheckpointLock(CheckpointLock&& other) noexcept
 
 CheckpointLock::~CheckpointLock() {
   if (fd_ < 0) return;
-  ::unlink(path_.c_str());
-  ::close(fd_);
+  system::remove_name(path_);
+  system::close_descriptor(fd_);
 }
 
 Checkpoint read_checkpoint(const std::string& folder) {

@@ -90,7 +90,7 @@ class LabelsSweep {
         volume_(task_.volume),
         control_(control),
         executor_(control.threads),
-        window_(numbers_) {
+        window_(numbers_, 0, SliceWindow::reading_with(executor_.threads())) {
     warn_of_floats(map.info().type, labels);
     make_lanes(labels);
   }

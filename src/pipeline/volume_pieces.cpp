@@ -16,8 +16,9 @@ VolumePieces::VolumePieces(const Task& task, SurfaceField& field, Extractor& ext
 
 void VolumePieces::open() {
   const std::int64_t first = extractor_.slices_for(1).first;
-  window_.emplace(field_.source(), first);
-  if (task_.attributes.values != nullptr) values_window_.emplace(*task_.attributes.values, first);
+  const SliceWindow::Reading reading = SliceWindow::reading_with(executor_.threads());
+  window_.emplace(field_.source(), first, reading);
+  if (task_.attributes.values != nullptr) values_window_.emplace(*task_.attributes.values, first, reading);
 }
 
 void VolumePieces::read(const Held& held, MeshReport& report) {

@@ -1,8 +1,32 @@
 #include "system/file_facts.hpp"
 
+#include <glob.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <memory>
 
 namespace isoweave::system {
+namespace {
+
+FileStatus::Kind kind_of(mode_t mode) {
+  if (S_ISREG(mode)) return FileStatus::Kind::kRegular;
+  if (S_ISDIR(mode)) return FileStatus::Kind::kFolder;
+  return S_ISFIFO(mode) || S_ISSOCK(mode) ? FileStatus::Kind::kPipe : FileStatus::Kind::kOther;
+}
+
+FileStatus status_from(const struct stat& status) {
+  return {kind_of(status.st_mode), static_cast<std::uint64_t>(status.st_size),
+          static_cast<std::uint64_t>(status.st_nlink), static_cast<std::uint64_t>(status.st_dev),
+          static_cast<std::uint64_t>(status.st_ino)};
+}
+
+// A folder that is not there holds no match; one that may not be listed might.
+int gives_up(const char*, int error) { return error == ENOENT || error == ENOTDIR ? 0 : 1; }
+
+}  // namespace
 
 std::optional<FileFacts> facts_of_file(const std::string& path) {
   struct stat status {};
@@ -13,6 +37,40 @@ std::optional<FileFacts> facts_of_file(const std::string& path) {
   const timespec& changed = status.st_mtim;
 #endif
   return FileFacts{static_cast<std::uint64_t>(status.st_size), changed.tv_sec, changed.tv_nsec};
+}
+
+std::optional<FileStatus> status_of(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return std::nullopt;
+  return status_from(status);
+}
+
+std::optional<FileStatus> status_of(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return status_from(status);
+}
+
+bool is_link(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
+}
+
+std::string resolve_links(const std::string& path) {
+  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr), &std::free);
+  return real ? real.get() : std::string();
+}
+
+bool may_write(const std::string& path) { return ::access(path.c_str(), W_OK) == 0; }
+
+std::optional<std::vector<std::string>> names_like(const std::string& pattern) {
+  glob_t found{};
+  const int result = ::glob(pattern.c_str(), GLOB_NOSORT, gives_up, &found);
+  std::vector<std::string> names;
+  for (std::size_t n = 0; result == 0 && n < found.gl_pathc; ++n) names.emplace_back(found.gl_pathv[n]);
+  ::globfree(&found);
+  if (result != 0 && result != GLOB_NOMATCH) return std::nullopt;
+  return names;
 }
 
 }  // namespace isoweave::system

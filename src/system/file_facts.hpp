@@ -1,9 +1,10 @@
-// Facts of a file by which a changed one is told.
+// Facts of files: what there is under a name or behind a descriptor, and by which a changed file is told.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace isoweave::system {
 
@@ -14,5 +15,32 @@ struct FileFacts {
 
 // Nothing for a name of no regular file.
 std::optional<FileFacts> facts_of_file(const std::string& path);
+
+struct FileStatus {
+  enum class Kind : std::uint8_t { kRegular, kFolder, kPipe, kOther };  // a socket is a pipe
+
+  Kind kind = Kind::kOther;
+  std::uint64_t bytes = 0;
+  std::uint64_t names = 0;             // of the same file
+  std::uint64_t device = 0, file = 0;  // no two files have both in common
+
+  bool same_file(const FileStatus& other) const { return device == other.device && file == other.file; }
+};
+
+// Of what is open, or has a name, behind symbolic links. Nothing where the system does not tell: errno says why.
+std::optional<FileStatus> status_of(int descriptor);
+std::optional<FileStatus> status_of(const std::string& path);
+
+// Whether the name itself is that of a symbolic link.
+bool is_link(const std::string& path);
+
+// The name of what links lead to; empty where errno says why.
+std::string resolve_links(const std::string& path);
+
+// False where errno says why.
+bool may_write(const std::string& path);
+
+// Names of files that a pattern of the shell stands for, in any order; nothing where a folder cannot be listed.
+std::optional<std::vector<std::string>> names_like(const std::string& pattern);
 
 }  // namespace isoweave::system

@@ -10,7 +10,8 @@
 #include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "volume/fields.hpp"
-#include "volume/stream_source.hpp"
+#include "volume/row_source.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 namespace {

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <span>
 
+#include "parallel/parallel.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr std::size_t kRunBytes = std::size_t{8} << 20;
 SliceWindow::SliceWindow(SliceSource& source, std::int64_t first, Reading reading)
     : source_(source),
       held_(source.held()),
-      how_(reading),
+      how_(Executor::has_threads() ? reading : Reading::kInPlace),
       slice_bytes_(source.info().slice_bytes()),
       slices_(source.info().dims[2]),
       base_(std::clamp<std::int64_t>(first, 0, slices_)),

@@ -20,7 +20,10 @@ class SliceWindow {
  public:
   enum class Reading : std::uint8_t { kAhead, kInPlace };  // by a thread of its own; by advance(), and nothing ahead
 
-  // The source is read from slice `first` on.
+  // The one for whoever has so many threads: with one, nothing starts another.
+  static Reading reading_with(int threads) { return threads > 1 ? Reading::kAhead : Reading::kInPlace; }
+
+  // The source is read from slice `first` on; in a build without threads it is read in place.
   explicit SliceWindow(SliceSource& source, std::int64_t first = 0, Reading reading = Reading::kAhead);
   ~SliceWindow();
   SliceWindow(const SliceWindow&) = delete;

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "volume/stream_source.hpp"
 #include "volume/threshold.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 namespace {

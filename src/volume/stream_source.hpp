@@ -11,6 +11,7 @@
 #include "files/length_units.hpp"
 #include "isoweave/volume.hpp"
 #include "volume/row_source.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 
@@ -43,18 +44,11 @@ class StreamSource final : public RowSource {
   std::uint64_t place_ = 0;  // the byte of the samples that the stream stands at
 };
 
-// Throws std::invalid_argument unless [first, first + count) lies in the volume, not before `next`, and fits `out`.
-void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t first, std::int64_t count,
-                       std::size_t out_bytes);
-
 // Takes unit and notes over. A conflict becomes what open_volume refuses unless the caller gives the spacing.
 void take_unit(OpenedVolume& volume, const CommonUnit& unit);
 
 // Reverses the bytes of every sample of `bytes_each` bytes.
 void swap_sample_bytes(std::span<std::byte> samples, std::size_t bytes_each);
-
-// Size of the volume in bytes. Throws BadInput unless each dimension is at least 1 and the size fits in 63 bits.
-std::uint64_t checked_volume_bytes(const VolumeInfo& info);
 
 // Throws BadInput unless a stored stream of `stored` bytes can hold `bytes` at all, given that one stored byte
 // decodes to at most `largest_ratio`. A header's claim is believed only after this.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "volume/formats/chunked/array_axes.hpp"
-#include "volume/stream_source.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 

@@ -1,7 +1,5 @@
 #include "volume/formats/hdf5/hdf5_library.hpp"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <span>
@@ -9,6 +7,7 @@
 
 #include "files/input_file.hpp"
 #include "files/printable.hpp"
+#include "system/shared_library.hpp"
 #include "volume/formats/chunked/lzf.hpp"
 
 namespace isoweave {
@@ -36,7 +35,7 @@ std::size_t decode_lzf_chunk(unsigned flags, std::size_t values, const unsigned*
 
 template <class Function>
 void load(void* library, const char* name, Function& function, const std::string& path) {
-  function = reinterpret_cast<Function>(::dlsym(library, name));
+  function = reinterpret_cast<Function>(system::find_symbol(library, name));
   if (function == nullptr) bad_input(path, "function " + std::string(name) + " in libhdf5", "a library without it");
 }
 
@@ -44,7 +43,7 @@ void load(void* library, const char* name, Function& function, const std::string
 void* load_library(const std::string& path) {
   const std::filesystem::path built_with = ISOWEAVE_HDF5_LIBRARY;
   for (const std::string& name : {built_with.string(), built_with.filename().string()}) {
-    if (void* const library = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
+    if (void* const library = system::load_library(name)) return library;
   }
   bad_input(path, "a format of this system",
             "HDF5, whose library " + built_with.filename().string() + " cannot be loaded");

@@ -1,10 +1,7 @@
 #include "volume/formats/images/slice_files.hpp"
 
-#include <glob.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -13,6 +10,7 @@
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
 #include "files/printable.hpp"
+#include "system/file_facts.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/unread_formats.hpp"
 
@@ -140,9 +138,6 @@ std::vector<std::string> files_below(const std::string& top) {
   return files;
 }
 
-// A folder that is not there holds no match; one that may not be listed might.
-int gives_up(const char*, int error) { return error == ENOENT || error == ENOTDIR ? 0 : 1; }
-
 }  // namespace
 
 bool natural_less(std::string_view a, std::string_view b) {
@@ -182,15 +177,11 @@ bool is_pattern(const std::string& path) {
 std::vector<std::string> files_of_folder(const std::string& folder) { return entries_of(folder).files; }
 
 std::vector<std::string> files_of_pattern(const std::string& pattern) {
-  glob_t found{};
-  const int result = ::glob(pattern.c_str(), GLOB_NOSORT, gives_up, &found);
-  std::vector<std::string> files;
-  for (std::size_t n = 0; result == 0 && n < found.gl_pathc; ++n) files.emplace_back(found.gl_pathv[n]);
-  ::globfree(&found);
-  if (result != 0 && result != GLOB_NOMATCH) bad_input(pattern, "cannot be expanded: a folder cannot be listed");
-  if (files.empty()) bad_input(pattern, "files that match the pattern", "none");
-  std::sort(files.begin(), files.end(), natural_less);
-  return files;
+  std::optional<std::vector<std::string>> files = system::names_like(pattern);
+  if (!files) bad_input(pattern, "cannot be expanded: a folder cannot be listed");
+  if (files->empty()) bad_input(pattern, "files that match the pattern", "none");
+  std::sort(files->begin(), files->end(), natural_less);
+  return std::move(*files);
 }
 
 namespace {

@@ -1,0 +1,56 @@
+# Two libraries in one: the core, which makes meshes in memory of volumes in memory and needs the standard library and
+# threads only, and the formats, which need zlib, nlohmann-json and what cmake/readers.cmake finds. Both are compiled once,
+# as objects; `isoweave` is made of both, `isoweave_core` of the first.
+# The rooms of the core, and of the rooms that are not wholly in it the files that those need:
+set(ISOWEAVE_CORE_ROOMS system parallel lattice extract select simplify device measure output pipeline)
+set(ISOWEAVE_CORE_FILES
+    files/atomic_file.cpp files/crc32.cpp files/from_chars.cpp files/header_text.cpp files/input_file.cpp files/length_units.cpp
+    files/printable.cpp files/state_file.cpp
+    mesh/mesh_in_memory.cpp mesh/read/match_place.cpp mesh/read/welder.cpp
+    volume/axes.cpp volume/fields.cpp volume/generate.cpp volume/histogram.cpp volume/label_numbers.cpp volume/labels.cpp
+    volume/noise.cpp volume/part_of_volume.cpp volume/row_source.cpp volume/sample_type.cpp volume/samples.cpp
+    volume/slice_window.cpp volume/smoothed_mask.cpp volume/volume_in_memory.cpp volume/volume_sizes.cpp)
+
+# isoweave_split_sources(CORE FORMATS SOURCE...)
+function(isoweave_split_sources core formats)
+  set(in_core)
+  set(in_formats)
+  foreach(source ${ARGN})
+    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR}/src ${source})
+    string(REGEX MATCH "^[^/]+" room ${name})
+    if(room IN_LIST ISOWEAVE_CORE_ROOMS OR name IN_LIST ISOWEAVE_CORE_FILES)
+      list(APPEND in_core ${source})
+    else()
+      list(APPEND in_formats ${source})
+    endif()
+  endforeach()
+  set(${core} ${in_core} PARENT_SCOPE)
+  set(${formats} ${in_formats} PARENT_SCOPE)
+endfunction()
+
+# isoweave_objects(NAME SOURCE...): what is compiled. Only what public headers declare is to be seen from outside of a
+# shared library (include/isoweave/export.hpp).
+function(isoweave_objects name)
+  add_library(${name} OBJECT ${ARGN})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_link_libraries(${name} PRIVATE isoweave_options)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                                           VISIBILITY_INLINES_HIDDEN ON)
+  isoweave_set_processor(${name})
+endfunction()
+
+# isoweave_library(NAME TYPE OBJECTS...): what users link.
+function(isoweave_library name type)
+  add_library(${name} ${type})
+  foreach(objects ${ARGN})
+    target_sources(${name} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
+  target_include_directories(${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  isoweave_link_threads(${name})
+  isoweave_link_cuda(${name})
+endfunction()

@@ -1,0 +1,38 @@
+# Threads of the loops (src/parallel). ISOWEAVE_THREADS is TBB (oneTBB), OWN (threads of our own), NONE (everything in the
+# calling thread, and no thread is started for reading and writing either) or AUTO (TBB where it is there, else OWN).
+set(ISOWEAVE_THREADS AUTO CACHE STRING "Threads of the loops: AUTO, TBB, OWN or NONE")
+set_property(CACHE ISOWEAVE_THREADS PROPERTY STRINGS AUTO TBB OWN NONE)
+if(NOT ISOWEAVE_THREADS MATCHES "^(AUTO|TBB|OWN|NONE)$")
+  message(FATAL_ERROR "ISOWEAVE_THREADS: expected AUTO, TBB, OWN or NONE, found '${ISOWEAVE_THREADS}'")
+endif()
+
+find_package(Threads REQUIRED)
+set(ISOWEAVE_HAS_TBB OFF)
+if(ISOWEAVE_THREADS STREQUAL "AUTO")
+  find_package(TBB QUIET)
+elseif(ISOWEAVE_THREADS STREQUAL "TBB")
+  find_package(TBB REQUIRED)
+endif()
+if(TBB_FOUND AND ISOWEAVE_THREADS MATCHES "^(AUTO|TBB)$")
+  set(ISOWEAVE_HAS_TBB ON)
+  set(ISOWEAVE_LOOPS tbb)
+elseif(ISOWEAVE_THREADS STREQUAL "NONE")
+  set(ISOWEAVE_LOOPS no_threads)
+else()
+  set(ISOWEAVE_LOOPS own_threads)
+endif()
+message(STATUS "isoweave: loops by ${ISOWEAVE_LOOPS}")
+
+# Of the sources of loops, one.
+set(others tbb no_threads own_threads)
+list(REMOVE_ITEM others ${ISOWEAVE_LOOPS})
+foreach(name ${others})
+  list(REMOVE_ITEM ISOWEAVE_SOURCES ${PROJECT_SOURCE_DIR}/src/parallel/${name}.cpp)
+endforeach()
+
+function(isoweave_link_threads target)
+  target_link_libraries(${target} PRIVATE Threads::Threads)
+  if(ISOWEAVE_HAS_TBB)
+    target_link_libraries(${target} PRIVATE TBB::tbb)
+  endif()
+endfunction()
