@@ -60,12 +60,11 @@ BulkOptions bulk_options(const Arguments& arguments, const VolumeInfo& volume) {
   MeshOptions options;
   options.iso = arguments.iso;
   const double voxel = mean_voxel(volume.geometry);
-  const Lattice lattice{volume.dims};
   const double a0 = voxel * voxel;
   return {volume,
           stored_rule(volume, options),
           false,
-          {{lattice.row(), lattice.plane()}, a0, retire_cost(arguments.error * voxel, a0)}};
+          {VertexNumbering::of_cube_edges(volume.dims), a0, retire_cost(arguments.error * voxel, a0)}};
 }
 
 std::unique_ptr<SliceSource> open(const std::string& volume) {

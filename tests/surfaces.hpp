@@ -90,10 +90,9 @@ struct SurfaceCase {
   double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
 
   ZoneOptions zone() const {
-    const Lattice lattice{volume.dims};
     const double a0 = voxel() * voxel();
     const auto& [x, y, z] = volume.spacing;
-    return {{lattice.row(), lattice.plane()},
+    return {VertexNumbering::of_cube_edges(volume.dims),
             a0,
             retire_cost(error * voxel(), a0),
             drop_specks,

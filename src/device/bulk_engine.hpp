@@ -25,7 +25,7 @@ class BulkEngine final : public DeviceEngine {
  public:
   BulkEngine(Device device, const BulkOptions& options) : device_(std::move(device)), options_(options) {
     const std::array<std::int64_t, 3>& dims = options.volume.dims;
-    bits_.lattice = {dims};
+    bits_.numbering = VertexNumbering::of_cube_edges(dims);
     bits_.closed = options.rule.closed;
     bits_.rows = dims[1] + 2;
     bits_.words = (dims[0] + 2 + 63) / 64;
@@ -40,6 +40,7 @@ class BulkEngine final : public DeviceEngine {
     device_.clear(list_sizes_);
   }
 
+  VertexNumbering numbering() const override { return bits_.numbering; }
   std::int64_t layers_left() const override { return end_layer_ - next_layer_; }
 
   std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {

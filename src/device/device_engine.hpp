@@ -39,6 +39,8 @@ class DeviceEngine {
   DeviceEngine& operator=(const DeviceEngine&) = delete;
   virtual ~DeviceEngine() = default;
 
+  virtual VertexNumbering numbering() const = 0;
+
   virtual std::int64_t layers_left() const = 0;
 
   // Slices [first, end) that the next `layers` layers read, unclipped.

@@ -7,7 +7,7 @@
 #include "extract/cube_rules.hpp"
 #include "extract/gradient.hpp"
 #include "extract/tables.hpp"
-#include "lattice/lattice.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "simplify/zone_view.hpp"
 
 namespace isoweave {
@@ -46,7 +46,7 @@ struct SliceRing {
 // Slice n = 0 is the front that the slab before has left. A word is named by its slice or layer, its row and its place
 // in the row; word_of() gives its place in the arrays.
 struct SlabBits {
-  Lattice lattice;
+  VertexNumbering numbering;
   bool closed = true;
   std::int64_t first_layer = -1;  // of the slab
   std::int64_t rows = 0;          // padded, of a slice
@@ -58,12 +58,12 @@ struct SlabBits {
     return (n * rows + row) * words + w;
   }
   ISOWEAVE_HD bool is_sample(std::int64_t at, int axis) const {
-    return at >= 0 && at < lattice.dims[static_cast<std::size_t>(axis)];
+    return at >= 0 && at < numbering.lattice.dims[static_cast<std::size_t>(axis)];
   }
 
   // Edges along an axis that start at `at` on it, which is counted in samples, and exist.
   ISOWEAVE_HD bool has_edge(std::int64_t at, int axis) const {
-    return closed ? at + 1 <= lattice.dims[static_cast<std::size_t>(axis)]
+    return closed ? at + 1 <= numbering.lattice.dims[static_cast<std::size_t>(axis)]
                   : is_sample(at, axis) && is_sample(at + 1, axis);
   }
 
@@ -78,7 +78,7 @@ struct SlabBits {
 
   // The x-edges, and with them the cells, of word w of a row.
   ISOWEAVE_HD std::uint64_t edge_mask(std::int64_t w) const {
-    const std::int64_t nx = lattice.dims[0];
+    const std::int64_t nx = numbering.lattice.dims[0];
     return closed ? bits_between(w, 0, nx + 1) : bits_between(w, 1, nx);
   }
 
@@ -246,7 +246,7 @@ struct ExtractPasses {
       at[edges.axis] = at[edges.axis] + t;
       Vertex vertex;
       vertex.position = {at[0] * spacing[0], at[1] * spacing[1], at[2] * spacing[2]};
-      vertex.id = bits.lattice.edge_id(i, edges.j, edges.k, edges.axis);
+      vertex.id = bits.numbering.id(i, edges.j, edges.k, static_cast<std::uint32_t>(edges.axis));
       zone.vertices[v] = vertex;
       zone.states[v] = VertexState::kIncomplete;
       zone.turn_keys[v] = 0;

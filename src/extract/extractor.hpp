@@ -6,6 +6,7 @@
 
 #include "extract/surface_piece.hpp"
 #include "files/state_file.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "volume/slice_window.hpp"
 
 namespace isoweave {
@@ -23,6 +24,9 @@ class Extractor {
   Extractor(const Extractor&) = delete;
   Extractor& operator=(const Extractor&) = delete;
   virtual ~Extractor() = default;
+
+  // How the vertices of the surface are numbered.
+  virtual VertexNumbering numbering() const = 0;
 
   // Layers not yet extracted.
   virtual std::int64_t layers_left() const = 0;

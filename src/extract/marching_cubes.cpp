@@ -40,7 +40,7 @@ void scan_one(std::uint32_t& count, std::uint64_t& sum) {
 
 MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor)
     : dims_(volume.dims),
-      lattice_{options.part_of.value_or(PartOfLattice{volume.dims, {}}).dims},
+      numbering_(VertexNumbering::of_cube_edges(options.part_of.value_or(PartOfLattice{volume.dims, {}}).dims)),
       first_(options.part_of.value_or(PartOfLattice{}).first),
       type_(volume.type),
       spacing_(volume.geometry.spacing),
@@ -262,7 +262,7 @@ void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axi
   if (crossings == 0) return;
   const auto j = static_cast<double>(first_[1] + edges.j);
   const auto k = static_cast<double>(first_[2] + edges.k);
-  const std::uint64_t first_id = lattice_.edge_id(first_[0] - 1, first_[1] + edges.j, first_[2] + edges.k, Axis);
+  const std::uint64_t first_id = numbering_.id(first_[0] - 1, first_[1] + edges.j, first_[2] + edges.k, Axis);
   Vec3* position = piece.positions.data() + (number - front_size_);
   std::uint64_t* id = piece.ids.data() + (number - front_size_);
   for_each_bit(crossings, w, [&](std::int64_t bit) {

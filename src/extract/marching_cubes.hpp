@@ -17,7 +17,7 @@
 #include "extract/row_kernels.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
-#include "lattice/lattice.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "parallel/parallel.hpp"
 #include "volume/slice_window.hpp"
 
@@ -36,6 +36,7 @@ class MarchingCubes final : public Extractor {
   MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor);
 
   // The first layer is -1, in the pad, and empty in open mode.
+  VertexNumbering numbering() const override { return numbering_; }
   std::int64_t layers_left() const override { return end_layer_ - next_layer_; }
   std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override;
 
@@ -102,7 +103,7 @@ class MarchingCubes final : public Extractor {
   CellRow cell_row(std::size_t n, std::size_t row) const;
 
   std::array<std::int64_t, 3> dims_;
-  Lattice lattice_;                    // of the whole
+  VertexNumbering numbering_;          // of the whole
   std::array<std::int64_t, 3> first_;  // sample in it
   SampleType type_;
   std::array<double, 3> spacing_;

@@ -25,6 +25,7 @@ class Pass {
 
   const Task& task() const { return task_; }
   const Executor& executor() const { return sweep_.executor(); }
+  VertexNumbering numbering() const { return extractor_->numbering(); }
 
   // Returns the number of triangles that were extracted.
   std::uint64_t run(PieceStage* stage) {
@@ -56,7 +57,7 @@ ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& opt
   all.components = nullptr;
   all.smooth = 0;  // which connects what is connected
   Pass pass(volume, all, control);
-  ComponentFinder finder(Lattice{volume.info().dims}, pass.executor());
+  ComponentFinder finder(pass.numbering(), pass.executor());
   pass.run(&finder);
   ComponentChoice choice = finder.choose(rule);
   choice.surface = surface_text(pass.task().volume, all);
@@ -69,7 +70,7 @@ std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options
   counted.smooth = 0;  // it has as many
   Pass pass(volume, counted, control);
   if (counted.components == nullptr) return pass.run(nullptr);
-  ComponentFilter filter(*counted.components, Lattice{volume.info().dims}, volume.info().path, pass.executor());
+  ComponentFilter filter(*counted.components, pass.numbering(), volume.info().path, pass.executor());
   pass.run(&filter);
   return filter.triangles();
 }

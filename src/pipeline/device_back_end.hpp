@@ -16,6 +16,7 @@ class DeviceExtractor final : public Extractor {
   // The engine must stay.
   explicit DeviceExtractor(DeviceEngine& engine) : engine_(engine) {}
 
+  VertexNumbering numbering() const override { return engine_.numbering(); }
   std::int64_t layers_left() const override { return engine_.layers_left(); }
   std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const override {
     return engine_.slices_for(layers);

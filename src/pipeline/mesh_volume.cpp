@@ -35,7 +35,7 @@ class VolumeRun final : public SavedRun::State {
     std::vector<PieceStage*> stages;
     if (const auto& components = task_.surface.components) {
       check_components(*components);
-      filter_.emplace(*components, Lattice{task_.volume.dims}, task_.volume.path, sweep_.executor());
+      filter_.emplace(*components, extractor_->numbering(), task_.volume.path, sweep_.executor());
       stages.push_back(&*filter_);
     }
     sweep_.begin(*extractor_, std::move(stages), back_end_.get());

@@ -41,7 +41,7 @@ SurfaceMeasure measure_of(const TriangleMesh& mesh, const SimplifyOptions& optio
   const double a0 = mean_face(mesh, executor);
   const double side = std::sqrt(a0);
   const Vec3 largest = options.max_distance.value > 0 ? largest_triangle(mesh) : Vec3{};
-  return {a0, side, EdgeNumbering{}, {side, side, side}, largest, mesh.unit};
+  return {a0, side, VertexNumbering::of_file(), {side, side, side}, largest, mesh.unit};
 }
 
 // Where distances are bounded, pieces would have to come in the order of their heights.

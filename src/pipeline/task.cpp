@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "isoweave/error.hpp"
-#include "lattice/lattice.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
@@ -40,11 +40,10 @@ std::vector<double> level_errors(const SimplifyOptions& options, double error, d
 }
 
 SurfaceMeasure measure_of(const VolumeInfo& volume) {
-  const Lattice lattice{volume.dims};
   const double voxel = mean_voxel(volume.geometry);
   const auto& spacing = volume.geometry.spacing;
   const Vec3 cell{spacing[0], spacing[1], spacing[2]};
-  return {voxel * voxel, voxel, {lattice.row(), lattice.plane()}, cell, cell, volume.geometry.unit};
+  return {voxel * voxel, voxel, VertexNumbering::of_cube_edges(volume.dims), cell, cell, volume.geometry.unit};
 }
 
 // An open volume of one sample along an axis has crossings and no triangles, which only the simplifier can stand.
@@ -124,7 +123,7 @@ RunControl passing_control(const RunControl& control) {
 
 const VolumeInfo& checked_volume(const VolumeInfo& volume) {
   require_usable(volume);
-  if (!Lattice::fits(volume.dims)) {
+  if (!VertexNumbering::of_cube_edges(volume.dims).fits()) {
     throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + size_text(volume));
   }
   return volume;

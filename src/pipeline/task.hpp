@@ -32,7 +32,7 @@ struct SimplifyTask {
 struct SurfaceMeasure {
   double a0 = 1;  // a mean face, length squared
   double side = 1;
-  EdgeNumbering numbering{};
+  VertexNumbering numbering{};
   Vec3 cell{};     // lengths of a box that holds a few triangles
   Vec3 largest{};  // lengths of a box that no triangle exceeds
   std::string unit;

@@ -59,7 +59,7 @@ void VolumePieces::make(SurfacePiece& piece, MeshReport& report) {
   planner_.note_extracted(slab);
   add_extracted(slab, report);
   if (values_window_) {
-    sample_values(*values_window_, Lattice{field_.info().dims}, field_.info().geometry.spacing, executor_, piece);
+    sample_values(*values_window_, extractor_.numbering(), field_.info().geometry.spacing, executor_, piece);
   }
   clock.lap(report.seconds_extract);
 }

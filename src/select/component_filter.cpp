@@ -95,7 +95,7 @@ void ComponentFilter::drop(SurfacePiece& piece) const {
 
 std::uint64_t ComponentFilter::count_open_edges(const SurfacePiece& piece) const {
   return static_cast<std::uint64_t>(
-      std::count_if(piece.ids.begin(), piece.ids.end(), [&](std::uint64_t id) { return lattice_.is_on_border(id); }));
+      std::count_if(piece.ids.begin(), piece.ids.end(), [&](std::uint64_t id) { return numbering_.is_on_border(id); }));
 }
 
 }  // namespace isoweave

@@ -8,7 +8,7 @@
 
 #include "extract/piece_stage.hpp"
 #include "isoweave/components.hpp"
-#include "lattice/lattice.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 
@@ -17,8 +17,9 @@ namespace isoweave {
 class ComponentFilter final : public PieceStage {
  public:
   // path: of the volume. The choice must outlive the filter.
-  ComponentFilter(const ComponentChoice& choice, const Lattice& lattice, std::string path, const Executor& executor)
-      : choice_(choice), lattice_(lattice), path_(std::move(path)), executor_(executor) {}
+  ComponentFilter(const ComponentChoice& choice, const VertexNumbering& numbering, std::string path,
+                  const Executor& executor)
+      : choice_(choice), numbering_(numbering), path_(std::move(path)), executor_(executor) {}
 
   // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more. Throws
   // BadInput, and nothing is changed, when a component is kept in part: the choice is not one of this surface.
@@ -47,7 +48,7 @@ class ComponentFilter final : public PieceStage {
   std::uint64_t count_open_edges(const SurfacePiece& piece) const;
 
   const ComponentChoice& choice_;
-  const Lattice lattice_;
+  const VertexNumbering numbering_;
   const std::string path_;
   const Executor& executor_;
   std::vector<std::uint8_t> front_is_kept_;  // of all vertices that the next piece inherits

@@ -51,10 +51,10 @@ void ComponentFinder::begin(const SurfacePiece& piece) {
 // one.
 ComponentFinder::LayerEnd ComponentFinder::end_of_layer(const SurfacePiece& piece, std::uint32_t first_vertex) const {
   const std::uint64_t* const ids = piece.ids.begin();
-  const std::int64_t layer = lattice_.layer_of(ids[first_vertex - piece.inherited]);
+  const std::int64_t layer = numbering_.layer_of(ids[first_vertex - piece.inherited]);
   const std::uint64_t* const end =
       std::partition_point(ids + (first_vertex - piece.inherited), piece.ids.end(),
-                           [&](std::uint64_t id) { return lattice_.layer_of(id) == layer; });
+                           [&](std::uint64_t id) { return numbering_.layer_of(id) == layer; });
   const std::uint32_t vertex = piece.inherited + static_cast<std::uint32_t>(end - ids);
   const auto* const triangle = std::partition_point(piece.triangles.begin(), piece.triangles.end(), [&](const auto& t) {
     return std::max({t[0], t[1], t[2]}) < vertex;

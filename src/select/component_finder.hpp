@@ -8,7 +8,7 @@
 
 #include "extract/piece_stage.hpp"
 #include "isoweave/components.hpp"
-#include "lattice/lattice.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 
@@ -22,7 +22,8 @@ namespace isoweave {
 // what is connected on a slice. The first slice of an open volume has no layer below: there each vertex is a seed.
 class ComponentFinder final : public PieceStage {
  public:
-  ComponentFinder(const Lattice& lattice, const Executor& executor) : lattice_(lattice), executor_(executor) {}
+  ComponentFinder(const VertexNumbering& numbering, const Executor& executor)
+      : numbering_(numbering), executor_(executor) {}
 
   // Looks at the next piece, of one layer or more. Throws OverMemory at 2^32 seeds.
   void apply(SurfacePiece& piece) override;
@@ -53,7 +54,7 @@ class ComponentFinder final : public PieceStage {
   void list_front(const SurfacePiece& piece);
   void sum_up();
 
-  const Lattice lattice_;
+  const VertexNumbering numbering_;
   const Executor& executor_;
 
   // Of the whole surface, in the order of the vertices.

@@ -71,34 +71,6 @@ ISOWEAVE_HD inline std::uint64_t mix_bits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// Ids of mesh edges from the ids of their ends, unique in the whole surface.
-//
-// On a lattice the ends are edges of one cell: their points differ by -1, 0 or 1 along each axis, and the smaller end
-// and one of fewer than 256 differences name the edge. For a mesh file the ends are positions in the file below 2^32.
-struct EdgeNumbering {
-  std::uint64_t row = 0;  // of the padded lattice; 0 for a mesh file
-  std::uint64_t plane = 0;
-
-  ISOWEAVE_HD std::uint64_t edge_id(std::uint64_t a, std::uint64_t b) const {
-    const std::uint64_t low = a < b ? a : b;
-    const std::uint64_t high = a < b ? b : a;
-    if (row == 0) return low << 32 | high;
-    // The difference of the ids, made positive, in mixed radix: each digit is below 4 as row, plane / row >= 3.
-    const std::uint64_t step = high - low + 2 + 3 * (1 + row + plane);
-    const std::uint64_t points = step / 3;
-    const std::uint64_t z = quotient(points, plane);
-    const std::uint64_t y = quotient(points - z * plane, row);
-    const std::uint64_t x = points - z * plane - y * row;
-    return low * 256 + step % 3 + 3 * (x + 4 * (y + 4 * z));
-  }
-
- private:
-  // a / b where that is below 4: a division takes longer.
-  ISOWEAVE_HD static std::uint64_t quotient(std::uint64_t a, std::uint64_t b) {
-    return std::uint64_t{a >= b} + std::uint64_t{a >= 2 * b} + std::uint64_t{a >= 3 * b};
-  }
-};
-
 // A face keeps its side and stays a face when its normal, of any length, changes so. A face without area imposes
 // nothing.
 template <class Real>

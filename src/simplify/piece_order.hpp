@@ -29,8 +29,7 @@ class PieceOrder {
   // The same of the new vertices.
   std::span<const std::size_t> vertex_column_starts() const { return new_vertices_.start; }
 
-  // Of the n-th triangle, and of the n-th new vertex: its place in the piece.
-  std::uint32_t place_of_triangle(std::size_t n) const { return by_column_.items[n]; }
+  // Of the n-th new vertex: its place in the piece.
   std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }
 
   // Of a vertex that the piece gives a number.

@@ -192,6 +192,7 @@ void Zone::settle_vertices(std::span<const std::uint8_t> on_front, const Executo
       turn_keys[v] = kNoTurn;
       return;
     }
+    start_fan(*this, v);
     Star star;
     star.gather(*this, v);
     if (!corner_array_.empty() && !is_one_fan(star)) {

@@ -113,7 +113,6 @@ class Zone::Linker {
   bool link(Index n, Index v, TriangleRange own_column, std::vector<Index>& bad, Star& star) const {
     SidesAt sides;
     Index first = kNone;
-    std::uint32_t first_place = kNone;
     std::uint32_t corners = 0;
     Index least = kNone;
     Index last = 0;
@@ -126,9 +125,7 @@ class Zone::Linker {
           zone_.triangles[h >> 2].tie_low[h & 3] = 0;
           least = std::min(least, h >> 2);
           last = std::max(last, h >> 2);
-          const std::uint32_t place = zone_.order_.place_of_triangle((h - first_new_) >> 2);
-          first = place < first_place ? h : first;
-          first_place = std::min(first_place, place);
+          first = std::min(first, h);
           ++corners;
         },
         [&](Index from, Index h) { sides.arriving.add(from, h); });

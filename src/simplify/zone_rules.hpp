@@ -59,20 +59,27 @@ ISOWEAVE_HD inline Quadric border_plane(const ZoneView& zone, Index v, Index oth
   return size > 0 ? plane_quadric(across, dot(side, side) / (a0 * a0 * size)) : Quadric();
 }
 
-// Turns v's start back to the half-edge without a twin, if v lies on a border.
-ISOWEAVE_HD inline void start_at_border(const ZoneView& zone, Index v) {
+// Turns v's start to where its fan begins: the half-edge without a twin if v lies on a border, else that to the
+// neighbour with the smallest id. So a sum over the fan does not depend on the pieces in which its faces came.
+ISOWEAVE_HD inline void start_fan(const ZoneView& zone, Index v) {
   const Index first = zone.vertices[v].half_edge;
-  for (Index h = first; exists(zone.twin(h));) {
+  Index least = first;
+  std::uint64_t least_id = zone.vertices[zone.destination(first)].id;
+  Index h = first;
+  while (exists(zone.twin(h))) {
     h = next(zone.twin(h));
-    zone.vertices[v].half_edge = h;
-    if (h == first) return;
+    if (h == first) break;
+    const std::uint64_t id = zone.vertices[zone.destination(h)].id;
+    least = id < least_id ? h : least;
+    least_id = id < least_id ? id : least_id;
   }
+  zone.vertices[v].half_edge = exists(zone.twin(h)) ? least : h;
 }
 
-// Planes of the faces around v, weighted by area / 3, from its first face on counter-clockwise; then, on an open
+// Planes of the faces around v, weighted by area / 3, from the start of its fan on counter-clockwise; then, on an open
 // border, planes through the two border edges perpendicular to their faces.
 ISOWEAVE_HD inline void give_initial_quadric(const ZoneView& zone, Index v) {
-  start_at_border(zone, v);
+  start_fan(zone, v);
   const Index first = zone.vertices[v].half_edge;
   Quadric sum;
   Index h = first;

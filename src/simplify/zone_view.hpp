@@ -11,6 +11,7 @@
 #include <span>
 
 #include "isoweave/mesh.hpp"
+#include "lattice/vertex_numbering.hpp"
 #include "parallel/annotations.hpp"
 #include "simplify/edge_rules.hpp"
 #include "simplify/normal_quadric.hpp"
@@ -87,7 +88,7 @@ struct Turn {
 };
 
 struct ZoneOptions {
-  EdgeNumbering numbering;
+  VertexNumbering numbering;
   double a0 = 1;               // mean voxel face, length squared
   CostBits retire = 0;         // edges with a higher cost are retired
   bool drop_specks = false;    // a tetrahedron within its cost vanishes

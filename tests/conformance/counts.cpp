@@ -17,8 +17,8 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 ZoneOptions zone_options(const SurfaceCase& surface) {
   const double a0 = surface.voxel() * surface.voxel();
-  const Lattice lattice{surface.volume.dims};
-  ZoneOptions zone{{lattice.row(), lattice.plane()}, a0, retire_cost(surface.error * surface.voxel(), a0, 1)};
+  ZoneOptions zone{VertexNumbering::of_cube_edges(surface.volume.dims), a0,
+                   retire_cost(surface.error * surface.voxel(), a0, 1)};
   zone.drop_specks = surface.drop_specks;
   zone.quality = surface.quality;
   return zone;

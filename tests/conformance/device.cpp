@@ -161,11 +161,10 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
 
     const Executor executor(2);
     const auto source = generate_volume(volume);
-    const Lattice lattice{volume.dims};
     const BulkOptions bulk{source->info(),
                            stored_rule(source->info(), options),
                            true,
-                           {{lattice.row(), lattice.plane()}, 1, retire_cost(0.1, 1)}};
+                           {VertexNumbering::of_cube_edges(volume.dims), 1, retire_cost(0.1, 1)}};
     const SurfaceRun run =
         sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, true, 4);
     EXPECT_GT(expected.mesh.triangles.size(), 100u);

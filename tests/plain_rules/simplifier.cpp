@@ -130,7 +130,15 @@ class Simplifier {
     return ring;
   }
 
-  Ring ring_of(std::size_t v) const { return ring_of(v, others(*around_[v].begin(), v)[0]); }
+  // A closed ring begins at the corner with the smallest id.
+  Ring ring_of(std::size_t v) const {
+    std::size_t first = others(*around_[v].begin(), v)[0];
+    for (const std::size_t t : around_[v]) {
+      const std::size_t corner = others(t, v)[0];
+      if (id(corner) < id(first)) first = corner;
+    }
+    return ring_of(v, first);
+  }
 
   // Where an edge has more than one face on a side, or the faces of a corner are more than one fan.
   void lock_corners() {

@@ -4,7 +4,6 @@
 #include <random>
 #include <set>
 
-#include "lattice/lattice.hpp"
 #include "simplify/edge_rules.hpp"
 #include "simplify/radix_heap.hpp"
 #include "volume/axes.hpp"
@@ -60,44 +59,6 @@ TEST(Cost, OrdersAsFloatsAndHasAFloor) {
 }
 
 // All pairs of lattice edges that one cell can join, in a small lattice where every digit is at its tightest.
-TEST(EdgeNumbering, NamesEveryMeshEdgeOnce) {
-  for (const std::array<std::int64_t, 3> dims : {std::array<std::int64_t, 3>{1, 1, 2}, {2, 1, 3}, {3, 4, 2}}) {
-    const Lattice lattice{dims};
-    const EdgeNumbering numbering{lattice.row(), lattice.plane()};
-    std::set<std::uint64_t> ids;
-    std::set<std::pair<std::uint64_t, std::uint64_t>> pairs;
-    for (std::int64_t k = -1; k < dims[2]; ++k) {
-      for (std::int64_t j = -1; j < dims[1]; ++j) {
-        for (std::int64_t i = -1; i < dims[0]; ++i) {
-          std::vector<std::uint64_t> cell;
-          for (int corner = 0; corner < 8; ++corner) {
-            for (int axis = 0; axis < 3; ++axis) {
-              if ((corner >> axis & 1) != 0) continue;
-              cell.push_back(lattice.edge_id(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2), axis));
-            }
-          }
-          for (const std::uint64_t a : cell) {
-            for (const std::uint64_t b : cell) {
-              if (a >= b) continue;
-              EXPECT_EQ(numbering.edge_id(a, b), numbering.edge_id(b, a));
-              pairs.insert({a, b});
-              ids.insert(numbering.edge_id(a, b));
-            }
-          }
-        }
-      }
-    }
-    EXPECT_EQ(ids.size(), pairs.size());
-  }
-}
-
-TEST(Lattice, KnowsWhenIdsDoNotFit) {
-  EXPECT_TRUE(Lattice::fits({65536, 65536, 65536}));
-  EXPECT_FALSE(Lattice::fits({std::int64_t{1} << 20, std::int64_t{1} << 20, std::int64_t{1} << 20}));
-  const Lattice wide{{70000, 70000, 70000}};
-  EXPECT_GT(wide.edge_id(0, 0, 1, 0), std::uint64_t{1} << 32);
-}
-
 TEST(SideTest, RefusesTurnedAndEmptyFacesOnly) {
   const Vec3 b{1, 0, 0}, c{0, 1, 0};
   const auto normal = [&](Vec3 a, Vec3 d) { return cross(b - a, d - a); };
