@@ -20,6 +20,7 @@
 #include "isoweave/simplify_options.hpp"
 #include "isoweave/volume.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // A length: in mean voxels, or in the volume's own unit.
@@ -326,3 +327,4 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> si
                          const RunControl& control = {});
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // How much an edge's cost is refined when it is decided. Every quality gives one mesh, whatever the schedule.
@@ -19,3 +20,4 @@ enum class Quality : std::uint8_t { kFast, kNormal, kFine };
 enum class Schedule : std::uint8_t { kAutomatic, kQueue, kLocal, kRounds };
 
 }  // namespace isoweave
+#pragma GCC visibility pop
