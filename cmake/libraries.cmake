@@ -29,7 +29,7 @@ function(isoweave_split_sources core formats)
 endfunction()
 
 # isoweave_objects(NAME SOURCE...): what is compiled. Only what public headers declare is to be seen from outside of a
-# shared library (include/isoweave/export.hpp).
+# shared library: those have a pragma for it.
 function(isoweave_objects name)
   add_library(${name} OBJECT ${ARGN})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)

@@ -7,6 +7,7 @@
 
 #include "isoweave/mesh.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Which components of a surface are kept, by their triangles before anything is simplified, so whatever the error.
@@ -41,3 +42,4 @@ struct DroppedComponents {
 DroppedComponents keep_components(TriangleMesh& mesh, const ComponentRule& rule);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 class Error : public std::runtime_error {
@@ -44,3 +45,4 @@ class Interrupted : public Error {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

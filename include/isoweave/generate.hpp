@@ -10,6 +10,7 @@
 
 #include "isoweave/volume.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Kinds and the surface they hold at their suggested iso-value:
@@ -45,3 +46,4 @@ std::unique_ptr<SliceSource> generate_volume(const GenerateOptions& options);
 void write_volume(SliceSource& source, const std::string& path);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // The number of a label: any whole number that 64 bits hold, with a sign or without.
@@ -57,3 +58,4 @@ struct LabelName {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 
 #include "isoweave/label.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // The whole text as a label, or nothing where it is not one: "7112614941", "-3".
@@ -29,3 +30,4 @@ std::vector<LabelName> read_label_names(const std::string& path);
 std::vector<std::string> label_file_names(std::span<const LabelName> labels);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

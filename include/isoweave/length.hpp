@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // A length. Voxels: of a volume the mean side of one, of a mesh the square root of twice the mean triangle area.
@@ -20,3 +21,4 @@ struct Length {
 Length parse_length(std::string_view text, std::string_view unit);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 
 #include "isoweave/mesh.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Angles of triangles in degrees. A triangle without area has angles of 0 and 180.
@@ -114,3 +115,4 @@ MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const 
 std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads = 0);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

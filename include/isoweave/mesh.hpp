@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 using Point = std::array<float, 3>;
@@ -218,3 +219,4 @@ std::uint64_t mesh_file_memory(const std::string& path, std::uint64_t vertices, 
                                const MeshFileOptions& options = {});
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "isoweave/simplify_options.hpp"
 #include "isoweave/volume.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Which surface of a volume.
@@ -53,3 +54,4 @@ struct MeshOptions : SurfaceOptions, SimplifyOptions, AttributeOptions {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -19,6 +19,7 @@
 #include "isoweave/simplify_options.hpp"
 #include "isoweave/volume.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // What a run makes: the mesh of a volume, the meshes of labels, a choice of components, a mesh from a mesh.
@@ -122,3 +123,4 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> si
                          const RunControl& control = {});
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 
 #include "isoweave/mesh.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // sRGB, 8 bits each.
@@ -63,3 +64,4 @@ Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options = {},
 void write_png(const std::string& path, const Picture& picture);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

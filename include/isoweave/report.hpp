@@ -7,6 +7,7 @@
 
 #include "isoweave/run.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // A surface as it was written.
@@ -46,3 +47,4 @@ struct MeshReport : SurfaceReport {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

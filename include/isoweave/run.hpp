@@ -14,6 +14,7 @@
 
 #include "isoweave/mesh.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // A pointer for the options of a run to something that the caller owns, and keeps until the run is over.
@@ -134,3 +135,4 @@ struct RunControl {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

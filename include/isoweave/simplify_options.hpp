@@ -6,6 +6,7 @@
 
 #include "isoweave/length.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // How much an edge's cost is refined when it is decided. Every quality gives one mesh, whatever the schedule.
@@ -34,3 +35,4 @@ struct SimplifyOptions {
 };
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -9,15 +9,18 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "isoweave/label.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Integers of 64 bits are compared as they are. Where a number is made of one (the place of a surface, a mean, the
@@ -70,7 +73,13 @@ struct VolumeInfo {
   std::vector<std::string> notes;  // things a user should know: "4-D: the first of 12 volumes is read"
 
   std::int64_t slice_samples() const { return dims[0] * dims[1]; }
-  std::size_t slice_bytes() const { return static_cast<std::size_t>(slice_samples()) * sample_bytes(type); }
+  // Throws std::length_error for a slice that is larger than the memory that there can be.
+  std::size_t slice_bytes() const {
+    const std::uint64_t bytes = static_cast<std::uint64_t>(slice_samples()) * sample_bytes(type);
+    if (bytes > std::numeric_limits<std::size_t>::max())
+      throw std::length_error("a slice of more bytes than memory has");
+    return static_cast<std::size_t>(bytes);
+  }
 };
 
 // A volume being read. Not thread-safe.
@@ -215,3 +224,4 @@ std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label>
 std::size_t count_scattered(std::span<const LabelExtent> labels);
 
 }  // namespace isoweave
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "isoweave/mesh.hpp"
 
+#pragma GCC visibility push(default)
 namespace isoweave {
 
 // Makes one vertex of all that have equal coordinates, 0 and -0 being equal. The first of them stays, with its normal
@@ -18,3 +19,4 @@ std::uint64_t count_seam_edges(const TriangleMesh& mesh);
 // Both throw std::invalid_argument when a triangle refers to a vertex that the mesh does not have.
 
 }  // namespace isoweave
+#pragma GCC visibility pop

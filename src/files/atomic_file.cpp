@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "parallel/size.hpp"
 #include "system/descriptor.hpp"
 #include "system/durable_file.hpp"
 #include "system/file_facts.hpp"
@@ -262,7 +263,7 @@ void OutputDescriptor::save_overwritten(std::uint64_t offset, std::uint64_t coun
   const std::array<std::uint64_t, 2> place{offset, count};
   const auto head = std::as_bytes(std::span(place));
   overwritten_.insert(overwritten_.end(), head.begin(), head.end());
-  overwritten_.resize(overwritten_.size() + static_cast<std::size_t>(count));
+  overwritten_.resize(to_size(overwritten_.size() + count));
   read_back(offset, std::span(overwritten_).last(static_cast<std::size_t>(count)));
   const std::string name = overwritten_name(path_);
   const std::string unfinished = new_name(name);  // a process was killed as it wrote that
@@ -283,7 +284,7 @@ void OutputDescriptor::restore_overwritten() {
   OutputDescriptor file(fd, name);
   const std::optional<FileStatus> status = system::status_of(fd);
   if (!status) cannot_write(name, "cannot be looked up", errno);
-  std::vector<std::byte> saved(static_cast<std::size_t>(status->bytes));
+  std::vector<std::byte> saved(to_size(status->bytes));
   file.read_back(0, saved);
   std::vector<OverwrittenBytes> records = overwritten_in(saved, name);
   std::reverse(records.begin(), records.end());  // what was overwritten last is put back first

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "files/atomic_file.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 
@@ -63,7 +64,7 @@ class StateReader {
     std::uint64_t size = 0;
     value(size);
     require(size, sizeof(*list.data()));
-    list.resize(static_cast<std::size_t>(size));
+    list.resize(to_size(size));
     get(std::as_writable_bytes(std::span(list.data(), list.size())));
   }
 

@@ -11,6 +11,7 @@
 #include "measure/triangle_tree.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 namespace {
@@ -91,7 +92,7 @@ OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const D
   const measure::TriangleTree tree(to, executor);
   const std::int64_t samples = static_cast<std::int64_t>(options.samples);
   std::vector<Sums> blocks(static_cast<std::size_t>((samples + kSamplesPerBlock - 1) / kSamplesPerBlock));
-  distances.resize(options.bins > 0 ? options.samples : 0);
+  distances.resize(options.bins > 0 ? to_size(options.samples) : 0);
   executor.for_blocks(samples, kSamplesPerBlock, [&](std::int64_t begin, std::int64_t end) {
     blocks[static_cast<std::size_t>(begin / kSamplesPerBlock)] =
         block_sums(sampler, tree, begin, end, [&](std::int64_t i, double distance) {

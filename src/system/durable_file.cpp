@@ -81,7 +81,7 @@ bool cut_off(int descriptor, std::uint64_t end) {
 std::uint64_t copy_within_system([[maybe_unused]] int from, [[maybe_unused]] int to,
                                  [[maybe_unused]] std::uint64_t bytes) {
 #ifdef __linux__
-  off_t done = 0;
+  loff_t done = 0;
   while (static_cast<std::uint64_t>(done) < bytes) {
     const std::size_t rest = static_cast<std::size_t>(bytes - static_cast<std::uint64_t>(done));
     const ssize_t copied = ::copy_file_range(from, &done, to, nullptr, rest, 0);

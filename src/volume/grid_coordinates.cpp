@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
+#include "parallel/size.hpp"
 #include "volume/axes.hpp"
 #include "volume/samples.hpp"
 
@@ -77,7 +78,7 @@ EvenGrid grid_of(VolumeInfo& info, const std::vector<double>& places, bool desce
 std::vector<double> read_coordinates(ByteStream& stream, SampleType type, bool swap_bytes, std::uint64_t count,
                                      const std::string& path) {
   if (count > kMostCoordinates) bad_input(path, "at most 2^24 coordinates", std::to_string(count));
-  std::vector<std::byte> bytes(static_cast<std::size_t>(count) * sample_bytes(type));
+  std::vector<std::byte> bytes(to_size(count, sample_bytes(type)));
   if (stream.read(bytes) < bytes.size()) bad_input(path, "all coordinates", "the end of an array");
   if (swap_bytes) swap_sample_bytes(bytes, sample_bytes(type));
   std::vector<double> coordinates;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "isoweave/volume.hpp"
+#include "parallel/size.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
@@ -68,7 +69,7 @@ class CroppedVolume final : public RowSource {
     std::byte* to = out.data();
     for (std::int64_t j = first; j < first + count; j += most) {
       const std::int64_t rows = std::min(most, first + count - j);
-      block_.resize(static_cast<std::size_t>(rows) * whole_row);
+      block_.resize(to_size(rows, whole_row));
       reader_.read(region_.first[2] + k, region_.first[1] + j, rows, block_);
       const std::byte* from = block_.data() + static_cast<std::size_t>(region_.first[0]) * sample;
       for (std::int64_t n = 0; n < rows; ++n, from += whole_row, to += row) std::memcpy(to, from, row);
@@ -102,7 +103,7 @@ class SmallerVolume final : public SliceSource {
       info_.geometry.spacing[axis] *= static_cast<double>(step);
     }
     info_.type = means_are_float32(info_.type) ? SampleType::kFloat32 : SampleType::kFloat64;
-    sums_.resize(static_cast<std::size_t>(info_.slice_samples()));
+    sums_.resize(to_size(info_.slice_samples()));
     counts_.resize(sums_.size());
     if (whole_->info().type == SampleType::kFloat64) small_sums_.resize(sums_.size());
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
+#include "parallel/size.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {
@@ -109,7 +110,7 @@ void PieceStream::add_piece(OpenPiece& open) {
 }
 
 void PieceStream::fill_slice() {
-  slice_.resize(static_cast<std::size_t>(dims_[0] * dims_[1]) * bytes_each_);
+  slice_.resize(to_size(dims_[0] * dims_[1], bytes_each_));
   for (OpenPiece& open : pieces_) add_piece(open);
   ++next_;
   used_ = 0;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "parallel/parallel.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 namespace {
@@ -66,7 +67,7 @@ void SliceWindow::make_room(std::int64_t slices, std::unique_lock<std::mutex>& l
   const std::int64_t at = room_ > 0 ? (first_ - base_) % room_ : 0;
   const std::int64_t wrapped = std::max<std::int64_t>(at + (filled_ - first_) - room_, 0);
   const std::int64_t behind = std::min(wrapped, slices - room_);
-  const auto bytes = [&](std::int64_t count) { return static_cast<std::size_t>(count) * slice_bytes_; };
+  const auto bytes = [&](std::int64_t count) { return to_size(count, slice_bytes_); };
   buffer_.resize(bytes(slices));
   if (wrapped > 0) {
     std::memcpy(buffer_.data() + bytes(room_), buffer_.data(), bytes(behind));

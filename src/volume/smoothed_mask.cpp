@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "parallel/size.hpp"
 #include "volume/threshold.hpp"
 #include "volume/volume_sizes.hpp"
 
@@ -99,7 +100,7 @@ void SmoothedMask::start_at(std::int64_t first) {
     stored_.resize(source_.info().slice_bytes());
     constant_rows_ = {std::vector<float>(nx, -1.0F), std::vector<float>(nx, 1.0F)};
     const auto make_room = [&](Slice& slice) {
-      slice.samples.resize(static_cast<std::size_t>(info_.slice_samples()));
+      slice.samples.resize(to_size(info_.slice_samples()));
       slice.marks.resize(static_cast<std::size_t>(info_.dims[1]));
     };
     make_room(last_);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "files/input_file.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/volume_sizes.hpp"
 

@@ -10,6 +10,7 @@
 #include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 namespace {
@@ -138,7 +139,7 @@ void write_volume(SliceSource& source, const std::string& path) {
   constexpr std::size_t kChunkBytes = 4 << 20;
   const auto at_once = static_cast<std::int64_t>(std::max<std::size_t>(1, kChunkBytes / info.slice_bytes()));
   const std::int64_t chunk = std::min(at_once, info.dims[2]);
-  std::vector<std::byte> slices(static_cast<std::size_t>(chunk) * info.slice_bytes());
+  std::vector<std::byte> slices(to_size(chunk, info.slice_bytes()));
   for (std::int64_t first = 0; first < info.dims[2]; first += chunk) {
     const std::int64_t count = std::min(chunk, info.dims[2] - first);
     source.read(first, count, slices);

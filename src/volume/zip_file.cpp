@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "files/printable.hpp"
+#include "parallel/size.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {
@@ -29,7 +30,7 @@ class ZipBytes {
       bad_input(file.path(), std::to_string(count) + " bytes of a zip archive from byte " + std::to_string(at) + " on",
                 std::to_string(left));
     }
-    bytes_.resize(static_cast<std::size_t>(count));
+    bytes_.resize(to_size(count));
     if (file.read_at(at, bytes_) < bytes_.size()) bad_input(file.path(), "a whole zip archive", "a part of one");
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "parallel/size.hpp"
 #include "volume/formats/vtk/vtk_streams.hpp"
 
 namespace isoweave::mesh_io {
@@ -186,7 +187,7 @@ std::vector<std::byte> GltfFile::bytes_of(std::uint64_t buffer, std::uint64_t of
     input_.fail("expected " + std::to_string(bytes) + " bytes from byte " + std::to_string(offset) +
                 " of a buffer, found " + std::to_string(from.size) + " bytes in all");
   }
-  std::vector<std::byte> result(static_cast<std::size_t>(bytes));
+  std::vector<std::byte> result(to_size(bytes));
   if (!from.file) {
     std::copy_n(from.bytes.begin() + static_cast<std::ptrdiff_t>(offset), result.size(), result.begin());
   } else if (from.file->read_at(from.begin + offset, result) < result.size()) {
@@ -235,7 +236,7 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
 std::vector<WidePoint> GltfFile::vectors(const GltfValue& accessor) {
   const Stored numbers = stored(accessor, "VEC3", 3);
   const std::size_t each = component_bytes(numbers.component);
-  std::vector<WidePoint> points(static_cast<std::size_t>(numbers.count));
+  std::vector<WidePoint> points(to_size(numbers.count));
   for (std::size_t n = 0; n < points.size(); ++n) {
     const std::byte* const from = numbers.bytes.data() + n * numbers.stride;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -251,7 +252,7 @@ std::vector<std::uint32_t> GltfFile::indices(const GltfValue& accessor) {
     input_.fail("expected indices without a sign, found type " + std::to_string(numbers.component));
   }
   const std::size_t each = component_bytes(numbers.component);
-  std::vector<std::uint32_t> all(static_cast<std::size_t>(numbers.count));
+  std::vector<std::uint32_t> all(to_size(numbers.count));
   for (std::size_t n = 0; n < all.size(); ++n) all[n] = load(numbers.bytes.data() + n * numbers.stride, each);
   return all;
 }

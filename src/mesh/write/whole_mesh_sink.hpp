@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/write/mesh_file_sink.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 
@@ -32,7 +33,7 @@ class WholeMeshSink : public MeshFileSink {
 // All of a file of items in memory.
 template <class Item>
 std::vector<Item> read_all(OutputDescriptor& file, std::uint64_t count) {
-  std::vector<Item> items(static_cast<std::size_t>(count));
+  std::vector<Item> items(to_size(count));
   file.read_back(0, std::as_writable_bytes(std::span(items)));
   return items;
 }

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "parallel/size.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -58,7 +60,7 @@ Rectangle TriangleMap::busy_part(double part) const {
 Tile::Tile(const VolumeInfo& volume, const Rectangle& part, std::int64_t slices)
     : info_(volume), part_(part), whole_row_(volume.dims[0]) {
   info_.dims = {part.size[0], part.size[1], slices};
-  samples_.resize(static_cast<std::size_t>(slices) * info_.slice_bytes());
+  samples_.resize(to_size(slices, info_.slice_bytes()));
 }
 
 void Tile::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
