@@ -11,6 +11,9 @@ target_compile_options(isoweave_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>  # tells that arguments are passed as they were before GCC 10
   $<$<BOOL:${ISOWEAVE_WERROR}>:-Werror>)
 
+# Internal checks (src/parallel/check.hpp), in builds that are made to find faults.
+target_compile_definitions(isoweave_options INTERFACE $<$<BOOL:${ISOWEAVE_CHECKS}>:ISOWEAVE_CHECKS>)
+
 if(ISOWEAVE_SANITIZE)
   add_compile_options(-fsanitize=${ISOWEAVE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${ISOWEAVE_SANITIZE})

@@ -11,6 +11,7 @@
 #include <new>
 #include <type_traits>
 
+#include "parallel/check.hpp"
 #include "system/pages.hpp"
 
 namespace isoweave {
@@ -29,8 +30,14 @@ class Array {
   T* end() { return data() + size_; }
   const T* begin() const { return data(); }
   const T* end() const { return data() + size_; }
-  T& operator[](std::size_t n) { return data_.get()[n]; }
-  const T& operator[](std::size_t n) const { return data_.get()[n]; }
+  T& operator[](std::size_t n) {
+    ISOWEAVE_CHECK(n < size_);
+    return data_.get()[n];
+  }
+  const T& operator[](std::size_t n) const {
+    ISOWEAVE_CHECK(n < size_);
+    return data_.get()[n];
+  }
 
   // Grows by a quarter where std::vector would double: the zone is what bounds the memory of a run.
   void resize(std::size_t size) {

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "parallel/check.hpp"
+
 namespace isoweave {
 
 // The root of the set that holds `member`. Halves the path that it walks.
@@ -14,6 +16,7 @@ inline std::uint32_t find_root(std::span<std::uint32_t> parents, std::uint32_t m
   const auto parent = [&](std::uint32_t of) { return std::atomic_ref(parents[of]); };
   std::uint32_t above = parent(member).load(std::memory_order_relaxed);
   while (above != member) {
+    ISOWEAVE_CHECK(above < member);
     const std::uint32_t next = parent(above).load(std::memory_order_relaxed);
     if (next != above) parent(member).store(next, std::memory_order_relaxed);
     member = above;

@@ -15,6 +15,7 @@
 #include "isoweave/error.hpp"
 #include "system/descriptor.hpp"
 #include "system/durable_file.hpp"
+#include "system/file_facts.hpp"
 #include "system/process.hpp"
 
 namespace isoweave {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lattice/triangles.hpp"
+#include "parallel/float_environment.hpp"
 #include "render/colours.hpp"
 #include "render/shading.hpp"
 
@@ -68,6 +69,7 @@ std::array<std::uint8_t, 4> pixel_at(std::int64_t column, std::int64_t row, cons
 }  // namespace
 
 Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options, std::span<const float> quality) {
+  const StandardFloats floats;
   check_arguments(mesh, options, quality);
   const Executor executor(options.threads);
   const render::Camera camera(mesh, options);

@@ -330,6 +330,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::defer() {
 
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::raise_key(CostBits cost) {
+  ISOWEAVE_CHECK(cost >= zone_.cost(edge_));
   zone_.set_cost(edge_, cost);
   changed_[static_cast<std::size_t>(changed_count_++)] = edge_;
 }

@@ -51,7 +51,10 @@ struct Star {
   // The neighbour's place in the list.
   ISOWEAVE_HD std::size_t place_of(Index w) const {
     std::size_t n = 0;
-    while (neighbour[n] != w) ++n;
+    while (neighbour[n] != w) {
+      ++n;
+      ISOWEAVE_CHECK(n < count());
+    }
     return n;
   }
 

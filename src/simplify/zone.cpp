@@ -41,6 +41,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     throw OverMemory("the undecided zone would hold " + std::to_string(vertex_total) +
                      " vertices, expected fewer than 2^31: choose thinner slabs or a smaller error");
   }
+  if constexpr (kChecks) check_piece(piece);
   order_.sort(piece, view(), front_, executor);
   const Index first_triangle = triangle_count();
   list_settled(static_cast<Index>(vertices.size() + piece.positions.size()));
@@ -95,6 +96,19 @@ void Zone::settle_all() {
     if (states[v] != VertexState::kFinal) settled.old.push_back(v);
   }
   settled.first_new = settled.end = static_cast<Index>(vertices.size());
+}
+
+// What a source promises of each piece.
+void Zone::check_piece(const SurfacePiece& piece) const {
+  const std::size_t vertices = piece.inherited + piece.positions.size();
+  ISOWEAVE_CHECK(piece.inherited == front_.size());
+  ISOWEAVE_CHECK(piece.ids.size() == piece.positions.size());
+  ISOWEAVE_CHECK(piece.normals.empty() || piece.normals.size() == piece.positions.size());
+  ISOWEAVE_CHECK(piece.values.empty() || piece.values.size() == piece.positions.size());
+  for (const auto& triangle : piece.triangles) {
+    for (const std::uint32_t corner : triangle) ISOWEAVE_CHECK(corner < vertices);
+  }
+  for (const std::uint32_t v : piece.incomplete) ISOWEAVE_CHECK(v < vertices);
 }
 
 // The vertices that were incomplete, those beside them, those that were deferred, and the new ones up to `end`.

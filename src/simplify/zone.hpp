@@ -121,6 +121,7 @@ class Zone : public ZoneView {
   Index index_of(Index number) const {
     return number < front_.size() ? front_[number] : settled.first_new + (number - static_cast<Index>(front_.size()));
   }
+  void check_piece(const SurfacePiece& piece) const;
   void add_vertices(const SurfacePiece& piece, const Executor& executor);
   void add_triangles(const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,

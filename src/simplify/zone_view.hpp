@@ -13,6 +13,7 @@
 #include "isoweave/mesh.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "parallel/annotations.hpp"
+#include "parallel/check.hpp"
 #include "simplify/edge_rules.hpp"
 #include "simplify/normal_quadric.hpp"
 #include "simplify/quadric.hpp"
@@ -118,7 +119,10 @@ struct ZoneView {
 
   ISOWEAVE_HD Index triangle_count() const { return static_cast<Index>(triangles.size()); }
 
-  ISOWEAVE_HD HalfEdge& half(Index h) const { return reinterpret_cast<HalfEdge*>(triangles.data())[h]; }
+  ISOWEAVE_HD HalfEdge& half(Index h) const {
+    ISOWEAVE_CHECK(h == 0 || ((h >> 2) < triangles.size() && (h & 3) < 3));
+    return reinterpret_cast<HalfEdge*>(triangles.data())[h];
+  }
   ISOWEAVE_HD Index origin(Index h) const { return half(h).vertex; }
   ISOWEAVE_HD Index destination(Index h) const { return origin(next(h)); }
   ISOWEAVE_HD Index twin(Index h) const { return half(h).twin; }

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "isoweave/error.hpp"
+#include "parallel/float_environment.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
 
@@ -163,6 +164,7 @@ Histogram HistogramCounter::histogram(double slope, double intercept) const {
 }
 
 Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
+  const StandardFloats floats;
   const VolumeInfo& info = volume.info();
   HistogramCounter counter(info.type);
   if (const std::optional<SampleBytes> sample = constant_sample(volume)) {

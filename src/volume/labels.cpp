@@ -9,6 +9,7 @@
 
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
+#include "parallel/float_environment.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -146,6 +147,7 @@ std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, L
 
 std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted,
                                      const std::atomic<bool>* stop) {
+  const StandardFloats floats;
   LabelNumbers numbers(volume);
   const VolumeInfo& info = numbers.info();
   ExtentFinder finder(info, wanted);

@@ -10,6 +10,7 @@
 #include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
+#include "parallel/float_environment.hpp"
 #include "parallel/size.hpp"
 
 namespace isoweave {
@@ -128,6 +129,7 @@ void refuse_scaled(const VolumeInfo& info, const std::string& path, Format forma
 }  // namespace
 
 void write_volume(SliceSource& source, const std::string& path) {
+  const StandardFloats floats;
   const VolumeInfo& info = source.info();
   const Format format = format_of(path);
   refuse_scaled(info, path, format);

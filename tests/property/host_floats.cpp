@@ -10,6 +10,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "isoweave/error.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 
@@ -77,6 +78,13 @@ TEST(HostFloats, SmallNumbersTakenForZeroChangeNothing) {
   const unsigned usual = _mm_getcsr();
   _mm_setcsr(usual | kFlushToZero | kDenormalsAreZero);
   expect_same_under("small numbers taken for 0");
+  // No label has such a number.
+  const std::vector<float> map{0, 1e-40F};
+  VolumeInfo info;
+  info.dims = {2, 1, 1};
+  info.type = SampleType::kFloat32;
+  const auto labels = volume_in_memory(info, std::as_bytes(std::span(map)));
+  EXPECT_THROW(find_labels(*labels), BadInput);
   _mm_setcsr(usual);
 #else
   GTEST_SKIP() << "only tried on x86";
