@@ -28,6 +28,6 @@ inline constexpr bool kChecks = false;
 
 }  // namespace isoweave
 
-#define ISOWEAVE_CHECK(condition) void()
+#define ISOWEAVE_CHECK(condition) static_cast<void>(sizeof(static_cast<bool>(condition)))
 
 #endif

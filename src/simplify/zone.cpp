@@ -100,15 +100,15 @@ void Zone::settle_all() {
 
 // What a source promises of each piece.
 void Zone::check_piece(const SurfacePiece& piece) const {
-  const std::size_t vertices = piece.inherited + piece.positions.size();
+  const std::size_t known = piece.inherited + piece.positions.size();
   ISOWEAVE_CHECK(piece.inherited == front_.size());
   ISOWEAVE_CHECK(piece.ids.size() == piece.positions.size());
   ISOWEAVE_CHECK(piece.normals.empty() || piece.normals.size() == piece.positions.size());
   ISOWEAVE_CHECK(piece.values.empty() || piece.values.size() == piece.positions.size());
   for (const auto& triangle : piece.triangles) {
-    for (const std::uint32_t corner : triangle) ISOWEAVE_CHECK(corner < vertices);
+    for (const std::uint32_t corner : triangle) ISOWEAVE_CHECK(corner < known);
   }
-  for (const std::uint32_t v : piece.incomplete) ISOWEAVE_CHECK(v < vertices);
+  for (const std::uint32_t v : piece.incomplete) ISOWEAVE_CHECK(v < known);
 }
 
 // The vertices that were incomplete, those beside them, those that were deferred, and the new ones up to `end`.
