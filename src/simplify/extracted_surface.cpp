@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 #include "simplify/edge_rules.hpp"
@@ -18,8 +19,11 @@ using measure::Vector;
 
 // Below this sine of an angle the normal of a triangle is rounding noise; its sides say where it is.
 constexpr double kLeastSine = 1e-12;
-constexpr double kMostCells = 64;     // of one grid that a triangle is listed in
-constexpr int kLastLevel = 63;        // of grids
+constexpr std::size_t kMostCells = 256;  // of one grid that a triangle is listed in
+constexpr std::size_t kMixed = 16;       // triangles of a list: the order of more is mixed
+constexpr double kFewCells = 8;          // of a triangle's box: they are taken as they are
+constexpr double kSlack = 1e-9;          // of lengths, for rounding
+constexpr int kLastLevel = 63;           // of grids
 constexpr double kUsualReach = 1;     // of the distance, beyond the largest triangle: longer parts are seldom near one
 constexpr double kFinest = 1.0 / 16;  // of the distance
 constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
@@ -69,6 +73,72 @@ bool is_within(double most, const Vector& p, const ExtractedSurface::Corners& tr
   return comes_within(most, {triangle[0] - p, triangle[1] - p, triangle[2] - p});
 }
 
+// A triangle, or what is left of it between planes.
+class CutPolygon {
+ public:
+  explicit CutPolygon(const ExtractedSurface::Corners& triangle) : count_(triangle.size()) {
+    std::ranges::copy(triangle, corners_.begin());
+  }
+
+  // What lies between two planes across an axis.
+  CutPolygon between(std::size_t axis, double low, double high) const {
+    return above(axis, 1, low).above(axis, -1, -high);
+  }
+
+  // Nothing is from infinity to minus infinity.
+  std::pair<double, double> range(std::size_t axis) const {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t n = 0; n < count_; ++n) {
+      low = std::min(low, corners_[n][axis]);
+      high = std::max(high, corners_[n][axis]);
+    }
+    return {low, high};
+  }
+
+ private:
+  static constexpr std::size_t kMostCorners = 7;  // four planes
+
+  CutPolygon() = default;
+
+  // Where sign times the coordinate is `least` or more.
+  CutPolygon above(std::size_t axis, double sign, double least) const {
+    CutPolygon cut;
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Vector& from = corners_[n];
+      const Vector& to = corners_[n + 1 < count_ ? n + 1 : 0];
+      const double before = sign * from[axis] - least;
+      const double behind = sign * to[axis] - least;
+      if (before >= 0) cut.add(from);
+      if ((before >= 0) != (behind >= 0)) cut.add(from + (before / (before - behind)) * (to - from));
+    }
+    return cut;
+  }
+
+  // Rounding may find more corners than there are: the last one stands for them.
+  void add(const Vector& corner) {
+    if (count_ < kMostCorners) corners_[count_++] = corner;
+  }
+
+  std::size_t count_ = 0;
+  std::array<Vector, kMostCorners> corners_{};
+};
+
+// Neighbours in a list are neighbours in space, as a rule: those near a point are found sooner when steps through the
+// list are the golden section of it, as no stretch of it then waits longer than others of its length (Knuth, 1973).
+template <class Item>
+void mix(std::span<Item> list) {
+  if (list.size() <= kMixed) return;
+  const std::vector<Item> before(list.begin(), list.end());
+  auto step = static_cast<std::size_t>(0.6180339887498949 * static_cast<double>(list.size()));
+  while (std::gcd(step, list.size()) != 1) ++step;
+  std::size_t at = 0;
+  for (Item& next : list) {
+    next = before[at];
+    at = (at + step) % list.size();
+  }
+}
+
 // Calls visit(cell) for all cells of a box; ends when it answers false.
 template <class CellBox, class Visit>
 void each_cell(const CellBox& box, const Visit& visit) {
@@ -87,10 +157,14 @@ void each_cell(const CellBox& box, const Visit& visit) {
 ExtractedSurface::ExtractedSurface(double most, const Vec3& cell, const Vec3& largest)
     : most_(most),
       cell_{std::max(cell.x, most / 2), std::max(cell.y, most / 2), std::max(cell.z, most / 2)},
-      largest_{largest.x, largest.y, largest.z} {}
+      largest_{largest.x, largest.y, largest.z} {
+  for (std::size_t level = 0; level < lengths_.size(); ++level) {
+    for (std::size_t n = 0; n < 3; ++n) lengths_[level][n] = std::ldexp(cell_[n], 2 * static_cast<int>(level));
+  }
+}
 
-ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners) {
-  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), 0};
+ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, std::uint64_t* looks) {
+  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), 0, looks};
   for (const Vector& corner : corners) {
     const Vector to = corner - part.centre;
     part.radius = std::max(part.radius, dot(to, to));
@@ -108,10 +182,9 @@ bool ExtractedSurface::is_long(const Part& part) const {
   return false;
 }
 
-double ExtractedSurface::length(int level, std::size_t axis) const { return std::ldexp(cell_[axis], 2 * level); }
-
-ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p) const {
-  return {cell_number(p[0] / cell_[0]), cell_number(p[1] / cell_[1]), cell_number(p[2] / cell_[2])};
+ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p, int level) const {
+  return {cell_number(p[0] / length(level, 0)), cell_number(p[1] / length(level, 1)),
+          cell_number(p[2] / length(level, 2))};
 }
 
 // Cells far apart may share a key: they are looked into together.
@@ -126,6 +199,10 @@ double ExtractedSurface::CellBox::cells() const {
   double cells = 1;
   for (std::size_t n = 0; n < 3; ++n) cells *= static_cast<double>(last[n] - first[n] + 1);
   return cells;
+}
+
+double ExtractedSurface::CellBox::longest() const {
+  return static_cast<double>(std::max({last[0] - first[0], last[1] - first[1], last[2] - first[2]}) + 1);
 }
 
 // The cells of a triangle's box, of which the upper borders are not a part.
@@ -149,16 +226,59 @@ ExtractedSurface::CellBox ExtractedSurface::cells_around(const Vector& p, int le
   return box;
 }
 
-// Lists a triangle in its cells of the finest grid in which they are few, and tells which one that is.
+// Calls visit(cell) for the cells of a box of some grid that a triangle touches, or may touch but for rounding; ends
+// when it answers false. A triangle is cut at the layers of cells and then at the rows of each layer.
+template <class Visit>
+void ExtractedSurface::each_touched(const Corners& triangle, const CellBox& box, int level, const Visit& visit) const {
+  const CutPolygon whole(triangle);
+  const auto part = [&](const CutPolygon& polygon, std::size_t axis, std::int64_t number) {
+    const double side = length(level, axis);
+    const double low = static_cast<double>(number) * side;
+    const double slack = kSlack * (side + std::abs(low));
+    return polygon.between(axis, low - slack, low + side + slack);
+  };
+  const auto numbers = [&](const CutPolygon& polygon, std::size_t axis) {
+    const double side = length(level, axis);
+    const auto [low, high] = polygon.range(axis);
+    const double slack = kSlack * (side + std::max(std::abs(low), std::abs(high)));
+    return std::pair(std::max(box.first[axis], cell_number((low - slack) / side)),
+                     std::min(box.last[axis], cell_number((high + slack) / side)));
+  };
+  Cell cell = box.first;
+  for (cell[2] = box.first[2]; cell[2] <= box.last[2]; ++cell[2]) {
+    const CutPolygon layer = part(whole, 2, cell[2]);
+    const auto [first_row, last_row] = numbers(layer, 1);
+    for (cell[1] = first_row; cell[1] <= last_row; ++cell[1]) {
+      const auto [first, last] = numbers(part(layer, 1, cell[1]), 0);
+      for (cell[0] = first; cell[0] <= last; ++cell[0]) {
+        if (!visit(cell)) return;
+      }
+    }
+  }
+}
+
+// Lists a triangle in the cells that it touches, of the finest grid in which they are few, and tells which one that is.
 int ExtractedSurface::list_in_cells(const Corners& triangle, std::uint32_t number, std::vector<Place>& places) const {
-  int level = 0;
-  CellBox box = cells_of(triangle, level);
-  while (!(box.cells() <= kMostCells) && level < kLastLevel) box = cells_of(triangle, ++level);
-  each_cell(box, [&](const Cell& cell) {
-    places.push_back({key_of(level, cell), number});
-    return true;
-  });
-  return level;
+  const std::size_t before = places.size();
+  for (int level = 0;; ++level) {
+    const auto list = [&](const Cell& cell) {
+      places.push_back({key_of(level, cell), number});
+      return true;
+    };
+    const auto list_few = [&](const Cell& cell) {
+      return list(cell) && (places.size() - before <= kMostCells || level == kLastLevel);
+    };
+    const CellBox box = cells_of(triangle, level);
+    if (box.cells() <= kFewCells) {
+      each_cell(box, list);
+    } else if (box.longest() <= kMostCells || level == kLastLevel) {
+      each_touched(triangle, box, level, list_few);
+    } else {
+      continue;
+    }
+    if (places.size() - before <= kMostCells || level == kLastLevel) return level;
+    places.resize(before);
+  }
 }
 
 void ExtractedSurface::append(const Array<Corners>& triangles, double complete_below) {
@@ -173,12 +293,9 @@ void ExtractedSurface::append(const Array<Corners>& triangles, double complete_b
     piece.levels |= std::uint64_t{1} << list_in_cells(triangles[t], t, places);
   }
   make_slots(piece, places);
-  piece.triangles.resize(places.size());
-  std::vector<std::uint32_t> filled(piece.slots.size(), 0);
-  for (const Place& place : places) {
-    const std::size_t at = slot_of(piece, place.key);
-    piece.triangles[piece.slots[at].first + filled[at]++] = triangles[place.triangle];
-  }
+  fill_slots(piece, places);
+  piece.triangles.resize(triangles.size());
+  std::ranges::copy(triangles, piece.triangles.begin());
   push_piece(std::move(piece));
 }
 
@@ -207,6 +324,16 @@ void ExtractedSurface::make_slots(Piece& piece, std::span<const Place> places) {
   for (Slot& slot : piece.slots) slot.first = std::exchange(first, first + slot.count);
 }
 
+void ExtractedSurface::fill_slots(Piece& piece, std::span<const Place> places) {
+  piece.listed.resize(places.size());
+  std::vector<std::uint32_t> filled(piece.slots.size(), 0);
+  for (const Place& place : places) {
+    const std::size_t at = slot_of(piece, place.key);
+    piece.listed[piece.slots[at].first + filled[at]++] = place.triangle;
+  }
+  for (const Slot& slot : piece.slots) mix(std::span(piece.listed.data() + slot.first, slot.count));
+}
+
 // The slot of a key, or the free one where it belongs.
 std::size_t ExtractedSurface::slot_of(const Piece& piece, std::uint64_t key) {
   const std::size_t mask = piece.slots.size() - 1;
@@ -223,44 +350,50 @@ void ExtractedSurface::forget_below(double z) {
 std::uint64_t ExtractedSurface::bytes() const {
   std::uint64_t sum = 0;
   for (const Piece& piece : pieces_) {
-    sum += piece.triangles.capacity() * sizeof(Corners) + piece.slots.capacity() * sizeof(Slot);
+    sum += piece.triangles.capacity() * sizeof(Corners) + piece.slots.capacity() * sizeof(Slot) +
+           piece.listed.capacity() * sizeof(std::uint32_t);
   }
   return sum;
 }
 
-// What is within the distance of one of these triangles: all of the part, or its centre.
-ExtractedSurface::Found ExtractedSurface::find_among(const Part& part, std::span<const Corners> triangles,
-                                                     double most) {
+// What of a part is within the distance of a triangle, where what others are near of is known.
+ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Corners& triangle, Found known) const {
+  const double most = most_ * most_;
+  const bool all = std::all_of(part.corners.begin(), part.corners.end(),
+                               [&](const Vector& corner) { return is_within(most, corner, triangle); });
+  if (all) return Found::kAll;
+  return known == Found::kNothing && is_within(most, part.centre, triangle) ? Found::kCentre : known;
+}
+
+ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
+                                                       std::span<const Piece> pieces) const {
   Found found = Found::kNothing;
-  for (const Corners& triangle : triangles) {
-    const bool all = std::all_of(part.corners.begin(), part.corners.end(),
-                                 [&](const Vector& corner) { return is_within(most * most, corner, triangle); });
-    if (all) return Found::kAll;
-    if (found == Found::kNothing && is_within(most * most, part.centre, triangle)) found = Found::kCentre;
+  for (const Piece& piece : pieces) {
+    const Slot& slot = piece.slots[slot_of(piece, key)];
+    for (const std::uint32_t number : std::span(piece.listed.data() + slot.first, slot.count)) {
+      if (part.looks != nullptr) ++*part.looks;
+      found = find_near(part, piece.triangles[number], found);
+      if (found == Found::kAll) return found;
+    }
   }
   return found;
 }
 
-ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
-                                                       std::span<const Piece> pieces, double most) {
-  Found found = Found::kNothing;
-  for (const Piece& piece : pieces) {
-    const Slot& slot = piece.slots[slot_of(piece, key)];
-    found = std::max(found, find_among(part, {piece.triangles.data() + slot.first, slot.count}, most));
-    if (found == Found::kAll) break;
+// Whether a cell comes within the distance of a point.
+bool ExtractedSurface::is_near(const Vector& p, int level, const Cell& cell) const {
+  double squared = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double side = length(level, n);
+    const double low = static_cast<double>(cell[n]) * side;
+    const double outside = std::max({low - p[n], 0.0, p[n] - (low + side)});
+    squared += outside * outside;
   }
-  return found;
+  return squared <= most_ * most_;
 }
 
 // In the cells that are `ring` cells away from that of the centre.
 ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring,
                                                        std::span<const Piece> pieces) const {
-  // Squared distance along an axis to a cell.
-  const auto gap = [&](std::size_t n, std::int64_t number) {
-    const double low = static_cast<double>(number) * cell_[n];
-    const double outside = std::max({low - part.centre[n], 0.0, part.centre[n] - (low + cell_[n])});
-    return outside * outside;
-  };
   Found found = Found::kNothing;
   Cell cell{};
   for (cell[2] = centre[2] - ring; cell[2] <= centre[2] + ring; ++cell[2]) {
@@ -268,8 +401,8 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
       const bool side = std::max(std::abs(cell[2] - centre[2]), std::abs(cell[1] - centre[1])) == ring;
       const std::int64_t step = side ? 1 : 2 * ring;
       for (cell[0] = centre[0] - ring; cell[0] <= centre[0] + ring; cell[0] += step) {
-        if (gap(0, cell[0]) + gap(1, cell[1]) + gap(2, cell[2]) > most_ * most_) continue;
-        found = std::max(found, find_in_cell(part, key_of(0, cell), pieces, most_));
+        if (!is_near(part.centre, 0, cell)) continue;
+        found = std::max(found, find_in_cell(part, key_of(0, cell), pieces));
         if (found == Found::kAll) return found;
       }
     }
@@ -277,25 +410,29 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
   return found;
 }
 
-// In the grids of larger triangles, where the cells that come near the centre are few.
+// In the grids of larger triangles, where the cells that come near the centre are few: its own cell first.
 ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span<const Piece> pieces) const {
   std::uint64_t levels = 0;
   for (const Piece& piece : pieces) levels |= piece.levels;
   Found found = Found::kNothing;
   for (levels &= ~std::uint64_t{1}; levels != 0 && found != Found::kAll; levels &= levels - 1) {
     const int level = std::countr_zero(levels);
+    const Cell own = cell_of(part.centre, level);
+    found = std::max(found, find_in_cell(part, key_of(level, own), pieces));
+    if (found == Found::kAll) break;
     each_cell(cells_around(part.centre, level), [&](const Cell& cell) {
-      found = std::max(found, find_in_cell(part, key_of(level, cell), pieces, most_));
+      if (cell == own || !is_near(part.centre, level, cell)) return true;
+      found = std::max(found, find_in_cell(part, key_of(level, cell), pieces));
       return found != Found::kAll;
     });
   }
   return found;
 }
 
-// The pieces with triangles that may be within the distance of the centre.
-std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Part& part) const {
-  const auto first = std::ranges::lower_bound(pieces_, part.centre[2] - most_, {}, &Piece::highest);
-  const auto end = std::upper_bound(first, pieces_.end(), part.centre[2] + most_,
+// The pieces with triangles that may be within the distance of a point.
+std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Vector& p) const {
+  const auto first = std::ranges::lower_bound(pieces_, p[2] - most_, {}, &Piece::highest);
+  const auto end = std::upper_bound(first, pieces_.end(), p[2] + most_,
                                     [](double z, const Piece& piece) { return z < piece.lowest; });
   return {first, end};
 }
@@ -303,10 +440,10 @@ std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Par
 // Looks at the cells around the centre, ring by ring. Of a part that can be cut some more, rings behind the first one
 // that is near are left out: the surface farther away will do no better.
 ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
-  const std::span<const Piece> pieces = pieces_near(part);
+  const std::span<const Piece> pieces = pieces_near(part.centre);
   if (pieces.empty()) return Found::kNothing;
   Found found = find_above(part, pieces);
-  const Cell centre = cell_of(part.centre);
+  const Cell centre = cell_of(part.centre, 0);
   const double smallest = *std::min_element(cell_.begin(), cell_.end());
   const auto rings = static_cast<std::int64_t>(std::ceil(most_ / smallest));
   for (std::int64_t ring = 0; ring <= rings && found != Found::kAll; ++ring) {
@@ -316,12 +453,12 @@ ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
   return found;
 }
 
-Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c) const {
+Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t* looks) const {
   std::array<Corners, 128> parts;  // cut in depth: one sibling waits for each cut
   std::size_t open = 0;
   parts[open++] = {vector_of(a), vector_of(b), vector_of(c)};
   for (int looked_at = 0; open > 0; ++looked_at) {
-    Part part = part_of(parts[--open]);
+    Part part = part_of(parts[--open], looks);
     const Found found = is_long(part) ? Found::kCentre : find(part);
     if (found == Found::kAll) continue;
     if (part.centre[2] + most_ > complete_below_) return Reach::kUnknown;

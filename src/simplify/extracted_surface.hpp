@@ -18,7 +18,8 @@ namespace isoweave {
 // The triangles of a surface that comes in pieces, ordered by z, in grids of cells, for one question: is every point
 // of a triangle within a distance of them? The answer, once it is known, depends on the whole surface alone, not on the
 // pieces. Its cost is bounded: no more than kMostParts parts of a triangle are looked at, each among the triangles in a
-// few cells of the few pieces that are near in z, however many there are.
+// few cells of the few pieces that are near in z, however many there are. A triangle is in the cells that it touches,
+// so those of a cell come near each other, whatever their shape and direction.
 class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
@@ -41,7 +42,8 @@ class ExtractedSurface {
   // Parts smaller than a sixteenth of the distance are not cut again. So what is within 15/16 of the distance is always
   // found to be, unless that takes more parts than kMostParts, and nothing beyond it ever is. May be called by several
   // threads at the same time.
-  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  // looks: gets one more for each time that a part is compared with a triangle, if it is not null.
+  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t* looks = nullptr) const;
 
   std::uint64_t bytes() const;
 
@@ -56,6 +58,7 @@ class ExtractedSurface {
       if constexpr (Archive::kReads) pieces_.emplace_back();
       Piece& piece = pieces_[n];
       archive.list(piece.triangles);
+      archive.list(piece.listed);
       archive.list(piece.slots);
       archive.value(piece.levels);
       archive.value(piece.top);
@@ -69,6 +72,8 @@ class ExtractedSurface {
 
   // Of the layers that layer_of() tells apart: not where surfaces like to lie, on slices or halfway between them.
   static constexpr double kShift = 0.382;
+
+  static constexpr int kLastLevel = 63;  // of grids
 
   // Parts of one triangle that is asked about.
   static constexpr int kMostParts = 1 << 14;
@@ -86,7 +91,8 @@ class ExtractedSurface {
   };
 
   struct Piece {
-    Array<Corners> triangles;                                   // one cell after the other, in each that it may touch
+    Array<Corners> triangles;
+    Array<std::uint32_t> listed;                                // triangles of one cell after the other
     std::vector<Slot> slots;                                    // a hash table with open addresses
     std::uint64_t levels = 0;                                   // bit n: grid n has triangles
     double top = -std::numeric_limits<double>::infinity();      // z
@@ -98,7 +104,8 @@ class ExtractedSurface {
   struct Part {
     Corners corners;
     measure::Vector centre;
-    double radius;  // of the ball around the centre that holds it
+    double radius;         // of the ball around the centre that holds it
+    std::uint64_t* looks;  // to be counted, or null
   };
 
   enum class Found : std::uint8_t { kNothing, kCentre, kAll };  // what is within the distance of some triangle
@@ -108,28 +115,34 @@ class ExtractedSurface {
   struct CellBox {
     Cell first{}, last{};
     double cells() const;
+    double longest() const;
   };
 
-  static Part part_of(const Corners& corners);
+  static Part part_of(const Corners& corners, std::uint64_t* looks);
   bool is_long(const Part& part) const;
-  double length(int level, std::size_t axis) const;
-  Cell cell_of(const measure::Vector& p) const;
+  double length(int level, std::size_t axis) const { return lengths_[static_cast<std::size_t>(level)][axis]; }
+  Cell cell_of(const measure::Vector& p, int level) const;
+  bool is_near(const measure::Vector& p, int level, const Cell& cell) const;
   CellBox cells_of(const Corners& triangle, int level) const;
   CellBox cells_around(const measure::Vector& p, int level) const;
   static std::uint64_t key_of(int level, const Cell& cell);
+  template <class Visit>
+  void each_touched(const Corners& triangle, const CellBox& box, int level, const Visit& visit) const;
   int list_in_cells(const Corners& triangle, std::uint32_t number, std::vector<Place>& places) const;
   static void make_slots(Piece& piece, std::span<const Place> places);
+  static void fill_slots(Piece& piece, std::span<const Place> places);
   static std::size_t slot_of(const Piece& piece, std::uint64_t key);
   void push_piece(Piece&& piece);
-  std::span<const Piece> pieces_near(const Part& part) const;
+  std::span<const Piece> pieces_near(const measure::Vector& p) const;
   Found find(const Part& part) const;
   Found find_above(const Part& part, std::span<const Piece> pieces) const;
   Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring, std::span<const Piece> pieces) const;
-  static Found find_in_cell(const Part& part, std::uint64_t key, std::span<const Piece> pieces, double most);
-  static Found find_among(const Part& part, std::span<const Corners> triangles, double most);
+  Found find_in_cell(const Part& part, std::uint64_t key, std::span<const Piece> pieces) const;
+  Found find_near(const Part& part, const Corners& triangle, Found known) const;
 
   double most_;
   std::array<double, 3> cell_;
+  std::array<std::array<double, 3>, kLastLevel + 1> lengths_{};  // of the cells of each grid
   std::array<double, 3> largest_;
   double complete_below_ = -std::numeric_limits<double>::infinity();
   std::vector<Piece> pieces_;

@@ -127,7 +127,8 @@ TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
       {"generate:smooth:160x160x200:uint8", {"--lods", "0.1vox,0.5vox"}},
       {"generate:sphere:900x900x60:uint8", {"--error", "0.5vox"}},
       {"generate:sphere:400x400x60:uint8", {"--inside", "below"}},
-      {"generate:white:64x64x64:uint8", {}}};
+      {"generate:white:64x64x64:uint8", {}},
+      {"generate:white:80x64x64:int16", {"--triangles", "5000", "--quality", "fine"}}};
   for (const auto& [volume, more] : cases) expect_named_cap(volume, "out.ply", more);
 }
 

@@ -220,6 +220,53 @@ TEST(ExtractedSurface, SaysWhatDistancesSayAmongNeedles) {
   EXPECT_EQ(reach(surface, longest), Reach::kWithin) << "a triangle is near itself";
 }
 
+// A strip of 4,000 needles side by side, 100 long and 0.02 wide, that lies oblique to all axes; `turn`: of the strip in
+// its plane, `lift`: above it.
+std::vector<Corners> strip(double turn, double lift) {
+  constexpr int kNeedles = 4000;
+  const Vector across{2.0 / 3, -2.0 / 3, 1.0 / 3};
+  const Vector along{1.0 / 3, 2.0 / 3, 2.0 / 3};
+  const Vector up{2.0 / 3, 1.0 / 3, -2.0 / 3};
+  const auto at = [&](double u, double v) {
+    const double x = std::cos(turn) * (u - 50) - std::sin(turn) * v;
+    const double y = std::sin(turn) * (u - 50) + std::cos(turn) * v;
+    return x * along + y * across + lift * up;
+  };
+  std::vector<Corners> needles;
+  for (int n = 0; n < kNeedles; n += 2) {
+    const double v = 0.01 * (n - kNeedles / 2);
+    needles.push_back({at(0, v), at(100, v), at(0, v + 0.02)});
+    needles.push_back({at(100, v), at(100, v + 0.02), at(0, v + 0.02)});
+  }
+  return needles;
+}
+
+// Triangles that a face between a needle and the next but one is compared with, on average.
+double looks_per_face(const std::vector<Corners>& needles, double most) {
+  ExtractedSurface surface(most, {2, 2, 2}, largest_of(needles));
+  surface.append(array_of(needles), kAll);
+  std::uint64_t looks = 0;
+  int faces = 0;
+  for (std::size_t n = 0; n + 2 < needles.size(); n += 16, ++faces) {
+    const Corners& from = needles[n];
+    EXPECT_EQ(surface.reach(vec(from[0]), vec(from[1]), vec(needles[n + 2][2]), &looks), Reach::kWithin);
+  }
+  return static_cast<double>(looks) / faces;
+}
+
+// The boxes around needles that are oblique overlap nearly all others; few of them come near each other, though.
+TEST(ExtractedSurface, ComparesFacesWithFewOfManyNeedles) {
+  std::vector<Corners> crossing;
+  for (int n = 0; n < 6; ++n) {
+    const std::vector<Corners> next = strip(0.5 * n, 3.0 * n);
+    crossing.insert(crossing.end(), next.begin(), next.end());
+  }
+  for (const double most : {0.2, 2.0}) {
+    EXPECT_LT(looks_per_face(strip(0, 0), most), 20) << most;
+    EXPECT_LT(looks_per_face(crossing, most), 20) << most;
+  }
+}
+
 // Each triangle as a piece of its own, in any order.
 TEST(ExtractedSurface, PiecesMayOverlap) {
   const std::vector<Corners> triangles = sheet(9);

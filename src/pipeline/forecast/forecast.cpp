@@ -50,10 +50,13 @@ constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits f
 constexpr double kCapsLeft = 0.005;   // share of the triangles of caps that their outlines keep
 constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
 constexpr double kCountMargin = 2.5;  // the same, where what is held depends on a number of triangles
+constexpr double kHeldOfLeft = 3;     // held while a number of triangles is out of reach, of what will be left
 constexpr double kFineDepth = 1.5;    // of the zone with fine quality, over that with normal quality
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;   // mean voxels
 constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
+
+enum class Reachable : std::uint8_t { kYes, kNo };  // a number of triangles
 
 struct BlockFacts {
   double per_layer = 0;  // triangles of the open surface
@@ -376,11 +379,19 @@ class Forecaster {
     return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
   }
 
-  // Undecided triangles when the slab at a layer is appended.
-  double held_before(const Profiles& profiles, double at, double depth) const {
+  // Whether the error or the topology leaves more triangles than the number that was asked for.
+  bool is_out_of_reach(const Profiles& profiles) const {
+    const double all = profiles.open.below(static_cast<double>(info_.dims[2]));
+    return before_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
+  }
+
+  // Undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is reached.
+  double held_before(const Profiles& profiles, double at, double depth, Reachable reachable) const {
     if (options_.triangles > 0) {
-      return std::min(profiles.open.below(at) + profiles.caps.below(at),
-                      static_cast<double>(CountTarget::most_held(options_.triangles)));
+      const double all = profiles.open.below(at) + profiles.caps.below(at);
+      const auto most = static_cast<double>(CountTarget::most_held(options_.triangles));
+      if (reachable == Reachable::kYes) return std::min(all, most);
+      return std::min(all, std::max(most, kHeldOfLeft * left_ * all));
     }
     const auto above = [&](const Profile& profile, double layers) {
       return profile.below(at) - profile.below(at - layers);
@@ -389,7 +400,7 @@ class Forecaster {
   }
 
   // Goes through the slabs of a run.
-  double peak(const Profiles& profiles, std::int64_t asked) const {
+  double peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
     const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
                             field.slice_bytes(),
@@ -410,7 +421,7 @@ class Forecaster {
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       const auto at = static_cast<double>(done);
-      const double undecided = held_before(profiles, at, depth);
+      const double undecided = held_before(profiles, at, depth, reachable);
       const SlabGoal goal = beside_zone(slab_goal(error_ > 0), undecided);
       // What is read and classified was planned before it turned out how full it is.
       const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
@@ -435,7 +446,10 @@ class Forecaster {
 
   // The cap that a run should do with, without slack.
   double least_cap(const Profiles& profiles) const {
-    return (options_.triangles > 0 ? kCountMargin : kCapMargin) * peak(profiles, 1) / kUsedPart;
+    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1) / kUsedPart;
+    const double usual = kCountMargin * peak(profiles, 1) / kUsedPart;
+    if (!is_out_of_reach(profiles)) return usual;
+    return std::max(usual, peak(profiles, 1, Reachable::kNo) / kUsedPart);
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
