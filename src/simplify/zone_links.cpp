@@ -202,9 +202,11 @@ class Zone::Linker {
   // closed fan.
   bool gather(const SidesAt& sides, Index v, Star& star) const {
     const Sides& leaving = sides.leaving;
-    const auto begin = leaving.half_edge.begin();
-    const auto first = static_cast<std::size_t>(
-        std::find(begin, begin + static_cast<std::ptrdiff_t>(leaving.count), zone_.vertices[v].half_edge) - begin);
+    if (leaving.count == 0) return false;
+    const auto id = [&](std::size_t n) { return zone_.vertices[zone_.index_of(leaving.other_end[n])].id; };
+    std::size_t first = 0;
+    for (std::size_t n = 1; n < leaving.count; ++n) first = id(n) < id(first) ? n : first;
+    zone_.vertices[v].half_edge = leaving.half_edge[first];  // where start_fan() would begin
     std::size_t faces = 0;
     std::size_t side = first;
     do {
