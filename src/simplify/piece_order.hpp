@@ -29,12 +29,7 @@ class PieceOrder {
   // The new vertices of column c, likewise.
   std::span<const std::size_t> vertex_column_starts() const { return new_vertices_.start; }
 
-<<<<<<< HEAD
   // Of the n-th new vertex: its place in the piece.
-=======
-  // The places in the piece of the n-th triangle and of the n-th new vertex.
-  std::uint32_t place_of_triangle(std::size_t n) const { return by_column_.items[n]; }
->>>>>>> b563061 (comments: simplify: each names its subject)
   std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }
 
   // The new number of a vertex, from its number in the piece.
