@@ -87,8 +87,8 @@ class HostDevice {
     if (count > 0) std::memcpy(static_cast<void*>(to), from, count * sizeof(T));
   }
 
-  // Copies to the device that go on beside what else it does. order_uploads() lets them wait for what has been asked
-  // for before, await_uploads() lets everything that comes wait for them.
+  // Copies to the device while other work runs there. order_uploads() makes uploads wait for all work asked for so far;
+  // await_uploads() makes all later work wait for the uploads.
   void upload(const std::byte* from, std::size_t bytes, std::byte* to) { copy(from, bytes, to); }
   void order_uploads() {}
   void await_uploads() {}
