@@ -64,7 +64,7 @@ Header read_header(StateReader& reader) {
   return header;
 }
 
-// The newest state of a folder that is whole; nothing if there is none, and then why not, if there is one that is not.
+// The newest whole state of a folder, or nothing. Then `why` names a state that is not whole, if there is one.
 std::optional<Header> newest_state(const std::string& folder, std::string& why) {
   std::optional<Header> newest;
   for (const std::uint64_t number : kNumbers) {

@@ -39,7 +39,7 @@ void SlabPlanner::note_extracted(const SlabCounts& slab) {
   recent_triangles_ = slab.triangles;
 }
 
-// The formula is a fit: surfaces with more vertices, or more of what is kept beside triangles, take more.
+// Compares the zone with the formula, a fit: surfaces with more vertices, or more kept beside triangles, take more.
 void SlabPlanner::weigh_zone(const SlabRecord& record, const Held& held) {
   constexpr std::uint64_t kEnough = 20'000;  // triangles; with fewer the fixed part weighs too much
   if (cap_ == 0 || record.live_triangles < kEnough) return;
@@ -79,7 +79,7 @@ void SlabPlanner::fit_into_cap(SlabPlan& plan, const Held& held, double ring) co
   plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(left / 2));
 }
 
-// The ring never shrinks: memory that thick slabs of few triangles would make of it is missing where there are more.
+// Whether a plan makes the ring too large: it never shrinks, and the memory is missing where triangles are many.
 bool SlabPlanner::is_too_thick(const SlabPlan& plan) const {
   const auto more = static_cast<double>(plan.layers + plan.ahead - 2);  // slices
   return more * static_cast<double>(field_.slice_bytes()) > kRingPart * static_cast<double>(cap_);
