@@ -461,7 +461,7 @@ class BulkEngine final : public DeviceEngine {
   Buffer<Index> changed_, candidates_, minima_;
   Buffer<std::uint32_t> list_sizes_;
 
-  // What is final.
+  // The final triangles.
   FinalPasses final_;
   Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, old_place_;
   Buffer<Index> final_triangles_, final_vertices_;

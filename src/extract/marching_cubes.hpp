@@ -26,8 +26,8 @@ namespace isoweave {
 struct ExtractOptions {
   IsoRule rule;
   bool normals = false;  // from central differences of the samples; needs one slice more on either side
-  // Where a volume is a part of another one: its vertices have the places and ids that they have in the whole. Beside a
-  // border inside the whole there is nothing, so no sample there may be inside.
+  // The place of a volume that is a part of another one: its vertices have the places and ids that they have in the
+  // whole. There is no surface at a border inside the whole, so no sample there may be inside.
   std::optional<PartOfLattice> part_of{};
 };
 
@@ -63,7 +63,7 @@ class MarchingCubes final : public Extractor {
     std::vector<std::uint64_t> inside, cross_x, cross_y;
     std::vector<std::uint32_t> base;  // number of the word's first x-crossing; y-crossings follow
   };
-  // The same between two slices.
+  // The bits and vertex numbers between two slices.
   struct Layer {
     std::vector<std::uint64_t> cross_z;
     std::vector<std::uint64_t> crossed;  // cells that the surface crosses, not only along z

@@ -54,7 +54,7 @@ class ComponentFilter final : public PieceStage {
   std::vector<std::uint8_t> front_is_kept_;  // of all vertices that the next piece inherits
   std::uint64_t triangles_ = 0;
 
-  // Of the piece.
+  // The vertices of the piece.
   Array<std::uint32_t> parents_;  // sets of connected vertices
   Array<std::uint8_t> kept_;      // per vertex
 };

@@ -59,12 +59,12 @@ class ComponentFinder final : public PieceStage {
   const VertexNumbering numbering_;
   const Executor& executor_;
 
-  // Of the whole surface, in the order of the vertices.
+  // The seeds of the whole surface, in the order of the vertices.
   std::vector<std::uint64_t> seeds_;           // ids
   std::vector<std::uint32_t> seed_parents_;    // which of them are of one component
   std::vector<std::uint64_t> seed_triangles_;  // that were found beside them
 
-  // Of the piece.
+  // The vertices of the piece.
   Array<std::uint32_t> parents_;          // sets of connected vertices
   Array<std::uint32_t> labels_;           // of vertices that are roots, or were: a seed of the component
   std::vector<std::uint32_t> new_roots_;  // vertices whose seeds came with the piece

@@ -29,7 +29,7 @@ class PieceOrder {
   // The new vertices of column c, likewise.
   std::span<const std::size_t> vertex_column_starts() const { return new_vertices_.start; }
 
-  // Of the n-th new vertex: its place in the piece.
+  // The place of the n-th new vertex in the piece.
   std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }
 
   // The new number of a vertex, from its number in the piece.

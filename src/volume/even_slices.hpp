@@ -12,7 +12,7 @@
 
 namespace isoweave {
 
-// Where slices lie along the normal of their planes, ascending.
+// The places of slices along the normal of their planes, ascending.
 struct SlicePlaces {
   std::string path;  // of all of them, for messages
   std::vector<double> depths;

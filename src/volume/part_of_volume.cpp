@@ -60,7 +60,7 @@ class CroppedVolume final : public RowSource {
     }
   }
 
-  // Some rows of the whole at a time.
+  // Reads some rows of the whole at a time.
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const std::size_t sample = sample_bytes(info_.type);
     const std::size_t row = static_cast<std::size_t>(info_.dims[0]) * sample;

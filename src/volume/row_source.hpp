@@ -33,7 +33,7 @@ class RowReader {
  public:
   explicit RowReader(SliceSource& volume);
 
-  // As RowSource::read_rows.
+  // Reads rows as RowSource::read_rows does.
   void read(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out);
 
  private:
@@ -46,10 +46,10 @@ class RowReader {
 // The bytes that a source holds (RowSource::held_bytes), and those that a RowReader adds.
 std::uint64_t held_by_rows(const SliceSource& volume);
 
-// As RowSource::held_bytes; 0 for other sources.
+// The bytes that a source holds (RowSource::held_bytes); 0 for sources without rows.
 std::uint64_t held_by_slices(const SliceSource& volume);
 
-// As RowSource::constant; nothing for other sources.
+// The value of every sample (RowSource::constant); nothing for sources without rows.
 std::optional<SampleBytes> constant_sample(const SliceSource& volume);
 
 }  // namespace isoweave

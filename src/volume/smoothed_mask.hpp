@@ -41,7 +41,7 @@ class SmoothedMask final : public SliceSource {
   // Slices on either side that a sample depends on.
   std::int64_t reach() const { return kReach * options_.passes; }
 
-  // What one holds, at most, and what it says of itself.
+  // The most bytes that a smoothed mask holds, and the description that it will have.
   static std::uint64_t memory(const VolumeInfo& volume, int passes);
   static VolumeInfo info_of(const VolumeInfo& volume);
 

@@ -175,7 +175,7 @@ inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t
 void check_indices(const MeshInput& input, std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::size_t vertices);
 
-// The same, and when a coordinate is not finite.
+// Fails when an index is out of range or a coordinate is not finite.
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
 TriangleMesh read_ply(MeshInput& input);

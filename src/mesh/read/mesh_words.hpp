@@ -12,7 +12,7 @@ namespace isoweave::mesh_io {
 
 bool is_tiny_number(std::string_view word);
 
-// What stands for `expected` in messages about a word that is no number.
+// The text after `expected` in messages about a word that is no number.
 const char* expected_number(std::string_view found);
 
 // The whole of a word as a number, in the spellings of all programs: with a D before its exponent, as Fortran writes

@@ -59,7 +59,7 @@ class StlText {
     skip_name();
     for (;;) {
       const std::string keyword = next_keyword();
-      // Some leave out the blank before the name.
+      // Some programs leave out the blank before the name.
       if (keyword.starts_with("endsolid")) break;
       if (keyword != "facet") check(keyword, keyword.empty() ? "endsolid" : "facet");
       read_facet();

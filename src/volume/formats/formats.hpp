@@ -88,7 +88,7 @@ bool has_dicom_magic(std::string_view head);
 inline constexpr std::size_t kDicomHeadBytes = 1024;
 inline constexpr std::size_t kDicomMagicEnd = 132;
 
-// Its magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
+// Whether a file is HDF5. The magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
 bool is_hdf5(const InputFile& file);
 OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options);
 

@@ -57,7 +57,7 @@ class PngFile {
     png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     png_read_image(png_, rows);
-    // Its end makes the sum of the data count.
+    // The end of the file makes the sum of the data count.
     png_read_end(png_, nullptr);
     return true;
   }
