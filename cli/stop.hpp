@@ -25,8 +25,8 @@ struct StopOptions {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop);
 
-// `usual` is the error where no option is given. Where only a guaranteed distance is given, that is the error. Where only
-// a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken.
+// `usual` is the error where no option is given. Where only a guaranteed distance is given, that is the error. Where
+// only a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken.
 Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
 
 // The options of each level of detail, finest first, as they would be for that mesh alone.
