@@ -197,8 +197,7 @@ struct SmoothOptions {
 // processor.
 // @throws std::invalid_argument for an iso that is not finite, and for passes outside 1 to kMostSmoothing
 // @cost Memory: for each sample of a slice 24 bytes per pass and 4 more, but only in rows near the surface, and one
-// slice
-//   of the volume. Reads ahead by 2 slices per pass.
+//   slice of the volume. Reads ahead by 2 slices per pass.
 // @determinism The same samples for any order of reads and any number of threads.
 std::unique_ptr<SliceSource> smooth_mask(std::unique_ptr<SliceSource> volume, const SmoothOptions& options = {},
                                          int threads = 0);
