@@ -6,6 +6,9 @@
                                          <!-- end NAME -->; plots go to the folder named as FILE without its ending
   bench/report.py RESULTS --docs FILE --block NAME
                                          rewrites only that part, with the ratios of simplification and the jobs
+  bench/report.py RESULTS --summary FILE the part of the results that all of these need, medians, in one small file
+
+RESULTS: the folder that bench/run leaves, or such a summary.
 """
 import argparse
 import pathlib
@@ -15,7 +18,7 @@ from reporting.results import failure, load, suite, thread_counts, volume_name
 from reporting.tables import extraction_tables, job_tables, number, simplification_tables, summary_table
 from reporting.goals import goal_table
 from reporting.scaling import scaling_tables
-from reporting.plots import plot_error, plot_job_memory, plot_scaling, plot_speed
+from reporting.summary import write_summary
 
 
 def paragraphs(parts):
@@ -28,7 +31,7 @@ def image(folder, name, text):
 
 def machine_text(results):
     found = {(result["machine"]["processor"], result["machine"]["threads"]) for result in results}
-    rounds = [len(row["ratios"]) for result in results for row in result.get("rows", []) if "ratios" in row]
+    rounds = [row["rounds"] for result in results for row in result.get("rows", []) if "rounds" in row]
     loads = [result["machine"]["load"] for result in results if "load" in result["machine"]]
     absent = sorted({name for result in results for name in result.get("absent", [])})
     text = "; ".join(f"{processor}, {threads} threads" for processor, threads in sorted(found))
@@ -51,6 +54,8 @@ def failures(results):
 
 def plots(results, folder):
     """Names of the files and what they show, by block."""
+    from reporting.plots import plot_error, plot_job_memory, plot_scaling, plot_speed  # needs matplotlib
+
     folder.mkdir(parents=True, exist_ok=True)
     made = {
         "simplification": [
@@ -126,12 +131,15 @@ def main():
     parser.add_argument("out", type=pathlib.Path, nargs="?")
     parser.add_argument("--docs", type=pathlib.Path)
     parser.add_argument("--block")
+    parser.add_argument("--summary", type=pathlib.Path)
     arguments = parser.parse_args()
     results = load(arguments.results)
     if not results:
         raise SystemExit(f"{arguments.results}: expected results as *.json, found none")
-    if arguments.out is None and arguments.docs is None:
-        parser.error("expected OUT or --docs FILE")
+    if arguments.out is None and arguments.docs is None and arguments.summary is None:
+        parser.error("expected OUT, --docs FILE or --summary FILE")
+    if arguments.summary:
+        write_summary(results, arguments.summary)
     if arguments.out:
         write_report(results, arguments.out)
     if arguments.block and not arguments.docs:

@@ -26,14 +26,15 @@ struct CheckArguments {
 
 std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
 
-// The share of the triangles that have one below 5 degrees.
+// The share of the triangles that have an angle below 5 degrees.
 std::string sharp_text(const TriangleAngles& angles) {
   if (angles.triangles == 0) return "none";
   return fmt::format("in {:.3g} %",
                      100 * static_cast<double>(angles.under_5_degrees) / static_cast<double>(angles.triangles));
 }
 
-// Vertices that rounding has put into one place make a surface closed by its numbers which is none to look at.
+// Warns of coincident vertices: where rounding has put several into one place, a surface that is closed by its numbers
+// does not look closed.
 std::string coincident_text(const MeshCheck& check) {
   if (check.coincident_triangles == 0) return "";
   return fmt::format(", {} triangles with corners in one place", grouped(check.coincident_triangles));
@@ -91,7 +92,7 @@ std::string self_intersections_text(const SelfIntersections& found) {
   return text;
 }
 
-// Facts of the mesh beside its counts.
+// Reports the facts of the mesh beside its counts.
 void tell_input(const CheckArguments& arguments, const InputMesh& input, const MeshCheck& check, Json& json) {
   std::vector<std::string> warnings = mesh_warnings(arguments.path, input.mesh);
   if (check.open_edges > 0 && !arguments.weld) {

@@ -37,7 +37,7 @@ std::string distances_text(const MeshDistance& distance, double unit, std::strin
   return text;
 }
 
-// Bars for both ways side by side would be too wide: one after the other.
+// The histogram of one way. Bars for both ways side by side would be too wide.
 std::string histogram_text(const OneWayDistance& way, double max, std::string_view name) {
   constexpr double kWidest = 40;
   const std::uint64_t most = std::ranges::max(way.histogram);
@@ -51,7 +51,7 @@ std::string histogram_text(const OneWayDistance& way, double max, std::string_vi
   return text;
 }
 
-// The distances from A's vertices to B, as colours for whoever looks at A.
+// Writes the distances from A's vertices to B, as colours of A.
 void write_distances(const CompareArguments& arguments, TriangleMesh& a, const TriangleMesh& b, int threads) {
   MeshFileOptions options;
   options.values = true;
@@ -67,7 +67,7 @@ TriangleMesh read_surface(const std::string& path, const ReadMeshOptions& option
   return mesh;
 }
 
-// Brings B to where A is, and says so.
+// Brings B to the place of A, and reports that.
 std::vector<std::string> match(TriangleMesh& b, const TriangleMesh& a, const CompareArguments& arguments) {
   try {
     std::vector<std::string> notes = match_place(b, a);

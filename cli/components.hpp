@@ -1,4 +1,4 @@
-// Which components of a surface are kept.
+// The options that choose which components of a surface are kept.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct ComponentOptions {
   bool largest = false;
 };
 
-// `surface`: what the triangles are counted in.
+// `surface`: the surface whose triangles are counted, for the help text.
 void add_component_options(CLI::App& verb, ComponentOptions& components, const std::string& surface);
 
 ComponentRule component_rule(const ComponentOptions& components);
@@ -22,7 +22,7 @@ ComponentRule component_rule(const ComponentOptions& components);
 // " largest component", for the comments of a mesh file; empty where all are kept.
 std::string component_text(const ComponentRule& rule);
 
-// A line about what was dropped, if anything was.
+// Prints a line about the dropped components, if any.
 void print_dropped(const MeshReport& report);
 
 }  // namespace isoweave::cli

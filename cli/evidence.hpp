@@ -13,14 +13,14 @@ namespace isoweave::cli {
 
 class Evidence {
  public:
-  // Opens the files that are asked for before the run, so that nothing is computed in vain.
+  // Opens the files that are asked for, before the run, so that nothing is computed in vain.
   Evidence(const RunOptions& run, const PageOptions& page);
 
   // Completes the report, without a page.
   void write_forecast(const Json& forecast);
 
-  // Completes both. `contents` is called where there is a page to be made, with a quiet control. Whatever becomes of
-  // the page, the report is written.
+  // Completes the report and the page. `contents` is called where a page is to be made, with a quiet control. The
+  // report is written even if the page fails.
   void write(Json report, const RunControl& control, const std::function<PageContents(const RunControl&)>& contents);
 
  private:

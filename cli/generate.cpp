@@ -19,7 +19,7 @@ struct GenerateArguments {
   bool quiet = false;
 };
 
-// Shows how far a volume has been read, and stops when asked to.
+// A source that shows how far a volume has been read, and stops when asked to.
 class WatchedSource final : public SliceSource {
  public:
   WatchedSource(SliceSource& source, ProgressPrinter& printer, const std::atomic<bool>& stop)

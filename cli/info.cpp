@@ -1,4 +1,4 @@
-// isoweave info: what a volume is, from one pass over it.
+// isoweave info: the facts of a volume, from one pass over it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggest
           {"suggested_iso", iso}};
 }
 
-// Long bars stand for counts by their square root: air would hide everything else.
+// The histogram. The length of a bar is the square root of its count: else air would hide everything.
 std::string histogram_text(const Histogram& histogram) {
   const std::vector<std::uint64_t> counts = coarser_bins(histogram, kParts);
   const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));

@@ -30,13 +30,13 @@ InputMesh read_input_mesh(const std::string& path, const ReadMeshOptions& option
 // Notes on a mesh that was read, for the user, one line each.
 std::vector<std::string> mesh_warnings(const std::string& path, const TriangleMesh& mesh);
 
-// A line for each of them on standard error.
+// Prints these notes on standard error, one line each.
 void print_mesh_warnings(const std::string& path, const TriangleMesh& mesh);
 
-// Says how many vertices were welded, if that was asked for.
+// Prints how many vertices were welded, if that was asked for.
 void print_welded(const std::string& path, bool weld, std::uint64_t welded);
 
-// A warning about so many edges of seams, with the way out; none where there are none.
+// A warning about the edges of seams, with the way to close them. Nothing where there are none.
 std::vector<std::string> seam_warnings(const std::string& path, std::uint64_t seam_edges);
 
 }  // namespace isoweave::cli

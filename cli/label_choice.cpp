@@ -63,7 +63,8 @@ std::vector<LabelName> LabelBook::segments(std::int64_t layer) const {
   return segments;
 }
 
-// A number stands for itself, in the layers whose segments have it; a name for all labels that have it.
+// The labels that a word names. A number names itself, in the layers whose segments have it; a name stands for all
+// labels that have it.
 std::vector<LabelName> LabelBook::matches(const std::string& word) const {
   std::vector<LabelName> found;
   if (const std::optional<Label> label = parse_label(word)) {

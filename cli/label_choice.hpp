@@ -1,4 +1,4 @@
-// Which labels of a map are asked for, and what they are called.
+// The labels of a map that are asked for, and their names.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct LabelChoice {
   std::vector<std::string> words;  // numbers and names
 };
 
-// Throws std::invalid_argument for what is neither.
+// Parses --labels. Throws std::invalid_argument for a word that is neither a number nor a name.
 LabelChoice parse_labels(std::string_view text);
 
-// Names of labels: those of a file or, without one, those that the map brings along.
+// The names of labels: those of a file or, without one, those in the map itself.
 class LabelBook {
  public:
   // `path` may be empty. `channel`, if any, is the one layer that is read.

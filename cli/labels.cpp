@@ -18,7 +18,7 @@
 namespace isoweave::cli {
 namespace {
 
-// Hundreds of labels are hundreds of open files.
+// Raises the limit of open files, as hundreds of labels are hundreds of files.
 void allow_many_files() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -26,7 +26,7 @@ void allow_many_files() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// Whether labels are the numbers of objects.
+// Whether labels are the numbers of their objects in the file.
 bool numbers_objects(const LabelsTask& task) {
   return !task.numbered && std::filesystem::path(task.output.path).extension() == ".precomputed";
 }
@@ -37,13 +37,13 @@ struct MeshedLabel {
   LabelExtent extent;
 };
 
-// A map of labels that do not overlap: a layer of a segmentation, or all there is.
+// A map of labels that do not overlap: a layer of a segmentation, or the whole map.
 struct LabelLayer {
   InputOptions input;
   std::vector<MeshedLabel> labels;
 };
 
-// a.ply becomes a_Name.ply.
+// The output of a label: a.ply becomes a_Name.ply.
 OutputOptions label_output(const OutputOptions& output, const std::string& name) {
   const std::filesystem::path path(output.path);
   OutputOptions of_label = output;
@@ -51,7 +51,7 @@ OutputOptions label_output(const OutputOptions& output, const std::string& name)
   return of_label;
 }
 
-// Passes everything on but the end, which comes when all layers are done.
+// A sink that passes on everything but the end, which comes when all layers are done.
 class UnfinishedSink final : public MeshSink {
  public:
   explicit UnfinishedSink(MeshSink& sink) : sink_(sink) {}
@@ -100,7 +100,7 @@ void check_numbers(const LabelsTask& task, std::span<const LabelName> labels) {
   }
 }
 
-// Labels that all of a grey image's values would be, one by one.
+// Refuses a map whose labels look like the values of a grey image.
 void check_is_label_map(const LabelsTask& task, std::span<const LabelExtent> labels) {
   constexpr std::size_t kFew = 16;
   const std::size_t scattered = count_scattered(labels);
@@ -247,7 +247,7 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   const std::vector<LabelName> chosen = book.chosen(task.choice);
   check_numbers(task, chosen);
   const LabelName any = chosen.empty() ? LabelName{1, {}, {}, 0} : chosen.front();
-  // Finds out now what would stop the run after the first pass.
+  // Opens the file and discards it: an error that would stop the run after the first pass is found now.
   std::unique_ptr<MeshSink> any_file =
       open_output(label_output(task.output, label_file_names(std::span(&any, 1))[0]), task.file(any));
   const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop.get());

@@ -25,13 +25,13 @@ struct LabelsTask {
   LabelChoice choice;
   std::string names;      // a file of names, or none
   bool numbered = false;  // --segment is given: else a label is the number of its object
-  // What the file of a label is to say, and what the report is to say of the task.
+  // Gives the options of a label's file, and the task for the report.
   std::function<MeshFileOptions(const LabelName& label)> file;
   std::function<void(Json& report)> describe;
 };
 
-// Finds the labels in a first pass over the volume, and meshes them in a second one: one of each kind for each layer of
-// a segmentation.
+// Finds the labels in a first pass over the volume, and meshes them in a second one. A segmentation takes both passes
+// for each of its layers.
 void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl control, Evidence& evidence);
 
 }  // namespace isoweave::cli

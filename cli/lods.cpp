@@ -20,7 +20,7 @@ void check_one_file(const OutputOptions& output, const StopOptions& stop) {
   wrong_value("--one-file", "a mesh named .glb, or .precomputed with --compress", output.path);
 }
 
-// Of one of several, as messages name it.
+// The name of a level in messages.
 std::string level_name(const std::vector<OutputOptions>& outputs, std::size_t level) {
   return outputs[level].one_file ? fmt::format("{}, level {}", outputs[level].name(), level) : outputs[level].name();
 }

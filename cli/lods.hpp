@@ -19,14 +19,15 @@ namespace isoweave::cli {
 // The errors of all levels but the last one.
 std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit);
 
-// The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ...; where no levels are asked for, and
-// for each where one file has them all, the output itself. Refuses formats that cannot have them all.
+// The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ... The output stays as it is where no
+// levels are asked for, and for each level where one file has them all. Refuses formats that cannot hold several
+// levels.
 std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop);
 
 // The folders of the parts of each level's file, for runs that can be resumed: `folder` itself for a single one.
 std::vector<std::string> level_folders(const std::string& folder, std::size_t levels);
 
-// Removes those of several levels, which are empty when the run is finished.
+// Removes the folders of several levels, which are empty when the run is finished.
 void remove_level_folders(const std::vector<std::string>& folders);
 
 // The files of all levels, open.
@@ -46,7 +47,7 @@ class LevelSinks {
 // The meshes in the files of all levels but the last one.
 std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs);
 
-// What was written of finer levels, for the report; and a line for each.
+// The counts of the finer levels for the report, and a line for each.
 Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs);
 void print_levels(const MeshReport& report, const std::vector<OutputOptions>& outputs);
 

@@ -1,4 +1,4 @@
-// The command line: picks the verb, and turns whatever ends it into one line and an exit code.
+// The command line: picks the verb, and turns every error into one line and an exit code.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
@@ -63,7 +63,7 @@ int run(const std::vector<std::string>& arguments) {
   refuse_empty_values(app);
   try {
     check_verb(app, arguments);
-    // CLI11 takes them from the back.
+    // CLI11 takes the arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& wish) {
     std::ostringstream text;

@@ -74,7 +74,8 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   return json;
 }
 
-// The mesh as it is in the file, and the surface before it was simplified, from a second pass over the volume.
+// The contents of the page: the mesh as it is in the file, and the surface before simplification, from a second pass
+// over the volume.
 PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
                            const RunControl& control) {
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
@@ -97,7 +98,7 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   return contents;
 }
 
-// Refuses what is known to be wrong with --labels before any file is looked at.
+// Refuses options that do not go with --labels, before any file is looked at.
 void check_labels(const MeshArguments& arguments) {
   if (arguments.labels.empty()) return;
   parse_labels(arguments.labels);
@@ -106,7 +107,7 @@ void check_labels(const MeshArguments& arguments) {
   }
 }
 
-// One mesh for each label.
+// Makes one mesh for each label.
 void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info,
                  const RunControl& control) {
   Evidence evidence(arguments.run, arguments.page);
@@ -139,7 +140,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
 // One run, step by step.
 class MeshJob {
  public:
-  // resume: a saved state to go on from, if there is one. lock: of its folder, or null.
+  // resume: the saved state to continue from, if there is one. lock: that of its folder, or null.
   MeshJob(const MeshArguments& arguments, std::optional<Checkpoint> resume, std::shared_ptr<const CheckpointLock> lock)
       : arguments_(arguments),
         resume_(std::move(resume)),
@@ -168,7 +169,7 @@ class MeshJob {
  private:
   bool quiet() const { return arguments_.run.quiet; }
 
-  // What needs no file.
+  // Checks all options that need no file.
   void check() const {
     parse_slab(arguments_.slab, 1);
     check_page(arguments_.page, arguments_.output);
@@ -184,7 +185,7 @@ class MeshJob {
     }
   }
 
-  // What does not go together is refused before any file is looked at.
+  // Refuses options that do not go together, before any file is looked at.
   void check_together() const {
     MeshOptions asked = options_;
     RunControl control = control_;
@@ -215,21 +216,21 @@ class MeshJob {
   }
 
   void find_iso() {
-    // Finds out now what would stop the run after the first pass.
+    // Opens the file and discards it: an error that would stop the run after the first pass is found now.
     open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
     check_reader(*volume_, options_, control_);
     options_.iso = automatic_iso(arguments_.input, *control_.stop);
     if (!quiet()) print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
   }
 
-  // Once, in a pass of its own.
+  // Chooses the components, once, in a pass of its own.
   void choose() {
     if (rule_.keeps_all() || options_.components != nullptr) return;
     options_.components =
         std::make_shared<ComponentChoice>(choose_components(*open_input(arguments_.input), options_, rule_, control_));
   }
 
-  // The number of triangles to stop at. A part of all takes their number first.
+  // Finds the number of triangles to stop at. For a share, all triangles are counted first.
   void find_target() {
     if (control_.memory > 0 && !arguments_.stop.ratio.empty()) foresee_share();
     options_.triangles = stop_triangles(arguments_.stop, [&] {
@@ -239,7 +240,7 @@ class MeshJob {
     });
   }
 
-  // A cap that is too small for a part of all triangles is refused before they are counted.
+  // Refuses a cap that is too small for a share of all triangles, before they are counted.
   void foresee_share() {
     const std::uint64_t all = forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
     const MeshFileOptions file = file_options(arguments_, arguments_.stop, options_, info_);
@@ -250,7 +251,7 @@ class MeshJob {
     try {
       check_with(all);
     } catch (const OverMemory&) {
-      check_with(all + all / 2);  // the cap that is named has to do where there are more than foreseen
+      check_with(all + all / 2);  // the cap that is named has to do with more triangles, too
       throw;
     }
     options_.triangles = 0;
@@ -282,7 +283,7 @@ class MeshJob {
     control_.checkpoint.note = task_json(arguments_, options_).dump();
   }
 
-  // How a level is to be written, with its unfinished parts in a folder if there is one.
+  // The options of a level's file, with its unfinished parts in a folder if there is one.
   MeshFileOptions level_file(std::size_t level, const std::string& folder) const {
     MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_);
     file.parts = folder;
@@ -364,7 +365,7 @@ void run_mesh(MeshArguments arguments) {
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
-    // A value between two labels is no label: slices are not resampled.
+    // Labels are not resampled, as a value between two labels is no label.
     const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
     if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
     return MeshJob(arguments, std::nullopt, nullptr).run();
@@ -378,7 +379,7 @@ void run_mesh(MeshArguments arguments) {
   MeshJob(arguments, checkpoint, std::move(lock)).run();
 }
 
-// The task of a run that goes on is known; how it runs may be said anew.
+// Refuses options of the task with --resume: the state has the task, and only the way to run may change.
 void exclude_task_options(CLI::App& verb, CLI::Option& resume) {
   constexpr std::array<std::string_view, 13> kRunning{
       "--help", "--slab",     "--memory",   "--every", "--threads",        "--device", "--report",
@@ -406,7 +407,7 @@ void add_mesh_verb(CLI::App& app) {
   verb->add_flag("--closed", arguments->closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb->add_option("--inside", arguments->inside, "Side of --iso that is inside: above or below")
       ->capture_default_str();
-  // A flag, as a value that stands apart would be taken for the volume.
+  // --smooth is a flag, as a value that stands apart would be taken for the volume.
   verb->add_flag(fmt::format("--smooth{{{}}}", kUsualSmoothing), arguments->smooth,
                  "Smooth the mask of what is inside, each vertex within its edge of the lattice; --smooth=N: passes");
   verb->add_option("--normals", arguments->normals,

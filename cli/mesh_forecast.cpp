@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kForPage = " (for --html)";
 
-// Triangles of all levels, at most: none has more of them than the finest. Looked at only where memory depends on it.
+// The most triangles of all levels: no level has more than the finest. Forecast only where memory depends on it.
 std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOptions& options,
                                   const MeshFileOptions& file, const RunControl& control, const Forecast& last) {
   const bool matters = arguments.page.given() || output_memory(arguments.output, 1, 1, file) > 0;
@@ -55,7 +55,7 @@ CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptio
   const std::uint64_t files = output_memory(arguments.output, triangles / 2, triangles, file);
   forecast.peak_bytes += files + watch_memory(arguments.watch);
   forecast.least_bytes += files + watch_memory(arguments.watch);
-  // A run with that cap looks at the volume, too.
+  // A run with that cap looks at the volume first, too.
   forecast.least_bytes = std::max(forecast.least_bytes, with_slack(system::peak_bytes()));
   const std::uint64_t page = arguments.page.given() ? with_slack(page_memory(triangles)) : 0;
   const bool page_decides = page > forecast.least_bytes;

@@ -1,4 +1,4 @@
-// What a run of isoweave mesh will take, and the limits that are known before it starts.
+// The forecast of a run of isoweave mesh, and the limits that are known before it starts.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace isoweave::cli {
 
-// Of the file that is forecast. Throws CannotWrite where its format cannot hold the counts.
+// The size of the file that is forecast. Throws CannotWrite where its format cannot hold the counts.
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file);
 
 // asked: the number of triangles to stop at, or 0.
@@ -21,15 +21,16 @@ struct CheckedForecast {
   std::uint64_t files = 0;  // bytes that writing holds
 };
 
-// What the run will take; refuses what is known to fail. A volume can be read once: this is another opening of it.
+// The forecast of the run. Refuses runs that are known to fail. `volume` must be an opening of its own, as a volume can
+// be read once.
 CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options,
                                  const MeshFileOptions& file, const RunControl& control);
 
 // Throws OverMemory where a page for so many triangles does not fit into the cap.
 void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles);
 
-// What the finest level will take in its file, or all levels in one; refuses what its format cannot hold. `last`: of
-// the coarsest level.
+// Checks the file of the finest level, or of all levels in one; refuses counts that its format cannot hold. `last`: the
+// forecast of the coarsest level.
 void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
                  const RunControl& control, const Forecast& last);
 

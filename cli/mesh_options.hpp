@@ -1,4 +1,4 @@
-// From the words of the command line of isoweave mesh to what the library takes.
+// Turns the command line of isoweave mesh into the options of the library.
 #pragma once
 
 #include <atomic>
@@ -16,10 +16,10 @@ namespace isoweave::cli {
 // Layers per slab; 0: chosen by the run. A whole volume is one layer thicker than its slices when it is closed.
 std::int64_t parse_slab(std::string_view text, std::int64_t slices);
 
-// All that needs no volume.
+// The options that need no volume.
 MeshOptions mesh_options(const MeshArguments& arguments);
 
-// The volume whose values the vertices get, with what was chosen of the first one; or none.
+// The volume whose values the vertices get, opened with the choices made for the first volume; or null.
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
 
 // Otsu's threshold. Reads the volume once more, by itself, as slices cannot be read twice.
@@ -28,7 +28,7 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop);
 // " smooth 4", for the comments of a mesh file; empty where nothing is smoothed.
 std::string smooth_text(const MeshOptions& options);
 
-// How the mesh of a level is to be written.
+// The options of a level's mesh file.
 MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
                              const VolumeInfo& volume);
 

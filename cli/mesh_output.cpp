@@ -10,7 +10,7 @@
 namespace isoweave::cli {
 namespace {
 
-// Formats are told by endings.
+// A path that names the format, as formats are told by endings.
 std::string format_path(const OutputOptions& output) {
   return output.to_stdout.empty() ? output.path : "standard output." + output.to_stdout;
 }

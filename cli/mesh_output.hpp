@@ -1,4 +1,4 @@
-// Where a mesh goes: the options that mesh and simplify share.
+// The output of a mesh: the options that mesh and simplify share.
 #pragma once
 
 #include <cstdint>
@@ -22,27 +22,27 @@ struct OutputOptions {
 
   bool given() const { return !path.empty() || !to_stdout.empty(); }
 
-  // What stands for it in messages and reports.
+  // The name of the output in messages and reports.
   std::string name() const { return to_stdout.empty() ? path : "standard output"; }
 };
 
 void add_output_options(CLI::App& verb, OutputOptions& output);
 
-// Puts in what the options say.
+// Adds the options of the command line.
 MeshFileOptions mesh_file_options(const OutputOptions& output, MeshFileOptions options);
 
 std::unique_ptr<MeshSink> open_output(const OutputOptions& output, const MeshFileOptions& options);
 
-// mesh_file_bytes and mesh_file_memory for it.
+// mesh_file_bytes and mesh_file_memory for an output.
 std::uint64_t output_bytes(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
                            const MeshFileOptions& options);
 std::uint64_t output_memory(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
                             const MeshFileOptions& options);
 
-// What the axes of the output mean, as far as it is known: "LPS", "RAS", "index" or nothing.
+// The meaning of the output's axes, as far as it is known: "LPS", "RAS", "index" or nothing.
 std::string space_text(const Geometry& geometry, OutputSpace space);
 
-// Says what the sink has to tell of its mesh.
+// Prints the notes that the sink has on its mesh.
 void print_notes(const MeshSink& sink);
 
 }  // namespace isoweave::cli

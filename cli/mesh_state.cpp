@@ -15,7 +15,7 @@ namespace {
 
 std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
-// The task of a saved state, and how it was to run where nothing else is said now.
+// Sets the task of a saved state, and the way to run where the command line does not set it.
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
   arguments.input = {task.at("volume"),       task.at("raw"),         task.at("spacing"), task.at("origin"),
                      task.at("series"),       task.at("dataset"),     task.at("level"),   task.at("channel"),

@@ -1,4 +1,4 @@
-// What isoweave mesh saves to be resumed with, and the folders that it is kept in.
+// The part of the command line that isoweave mesh saves, and the folders of saved states.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace isoweave::cli {
 
-// What a saved state keeps of the command line: the task, with paths that hold wherever it is resumed.
+// The command line in a saved state: the task, with paths that hold wherever it is resumed.
 Json task_json(const MeshArguments& arguments, const MeshOptions& options);
 
-// The arguments of a run that goes on: the task as it was, and how to run as it is said now. Throws BadInput for a
+// The arguments of a resumed run: the saved task, and the way to run of the present command line. Throws BadInput for a
 // state with another task.
 MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& checkpoint);
 
@@ -23,11 +23,11 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
 // "16layers", "90s", "5min" or "2h".
 void parse_every(std::string_view text, CheckpointOptions& checkpoint);
 
-// Makes the folder for the states of a new run, and holds it. Another run's are never overwritten.
+// Makes the folder for the states of a new run, and locks it. States of another run are never overwritten.
 CheckpointLock make_checkpoint_folder(const std::string& folder);
 
-// Makes the folder of the parts of a mesh. Without a state there is nothing to go on with: what is there is of a run
-// that ended before its first one.
+// Makes the folder of the parts of a mesh, and empties it. Without a state its parts are of a run that ended before its
+// first state, and cannot be continued.
 void make_part_folder(const std::string& folder);
 
 }  // namespace isoweave::cli

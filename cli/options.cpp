@@ -243,7 +243,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   return open_volume(input_file(input.path), options);
 }
 
-// One end of a range, or what it is when it is left out.
+// One end of a range; `left_out` where the text is empty.
 std::int64_t parse_end(std::string_view text, std::int64_t left_out, std::string_view all) {
   if (text.empty()) return left_out;
   const std::optional<std::int64_t> end = to_number<std::int64_t>(text);

@@ -32,10 +32,10 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text);      
 std::array<double, 3> parse_triple(std::string_view option, std::string_view text);      // "x,y,z"
 std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text);  // "N" or "WxHxD"
 
-// parse_length with the option's name in its message; refuses what is not a usable error.
+// Parses a length, with the option's name in its message. Refuses lengths that cannot be an error.
 Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit);
 
-// One of a few words.
+// Parses a text that must be one of a few words.
 template <class T>
 T parse_choice(std::string_view option, std::string_view text,
                std::initializer_list<std::pair<std::string_view, T>> of) {
@@ -52,7 +52,7 @@ Quality parse_quality(std::string_view text);
 // The file that a user names: "-" is standard input.
 std::string input_file(const std::string& path);
 
-// Where a volume comes from: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
+// The origin of a volume: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
 struct InputOptions {
   std::string path;
   std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
@@ -67,7 +67,7 @@ void add_input_options(CLI::App& verb, InputOptions& input);
 std::optional<GenerateOptions> generated_input(const InputOptions& input);
 std::unique_ptr<SliceSource> open_input(const InputOptions& input);
 
-// How a run is carried out, and what it tells.
+// The way a run is carried out, and its output.
 struct RunOptions {
   std::string threads = "all", device = "auto", schedule = "auto";
   std::string report;
@@ -82,9 +82,7 @@ void add_run_options(CLI::App& verb, RunOptions& run);
 RunControl run_control(const RunOptions& run);
 ProgressMode progress_mode(const std::string& progress, bool quiet);
 
-// Refuses to write over what is read, and two outputs to one file.
+// Refuses outputs that would write over an input, and two outputs to one file.
 void check_different(std::initializer_list<std::string_view> paths);
-
-// Refuses what the documents promise for later versions.
 
 }  // namespace isoweave::cli

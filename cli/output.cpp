@@ -19,7 +19,7 @@ std::string one_line(std::string_view text) {
   return printable(text);
 }
 
-// The error number of what kept the text from being written, or 0.
+// Writes a text. Returns 0, or the error number of the failure.
 int write_to(std::FILE* stream, std::string_view text) {
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;

@@ -1,4 +1,4 @@
-// What the program says, and to whom: results on standard output, everything else on standard error.
+// The texts that the program prints: results on standard output, everything else on standard error.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@ inline constexpr int kExitOverMemory = 5;
 inline constexpr int kExitDevice = 6;
 inline constexpr int kExitInterrupted = 130;
 
-// All that is printed goes through these four. Whatever characters a file or its name brought in, what reaches a
-// terminal are printable ones and ends of lines.
+// Everything that is printed goes through these four functions. Whatever characters a file or its name brought in, only
+// printable ones and ends of lines reach a terminal.
 
-// Writes to standard output and sees to it that the text got there. Throws CannotWrite.
+// Writes to standard output and makes sure that the text has been written. Throws CannotWrite.
 void print_out(std::string_view text);
 
-// The same for text that somebody reads as far as they like: a pipe that is closed meanwhile is no error.
+// Writes text for a reader who may stop early: a pipe that is closed meanwhile is no error.
 void print_to_reader(std::string_view text);
 
-// "isoweave: TEXT" as one line on standard error. A note that cannot be written is lost and ends nothing: it is not
-// worth a mesh.
+// Prints "isoweave: TEXT" as one line on standard error. A note that cannot be written is lost without an error: it is
+// not worth a mesh.
 void print_note(std::string_view text);
 
 // Draws over the line of the terminal that standard error is; an empty text wipes it off.
 void draw_line(std::string_view text);
 
-// Says what went wrong and returns the exit code that stands for it.
+// Prints an error and returns its exit code.
 int report_error(const std::exception& error);
 
 // 1234567 -> "1,234,567"; 1234567 -> "1.23 M"; 1572864 -> "1.57 MB".

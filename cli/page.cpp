@@ -53,7 +53,7 @@ bool has_stand_in(const std::vector<PageSurface>& surfaces) {
   return false;
 }
 
-// What a reader of the page has to know.
+// The notes that a reader of the page needs.
 Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& report, const std::string& full_note) {
   Json notes = Json::array();
   if (page.surfaces.empty()) notes.push_back("The mesh has no triangles.");

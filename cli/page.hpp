@@ -31,14 +31,14 @@ struct PageOptions {
 void add_page_options(CLI::App& verb, PageOptions& page);
 void add_page_triangles(CLI::App& verb, PageOptions& page);
 
-// Refuses with std::invalid_argument what is known to fail: `wanted`, the option or verb, in a build without the
-// viewer, and a number that is none.
+// Refuses with std::invalid_argument, before any work: `wanted`, the option or verb, in a build without the viewer, and
+// an invalid number of triangles.
 void check_page(const PageOptions& page, std::string_view wanted);
 
-// The same, and a mesh that cannot be read again once it is written.
+// Refuses likewise, and refuses a mesh that cannot be read again once it is written.
 void check_page(const PageOptions& page, const OutputOptions& output);
 
-// What is in memory while a page is made from a mesh of so many triangles, about.
+// The memory, about, that making a page from a mesh of so many triangles takes.
 std::uint64_t page_memory(std::uint64_t triangles);
 
 struct PageContents {
@@ -48,10 +48,10 @@ struct PageContents {
   std::vector<TriangleMesh> finer{};   // levels of detail before `mesh`, finest first
 };
 
-// Why a surface of more than kMostFullTriangles is not there.
+// The note about a surface that is left out, as it has more than kMostFullTriangles.
 std::string too_full_note(std::uint64_t triangles);
 
-// Adds what the page shows beside the report to it, as "page", and completes the file.
+// Adds the contents of the page beside the report to it, as "page", and completes the file.
 void write_page(AtomicFile& file, const PageOptions& page, Json& report, PageContents contents,
                 const RunControl& control);
 

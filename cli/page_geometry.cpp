@@ -24,7 +24,7 @@ double largest(const std::vector<float>& distances) {
   return distances.empty() ? 0 : double{*std::max_element(distances.begin(), distances.end())};
 }
 
-// Triangles in an order that packs well, and the new numbers of their vertices; returns how many those are.
+// Orders triangles so that they pack well, and renumbers their vertices. Returns the number of these.
 std::size_t reorder(const TriangleMesh& mesh, std::vector<std::uint32_t>& indices,
                     std::vector<std::uint32_t>& numbers) {
   indices.resize(mesh.triangles.size() * 3);

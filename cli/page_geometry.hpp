@@ -11,7 +11,7 @@ namespace isoweave::cli {
 
 std::string base64(std::span<const unsigned char> bytes);
 
-// What the script needs to unpack a surface:
+// The fields that the script needs to unpack a surface:
 //   vertices, triangles       counts
 //   origin, step              position = origin + step * stored
 //   distance                  distance of a vertex = distance * stored / 65535; null without distances

@@ -1,4 +1,4 @@
-// What is asked of a page, and what is refused before any work is done.
+// The options of a page, and the checks on them before any work is done.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>

@@ -8,14 +8,14 @@
 
 namespace isoweave::cli {
 
-// Where data go in a page as it is built from viewer/.
+// The mark in a page built from viewer/ that data take the place of.
 inline constexpr std::string_view kPageMark = "%%data%%";
 
 // A script element of JSON up to its text.
 std::string script_start(std::string_view id);
 inline constexpr std::string_view kScriptEnd = "</script>\n";
 
-// Nothing in it can end the script element that it is put in.
+// JSON as text that cannot end the script element around it.
 std::string script_text(const Json& json);
 
 }  // namespace isoweave::cli

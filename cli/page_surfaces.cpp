@@ -17,8 +17,8 @@ using measure::operator-;
 constexpr std::array<std::uint64_t, 2> kCoarser{4, 16};  // one of so many triangles is left
 constexpr std::uint64_t kFewestTriangles = 500;          // of a coarser level
 constexpr double kWorthIt = 0.75;                        // part of the triangles that a level may have of the finer one
-// Part of the mesh's size that coarser surfaces may be off. Some surfaces, noise, cannot be made of so few triangles,
-// and trying takes minutes.
+// The largest error of coarser surfaces, in parts of the mesh's size. Some surfaces, such as noise, cannot be made of
+// so few triangles, and trying takes minutes.
 constexpr double kMostError = 0.02;
 constexpr std::size_t kBins = 40;
 constexpr std::uint64_t kSamples = 200'000;
@@ -37,7 +37,7 @@ double size_of(const TriangleMesh& mesh) {
   return std::sqrt(measure::dot(high - low, high - low));
 }
 
-// To so many triangles, or to as few as kMostError allows.
+// The mesh simplified to so many triangles, or to as few as kMostError allows.
 TriangleMesh simplified(const TriangleMesh& mesh, std::uint64_t triangles, const RunControl& control) {
   RunControl quiet = control;
   quiet.measure = false;
@@ -94,7 +94,7 @@ PageErrors measured_errors(const TriangleMesh& mesh, const TriangleMesh& full, c
   return errors;
 }
 
-// The mesh, or what stands in for it.
+// The mesh, or its stand-in.
 PageSurface shown_mesh(TriangleMesh mesh, std::uint64_t most_triangles, const RunControl& control) {
   if (mesh.triangles.size() <= most_triangles) return {"mesh", std::move(mesh)};
   return {"stand-in", simplified(mesh, most_triangles, control)};
@@ -111,7 +111,7 @@ void add_coarser(std::vector<PageSurface>& surfaces, const RunControl& control) 
   }
 }
 
-// Those that are not too large, with their numbers.
+// The levels of detail that are not too large, with their numbers.
 std::vector<PageSurface> shown_levels(std::vector<TriangleMesh> finer, std::uint64_t most_triangles) {
   std::vector<PageSurface> levels;
   for (std::size_t level = 0; level < finer.size(); ++level) {
@@ -122,7 +122,7 @@ std::vector<PageSurface> shown_levels(std::vector<TriangleMesh> finer, std::uint
   return levels;
 }
 
-// Of two offsets one that is not 0 stays: coordinates near it lose nothing.
+// Moves both meshes to one of their offsets. Where only one is not 0, it is that one: coordinates near it lose nothing.
 void move_to_one_offset(TriangleMesh& a, TriangleMesh& b) {
   const std::array<double, 3> offset = a.offset == std::array<double, 3>{0, 0, 0} ? b.offset : a.offset;
   move_to_offset(a, offset);

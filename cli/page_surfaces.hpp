@@ -1,4 +1,4 @@
-// The surfaces that a page holds, and how far they are from the one before simplification.
+// The surfaces that a page holds, and their distances from the full surface.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ struct PageSurfaces {
   bool lacks_finer = false;           // some levels of detail have more triangles than a page shows
 };
 
-// A mesh of more triangles is replaced by a stand-in of about so many. Coarser levels are made where the run made none.
+// Makes the surfaces of a page. A mesh of more triangles is replaced by a stand-in of about so many. Coarser levels are
+// made where the run made none.
 PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control);
 
 }  // namespace isoweave::cli

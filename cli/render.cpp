@@ -112,13 +112,13 @@ RenderOptions parse_options(const RenderArguments& arguments) {
   return options;
 }
 
-// What the ends of the colours stand for.
+// A text for the numbers at the ends of the colours.
 std::string colours_text(const RenderOptions& options, std::span<const float> quality) {
   const auto [low, high] = options.range ? *options.range : render::finite_range(quality);
   return low <= high ? fmt::format(", colours from {:.6g} to {:.6g}", low, high) : "";
 }
 
-// What would keep the picture from being written is found before it is made.
+// Finds an error that would keep the picture from being written, before the picture is made.
 void check_output(const std::string& path) {
   if (!path.ends_with(".png")) throw CannotWrite(path + ": expected a name that ends with .png");
   render::require_png(path);

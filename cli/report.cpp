@@ -42,7 +42,8 @@ std::string character_escaped(char32_t code) {
   return unit_escaped(0xd800 + (beyond >> 10U)) + unit_escaped(0xdc00 + (beyond & 0x3ffU));
 }
 
-// JSON text without characters that do not show. They can only be inside strings, where an escape means the same.
+// JSON text with characters that do not show as escapes. Such characters can only be inside strings, where an escape
+// means the same.
 std::string escaped(std::string_view json) {
   std::string text;
   while (!json.empty()) {

@@ -15,10 +15,10 @@ namespace isoweave::cli {
 
 using Json = nlohmann::ordered_json;
 
-// A number, or null for what JSON has no number for.
+// A number, or null where JSON has no number for it.
 Json number_or_null(double value);
 
-// The `input` part: what the header says. `path` is what the user gave.
+// The `input` part: the facts of the header. `path` is the path that the user gave.
 Json volume_json(const VolumeInfo& info, const std::string& path);
 
 // Adds min, max and nan; null where there is no value at all.
@@ -30,16 +30,17 @@ Json label_json(const Label& label);
 // A surface as it was written.
 Json surface_json(const SurfaceReport& surface);
 
-// What every run reports; `input` is the first part that differs between runs on volumes and on meshes.
+// The common part of the reports of all runs. `input` is the first part that differs between runs on volumes and on
+// meshes.
 Json run_json(const MeshReport& report, Json input);
 
-// What a run was expected to take.
+// The forecast of a run.
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
 
-// What a mesh is, by its triangles alone.
+// The facts of a mesh, by its triangles alone.
 Json check_json(const MeshCheck& check, const std::string& path);
 
-// Where a mesh lies: its unit and space, empty where they are not said, and its offset.
+// The place of a mesh: its unit and space, empty where they are not said, and its offset.
 Json place_json(const TriangleMesh& mesh);
 
 Json self_intersections_json(const SelfIntersections& found);
@@ -53,7 +54,7 @@ std::string json_text(const Json& json);
 // Writes the report into a file that was opened before the run, so that nothing is computed in vain.
 void write_report(AtomicFile& file, const Json& json);
 
-// "closed, manifold" or what is not so.
+// "closed, manifold", or the properties that a surface lacks.
 std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices);
 
 // A line on standard error about a surface that has been written.

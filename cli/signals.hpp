@@ -1,21 +1,21 @@
-// What Ctrl-C, SIGTERM and the end of the terminal (SIGHUP) do. A second one always ends the program at once.
+// The effect of Ctrl-C, SIGTERM and the end of the terminal (SIGHUP). A second signal always ends the program at once.
 #pragma once
 
 #include <atomic>
 
 namespace isoweave::cli {
 
-// Writing to a closed pipe, or past a limit on the size of files, is an error like others and not the end.
+// Makes writing to a closed pipe, or past a limit on the size of files, an error like others, instead of the end.
 void ignore_write_signals();
 
-// Takes the place of standard streams that were closed by whoever started the program, so that no file of its own gets
-// their numbers. Nothing can be written to what stands there.
+// Opens /dev/null for the standard streams that the parent closed, so that no file of the program gets their numbers.
+// Nothing can be written to these streams.
 void occupy_standard_streams();
 
-// End with exit code 130: for verbs, and parts of verbs, that have nothing to clean up.
+// Makes signals end the program with exit code 130: for verbs, and parts of verbs, that have nothing to clean up.
 void exit_on_signal();
 
-// Set a flag for the run to see.
+// Makes signals set a flag for the run to see.
 const std::atomic<bool>& stop_on_signal();
 
 }  // namespace isoweave::cli

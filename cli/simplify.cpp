@@ -57,7 +57,7 @@ bool holds_values(const OutputOptions& output) {
   return output.to_stdout.empty() ? isoweave::holds_values(mesh_format(output.path)) : output.to_stdout == "ply";
 }
 
-// How the mesh of a level is to be written.
+// The options of a level's mesh file.
 MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleMesh& mesh, std::size_t level,
                              std::uint64_t triangles) {
   MeshFileOptions file;
@@ -72,7 +72,7 @@ MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleM
   return mesh_file_options(arguments.output, std::move(file));
 }
 
-// A mesh that is given counts as what is extracted from it.
+// Reports dropped components of the input as if they had been extracted and dropped.
 void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.components_dropped = dropped.components;
   report.triangles_dropped = dropped.triangles;
@@ -82,7 +82,7 @@ void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.warnings.push_back(fmt::format("nothing is left: each of {} components is dropped", dropped.components));
 }
 
-// What the input has and the output will not have.
+// Warnings about parts of the input that the output will not have.
 std::vector<std::string> input_warnings(const SimplifyArguments& arguments, const TriangleMesh& mesh) {
   std::vector<std::string> warnings = mesh_warnings(arguments.input, mesh);
   if (!mesh.values.empty() && !holds_values(arguments.output)) {
@@ -91,7 +91,7 @@ std::vector<std::string> input_warnings(const SimplifyArguments& arguments, cons
   return warnings;
 }
 
-// A border that stays may be a seam.
+// Reports seams: a border that stays may be a seam.
 void add_seams(const SimplifyArguments& arguments, const TriangleMesh& mesh, MeshReport& report) {
   if (report.open_edges == 0 || arguments.weld) return;
   for (std::string& warning : seam_warnings(arguments.input, count_seam_edges(mesh))) {
@@ -99,7 +99,7 @@ void add_seams(const SimplifyArguments& arguments, const TriangleMesh& mesh, Mes
   }
 }
 
-// The mesh as it is in the file, beside the one that was given.
+// The contents of the page: the mesh as it is in the file, beside the given mesh.
 PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMesh full) {
   PageContents contents{read_mesh(outputs.back().path)};
   contents.finer = read_finer(outputs);
@@ -111,7 +111,7 @@ PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMe
   return contents;
 }
 
-// Lengths in the unit of the mesh.
+// The options, with lengths in the unit of the mesh.
 SimplifyOptions simplify_options(const SimplifyArguments& arguments, std::string_view unit) {
   SimplifyOptions options;
   options.error = stop_error(arguments.stop, "", unit);
@@ -128,7 +128,7 @@ void run_simplify(const SimplifyArguments& arguments) {
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
   if (!arguments.stop.given()) throw CLI::RequiredError("--error");
-  SimplifyOptions options = simplify_options(arguments, "");  // finds out now what is wrong with them
+  SimplifyOptions options = simplify_options(arguments, "");  // finds errors in them now
   const ComponentRule rule = component_rule(arguments.components);
   check_page(arguments.page, arguments.output);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);

@@ -1,4 +1,4 @@
-// One function per verb: it describes the verb's options and what is to be done with them.
+// One function per verb: it describes the verb's options and its action.
 #pragma once
 
 #include "cli_app.hpp"

@@ -34,8 +34,8 @@ struct ViewArguments {
   bool quiet = false;
 };
 
-// A scene of glTF begins like this as well, and is told by its name. A pipe, which can be read once, is taken for a
-// mesh.
+// Whether a file is a report. A scene of glTF begins like a report as well, and is told by its name. A pipe, which can
+// be read once, is taken for a mesh.
 bool is_report(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || path.ends_with(".gltf")) return false;
@@ -55,7 +55,7 @@ Json read_report(const std::string& path) {
   return report;
 }
 
-// As the run was told, or beside the report when both were moved.
+// The path of the mesh of a report: as the run had it, or beside the report when both were moved.
 std::string mesh_of(const Json& surface, const std::string& report_path) {
   if (!surface.is_object() || !surface.contains("output") || !surface["output"].is_string()) {
     throw BadInput(report_path + ": expected levels that name their meshes as \"output\", found others");

@@ -27,13 +27,13 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// Where index (i, j, k) is.
+// The place of index (i, j, k).
 Point place_of(const VolumeInfo& volume, const World& world, const std::array<double, 3>& index) {
   const auto& spacing = volume.geometry.spacing;
   return world.point({index[0] * spacing[0], index[1] * spacing[1], index[2] * spacing[2]});
 }
 
-// Around the samples and the caps, which are within a sample of them.
+// The grid around the samples and the caps, which are within a sample of them.
 ViewGrid grid_of(const VolumeInfo& volume, const World& world) {
   std::vector<Point> corners;
   for (std::size_t corner = 0; corner < 8; ++corner) {
@@ -46,7 +46,7 @@ ViewGrid grid_of(const VolumeInfo& volume, const World& world) {
   return ViewGrid::around(corners);
 }
 
-// Corners of the first slice and of the next, from which the page knows where all of them are.
+// The corners of the first slice and of the next, from which the page knows the places of all slices.
 Json slices_json(const VolumeInfo& volume, const World& world) {
   const double i = static_cast<double>(volume.dims[0] - 1);
   const double j = static_cast<double>(volume.dims[1] - 1);
@@ -113,7 +113,7 @@ class SweepWatch final : public Watch {
   void deliver(const std::atomic<bool>& stop) const override {
     const Clock::time_point end = Clock::now() + kGrace;
     if (!feed_.asked_within(kPresence)) return;
-    // Whoever has everything asks no more.
+    // A page that has everything asks no more.
     const auto all_have_it = [&] { return feed_.is_delivered() && !feed_.asked_within(kQuiet) && server_.is_idle(); };
     while (!stop && Clock::now() < end && !all_have_it()) {
       std::this_thread::sleep_for(10ms);
@@ -127,7 +127,7 @@ class SweepWatch final : public Watch {
   static constexpr Clock::duration kQuiet = 400ms;
   static constexpr Clock::duration kGrace = 5s;
 
-  // As coarse as last time, or once less: cells twice as wide leave a quarter of the triangles.
+  // Shows the surface as coarse as last time, or one step finer: cells twice as wide leave a quarter of the triangles.
   void show(const SlabRecord& slab, const std::function<void(const Visitor&)>& visit_undecided) {
     CoarseSurface surface(kMostUndecidedDrawn, slab.undecided_triangles < kMostUndecidedDrawn ? 0 : bits_);
     visit_undecided([&](std::span<const TriangleCorners> block) {

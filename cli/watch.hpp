@@ -19,16 +19,16 @@ struct WatchOptions {
   bool given() const { return !port.empty(); }
 };
 
-// --watch. To be added after --quiet and --dry-run, with which it does not go.
+// Adds --watch. Must be called after --quiet and --dry-run, with which it does not go.
 void add_watch_option(CLI::App& verb, WatchOptions& watch);
 
-// Refuses with std::invalid_argument what is known to fail: a build that has no page, a port that is none, a device.
+// Refuses with std::invalid_argument, before any work: a build that has no page, an invalid port, a device.
 void check_watch(const WatchOptions& watch, Device device);
 
-// The most that watching holds.
+// The most bytes that watching holds.
 std::uint64_t watch_memory(const WatchOptions& watch);
 
-// What of the run is told to whoever watches.
+// The facts of the run for the pages that watch it.
 struct WatchedRun {
   const VolumeInfo& volume;
   const MeshOptions& options;
@@ -38,15 +38,15 @@ struct WatchedRun {
 
 class Watch : public SweepObserver {
  public:
-  // The run is complete. Serving goes on until the end of this object.
+  // Tells that the run is complete. Serving continues until the end of this object.
   virtual void complete(const MeshReport& report) = 0;
 
-  // Returns when those who watch have got the result, when nobody does, after five seconds, or once `stop` is set.
+  // Returns when all watching pages have the result, when no page watches, after five seconds, or once `stop` is set.
   virtual void deliver(const std::atomic<bool>& stop) const = 0;
 };
 
-// Says where the page is, on standard error. Null where nobody watches: it was not asked for, or the port cannot be
-// had, which is a note and no error.
+// Prints the address of the page on standard error. Returns null where nobody watches: it was not asked for, or the
+// port cannot be had, which is a note and no error.
 std::shared_ptr<Watch> start_watch(const WatchOptions& watch, const WatchedRun& run);
 
 }  // namespace isoweave::cli

@@ -25,7 +25,7 @@ constexpr std::size_t kMostWaiting = 64;
 constexpr std::size_t kMostAsked =
     16'384;  // bytes: what browsers send, with the cookies of other pages of this machine
 constexpr auto kToAsk = 1s;
-constexpr int kLook = 20;  // ms between two looks whether somebody's time is up
+constexpr int kLook = 20;  // ms between two looks for connections that are out of time
 constexpr std::string_view kEnd = "\r\n\r\n";
 
 void close_socket(int socket) {
@@ -40,7 +40,7 @@ bool is_host_line(std::string_view line) {
          });
 }
 
-// Ranges, encodings, cookies and bodies would only be work for whoever reads them.
+// The lines of a request that matter. Ranges, encodings, cookies and bodies would only be work for the server.
 std::string what_matters(std::string_view head) {
   std::string kept;
   for (bool first = true; !head.empty(); first = false) {
@@ -78,7 +78,7 @@ void WatchConnections::take(int socket) {
   {
     const std::lock_guard guard(mutex_);
     new_.push_back(socket);
-    // The thread that takes in may be behind: whoever came first has had the most of its time.
+    // The thread that takes connections in may be behind. The oldest connection has had most of its time.
     if (new_.size() > kMostAsking) {
       close_socket(new_.front());
       new_.erase(new_.begin());
@@ -91,7 +91,7 @@ void WatchConnections::take_in() {
   while (!over_) {
     add_new();
     wait();
-    // What has come is read first, then times are looked at: a process that was stopped meanwhile finds both.
+    // Reads what has arrived first, then looks at times: a process that was stopped meanwhile finds both.
     std::erase_if(asking_, [this](Asking& asking) {
       const State state = read_some(asking);
       if (state == State::kAsked && hand_over(asking)) return true;

@@ -1,5 +1,5 @@
-// The connections of --watch: what they ask is taken in by one thread, answered by a few others, and bounded in size,
-// time and number, whoever they are.
+// The connections of --watch. One thread takes requests in, and a few others answer them. Size, time and number of
+// connections are bounded, whoever they are.
 #pragma once
 
 #include <atomic>
@@ -15,32 +15,32 @@
 
 namespace isoweave::cli {
 
-// Those that have not asked hold a socket and what came so far, but no thread. They have one second in all and 16 KiB;
-// when there are too many, the oldest goes.
+// Connections that have not asked hold a socket and the bytes received so far, but no thread. Each has one second in
+// all and 16 KiB. When there are too many, the oldest is closed.
 class WatchConnections {
  public:
-  // What a connection asked: the line of its request and its Host lines. Nothing else of it is looked at.
+  // The question of a connection: the line of its request and its Host lines. Nothing else of it is looked at.
   struct Question {
     int socket = -1;
     std::string head;
   };
   using Serve = std::function<void(const Question&)>;
 
-  // `serve` answers, in any of four threads; the socket is closed behind it.
+  // `serve` answers, in any of four threads. The socket is closed after the answer.
   explicit WatchConnections(Serve serve);
 
-  // Cuts off whoever is there.
+  // Cuts off all connections.
   ~WatchConnections();
   WatchConnections(const WatchConnections&) = delete;
   WatchConnections& operator=(const WatchConnections&) = delete;
 
-  // A new connection. Does not wait.
+  // Takes a new connection. Does not wait.
   void take(int socket);
 
-  // Nobody who has asked is without the answer.
+  // Whether every connection that has asked has its answer.
   bool is_idle() const { return unanswered_ == 0; }
 
-  // It is all over: an answer on its way is to be given up.
+  // Set when the server ends: an answer on its way must be given up.
   const std::atomic<bool>& over() const { return over_; }
 
  private:

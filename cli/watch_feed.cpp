@@ -41,7 +41,7 @@ void SweepPlot::add(const SlabRecord& slab) {
   }
 }
 
-// Two by two; a last one without a neighbour is taken for a full one.
+// Joins steps two by two. A last step without a neighbour is taken for a full one.
 void SweepPlot::halve() {
   std::vector<SlabRecord> coarser;
   for (std::size_t n = 0; n < steps_.size(); n += 2) {
@@ -113,10 +113,10 @@ bool WatchFeed::is_delivered() const {
   return delivered_;
 }
 
-// How wide the cells are whose vertices have become one.
+// The width of the cells whose vertices have become one.
 double WatchFeed::cell(int bits) const { return bits == 0 ? 0 : std::ldexp(grid_.step, bits); }
 
-// Of this process; an earlier one may have read some of the voxels.
+// The speed of this process; an earlier one may have read some of the voxels.
 double WatchFeed::voxels_per_second() const {
   if (!first_) return 0;
   const bool more = last_ > first_->time;

@@ -1,5 +1,5 @@
-// What the page that watches a sweep is told, and how it comes to it: the sweep's thread puts in, the server's threads
-// take out, and neither waits for the other longer than it takes to copy a megabyte.
+// The messages to a page that watches a sweep. The sweep's thread puts data in and the server's threads take them out.
+// Neither waits for the other longer than it takes to copy a megabyte.
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@ namespace isoweave::cli {
 inline constexpr std::size_t kMostFinalDrawn = 375'000;
 inline constexpr std::size_t kMostUndecidedDrawn = 187'500;
 
-// What a page has already.
+// The data that a page has already.
 struct WatchQuery {
   int final_bits = 0;             // of the final triangles
   std::uint64_t final_count = 0;  // of them
   std::uint64_t frame = 0;        // number of the one that it shows; 0: none
 };
 
-// The sweep in fewer than kMost steps, however many slabs there are: of slabs that share a step the largest counts.
+// The sweep in fewer than kMost steps, however many slabs there are. Of slabs that share a step the largest counts.
 class SweepPlot {
  public:
   void add(const SlabRecord& slab);
@@ -53,22 +53,23 @@ class WatchFeed {
   void add_final(std::span<const TriangleCorners> triangles);
   void end_slab(const Progress& progress, const SlabRecord& slab);
 
-  // What is undecided after that slab. Only now is shown what has become final up to there: the two fit together.
+  // Sets the undecided surface after that slab. Triangles that have become final up to there are shown only now, so
+  // that the two fit together.
   void show(const CoarseSurface& undecided);
   void complete(Json result);
 
   const ViewGrid& grid() const { return grid_; }
 
-  // Somebody has got the page, and will ask.
+  // Tells that a page has been sent, and will ask.
   void visit();
 
-  // Somebody has asked in the last `period`.
+  // Whether a page has asked in the last `period`.
   bool asked_within(Clock::duration period) const;
 
-  // Somebody has everything, the result too.
+  // Whether some page has everything, the result too.
   bool is_delivered() const;
 
-  // Any thread: what has come since, as
+  // Any thread: the data that have come since, as
   //   4 bytes    length of the JSON that follows, little-endian; even
   //   JSON       numbers, and how many triangles follow
   //   18 bytes   each of the final triangles, no more than kMostAtOnce, and of the undecided ones if they are others:

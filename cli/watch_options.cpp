@@ -1,4 +1,4 @@
-// What is asked of --watch, and what is refused before any work is done.
+// The options of --watch, and the checks on them before any work is done.
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
@@ -19,7 +19,7 @@ void require_watch() {
 }  // namespace
 
 void add_watch_option(CLI::App& verb, WatchOptions& watch) {
-  // A flag, as a value that stands apart would be taken for the volume.
+  // --watch is a flag, as a value that stands apart would be taken for the volume.
   verb.add_flag("--watch{0}", watch.port,
                 "Show the sweep while it runs, in a browser on this machine; --watch=PORT: at this port")
       ->excludes("--quiet")

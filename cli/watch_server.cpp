@@ -26,9 +26,9 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr Clock::duration kToTake = 2s;      // a part of the answer
 constexpr Clock::duration kToTakeAll = 60s;  // the address may have been forwarded over a slow line
-constexpr int kLook = 20;                    // ms between two looks whether it is all over
+constexpr int kLook = 20;                    // ms between two looks whether the server ends
 
-// 128 bits.
+// A token of 128 random bits.
 std::string random_token() {
   std::random_device random;
   std::string token;
@@ -36,7 +36,7 @@ std::string random_token() {
   return token;
 }
 
-// What was asked, from memory, and the socket that the answer goes to.
+// A request in memory, and the socket that the answer goes to.
 class Connection final : public httplib::Stream {
  public:
   Connection(const WatchConnections::Question& question, const std::atomic<bool>& over)
@@ -50,7 +50,7 @@ class Connection final : public httplib::Stream {
     return static_cast<ssize_t>(got);
   }
 
-  // Looks once more when the time is up: a process that was stopped meanwhile finds what was taken.
+  // Looks once more when the time is up: a process that was stopped meanwhile finds data that were taken.
   bool is_writable() const override {
     const Clock::time_point until = std::min(Clock::now() + kToTake, all_taken_by_);
     while (!over_) {
@@ -80,14 +80,14 @@ class Connection final : public httplib::Stream {
   std::size_t read_ = 0;
 };
 
-// Hands each connection on, at once.
+// A queue that hands each connection on at once.
 class HandOn final : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> take) override { take(); }
   void shutdown() override {}
 };
 
-// "127.0.0.1:8080", with whatever port: it may have been forwarded.
+// Whether a request names this machine, as "127.0.0.1:8080" does. Any port will do: it may have been forwarded.
 bool is_this_machine(const httplib::Request& request) {
   if (request.get_header_value_count("Host") != 1) return false;
   const std::string host = request.get_header_value("Host");
@@ -103,7 +103,7 @@ Number number_of(const httplib::Request& request, const char* name) {
   return number;
 }
 
-// Without a copy.
+// Sends content without a copy.
 void send(httplib::Response& response, const char* type, std::shared_ptr<const std::string> content) {
   const std::size_t size = content->size();
   response.set_content_provider(
@@ -120,7 +120,7 @@ class WatchServer::Http final : private httplib::Server {
       : page_(std::make_shared<const std::string>(std::move(page))),
         visited_(std::move(visited)),
         answer_(std::move(answer)) {
-    // Without httplib's SO_REUSEPORT, by which two processes would share a port.
+    // Clears httplib's SO_REUSEPORT, by which two processes would share a port.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));

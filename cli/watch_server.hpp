@@ -9,11 +9,11 @@
 
 namespace isoweave::cli {
 
-// On 127.0.0.1 only. What it shows may be a patient: an address holds 128 random bits, without which there is nothing
-// (404) for the other users and programs of the machine; a name that somebody has pointed to this machine is refused
-// (403: DNS rebinding); no other origin may read or frame it. Connections that have not asked within a second and
-// 16 KiB, those that take nothing for two, and those that have not taken all in a minute, are closed. Whoever is idle
-// holds no thread (watch_connections.hpp); four are answered at a time.
+// Serves on 127.0.0.1 only. The surface may be a patient's. So the address holds 128 random bits, without which other
+// users and programs of the machine find nothing (404). A name that somebody has pointed to this machine is refused
+// (403: DNS rebinding). No other origin may read or frame the page. Connections are closed that have not asked within a
+// second and 16 KiB, that take nothing for two seconds, or that have not taken everything in a minute. An idle
+// connection holds no thread (watch_connections.hpp); four are answered at a time.
 class WatchServer {
  public:
   using Visited = std::function<void()>;
@@ -23,14 +23,14 @@ class WatchServer {
   // std::runtime_error when the port cannot be had.
   WatchServer(int port, std::string page, Visited visited, Answer answer);
 
-  // Cuts off whoever is being served.
+  // Cuts off all connections.
   ~WatchServer();
   WatchServer(const WatchServer&) = delete;
   WatchServer& operator=(const WatchServer&) = delete;
 
   std::string url() const;
 
-  // Nobody is being served.
+  // Whether no connection is being served.
   bool is_idle() const;
 
  private:

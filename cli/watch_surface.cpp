@@ -58,7 +58,7 @@ CellTable::Place CellTable::first_in_cell(const Place& place, int bits) {
   return slot.first;
 }
 
-// That of the cell, or the one that it would get.
+// The slot of a cell, or the free one that the cell would get.
 CellTable::Slot& CellTable::slot_of(std::uint64_t cell) {
   constexpr std::uint64_t kGoldenRatio = 0x9e3779b97f4a7c15;  // Knuth, The Art of Computer Programming 3, 6.4
   std::size_t n = (cell * kGoldenRatio >> 20) & (slots_.size() - 1);
@@ -84,7 +84,7 @@ void CoarseSurface::add(const GridTriangle& triangle) {
   while (is_full() && bits_ < kMostBits) coarsen();
 }
 
-// Moves the corners to what stands for their cells. False: they are in fewer than three.
+// Moves the corners to the points that stand for their cells. Returns false where they lie in fewer than three cells.
 bool CoarseSurface::snap(GridTriangle& triangle) {
   if (bits_ == 0) return true;
   const auto corners = corners_of(triangle);
@@ -101,7 +101,8 @@ bool CoarseSurface::snap(GridTriangle& triangle) {
 // A surface has half as many vertices as triangles; noise may have more, which count as well.
 bool CoarseSurface::is_full() const { return triangles_.size() >= most_ || 3 * cells_.size() >= 2 * most_; }
 
-// Of the narrowest cells that are as wide as the mean of the first edges: in narrower ones next to nothing becomes one.
+// The bits of the narrowest cells that are as wide as the mean of the first edges. Narrower cells would join next to
+// nothing.
 int CoarseSurface::first_bits() const {
   std::uint64_t sum = 0;
   for (const GridTriangle& t : triangles_) {

@@ -26,14 +26,15 @@ struct ViewGrid {
   GridTriangle place(const TriangleCorners& triangle) const;
 };
 
-// Which point stands for a cubic cell. Open addressing: looked up three times for each triangle that is kept.
+// The point that stands for a cubic cell. The table has open addresses, as it is looked up three times for each
+// triangle that is kept.
 class CellTable {
  public:
   using Place = std::array<std::uint16_t, 3>;
 
   std::size_t size() const { return size_; }
 
-  // The point that came first in the cell of so many bits less in which `place` is.
+  // The first point that came in the cell of `place`, where cells have so many bits less.
   Place first_in_cell(const Place& place, int bits);
 
  private:
@@ -50,10 +51,10 @@ class CellTable {
   std::size_t size_ = 0;
 };
 
-// A surface that stays below a number of triangles: each time there would be more, the vertices within a cell become
+// A surface that stays below a number of triangles. Each time there would be more, the vertices within a cell become
 // one (Rossignac and Borrel 1993, Multi-resolution 3D approximations), and triangles that have become edges or points
-// go. The first cells are as wide as the edges are long, then twice as wide each time. Up to then triangles are as they
-// came.
+// are dropped. The first cells are as wide as the edges are long, then twice as wide each time. Until then triangles
+// stay as they came.
 class CoarseSurface {
  public:
   // Cells of 2^bits steps to begin with; 0: none.
@@ -64,7 +65,7 @@ class CoarseSurface {
   std::span<const GridTriangle> triangles() const { return triangles_; }
   int bits() const { return bits_; }
 
-  // What is there now, and what has become of that.
+  // Marks the present triangles, to tell later what has become of them.
   void mark() { marked_ = triangles_.size(); }
   std::span<const GridTriangle> marked() const { return triangles().first(marked_); }
 

@@ -1,14 +1,20 @@
-"""What bench/run leaves: rows of one contestant beside ours."""
+"""The results of bench/run: rows of one contestant beside ours, from a folder of files or from their summary."""
 import json
 import pathlib
+
+from reporting.summary import read_summary, summarized
 
 NORMAL, FINE = "isoweave normal", "isoweave fine"
 TOLERANCE = 0.05  # by which counts may differ that count as equal
 UNKNOWN = "–"
 
 
-def load(folder):
-    results = [json.loads(path.read_text()) for path in sorted(pathlib.Path(folder).glob("*.json"))]
+def load(source):
+    path = pathlib.Path(source)
+    if path.is_dir():
+        results = [summarized(json.loads(file.read_text())) for file in sorted(path.glob("*.json"))]
+    else:
+        results = read_summary(path)
     results = [result for result in results if result["rows"]]
     return sorted(results, key=lambda result: samples(result) if "input" in result else 0)
 
@@ -70,4 +76,4 @@ def names(rows):
 
 def added_bytes(side):
     """What the run adds to its input in the contestant's own structures."""
-    return side["peak_bytes"] - side["bytes_before"]
+    return side["added_bytes"]

@@ -5,7 +5,7 @@ from reporting.results import suite
 from reporting.tables import megabytes, number, table, times
 
 
-def medians(rows, curve, kind, key, value=lambda row: row["seconds"]["total"]):
+def medians(rows, curve, kind, key, value=lambda row: row["seconds"]):
     """(key, median over the repetitions) of one curve, in the order in which it was measured."""
     groups = {}
     for row in rows:

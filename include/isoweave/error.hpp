@@ -1,7 +1,7 @@
-// Errors that the library throws. It never prints, exits or aborts.
+// Errors that the library throws. The library never prints, exits or aborts.
 //
-// Every what() is one line that names the file or option, what was expected and what was found.
-// Bad arguments from the calling program (a NaN spacing, an empty span) are std::invalid_argument.
+// Every what() is one line that names the file or option, what was expected and what was found. A bad argument from the
+// calling program (a NaN spacing, an empty span) is std::invalid_argument, which is no Error.
 #pragma once
 
 #include <stdexcept>
@@ -38,7 +38,7 @@ class DeviceError : public Error {
   using Error::Error;
 };
 
-// The caller asked the run to stop; nothing is left behind.
+// The caller asked the run to stop. Nothing is left behind but a saved state, if a folder for states was given.
 class Interrupted : public Error {
  public:
   using Error::Error;

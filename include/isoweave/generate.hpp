@@ -35,14 +35,22 @@ struct GenerateOptions {
 std::vector<std::string> generator_kinds();
 
 // The iso-value at which a kind shows the surface described above, in the units of the samples of `type`.
+// @throws std::invalid_argument for an unknown kind
 double suggested_iso(std::string_view kind, SampleType type);
 
-// A source of the volume. Every sample is a pure function of (kind, dims, seed, i, j, k).
-// Throws std::invalid_argument for an unknown kind, dims < 1 or spacing that is not positive.
+// A source of the volume. Nothing is computed before it is read.
+// @throws std::invalid_argument for an unknown kind, dims < 1, more samples than 63 bits count, or spacing that is not
+//   positive and finite
+// @cost Memory: one row of float64, and what the kind needs for a slice; never the volume.
+// @determinism Every sample is a pure function of (kind, dims, seed, i, j, k), the same on every machine.
 std::unique_ptr<SliceSource> generate_volume(const GenerateOptions& options);
 
-// Writes any source as NRRD (.nrrd, raw encoding, attached), MetaImage (.mha) or raw (.raw) by the name's
-// ending, streamed, under a temporary name that is renamed when complete. Throws CannotWrite, BadInput.
+// Writes any source as NRRD (.nrrd, raw encoding, attached), MetaImage (.mha) or raw (.raw), by the ending of the name.
+// The file is complete or absent: it is streamed under a temporary name and renamed when complete. A file of that name
+// is replaced.
+// @throws CannotWrite for another ending, a volume with a slope or intercept (but to .raw), and where the file cannot
+//   be written; and what the source throws
+// @cost Memory: slices of 4 MB in all, one at least.
 void write_volume(SliceSource& source, const std::string& path);
 
 }  // namespace isoweave

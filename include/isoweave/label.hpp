@@ -26,7 +26,7 @@ class Label {
   // The number itself or, where it is negative, 2^64 more.
   constexpr std::uint64_t bits() const { return bits_; }
 
-  // In decimal digits.
+  // The number in decimal digits.
   std::string text() const { return negative_ ? std::to_string(signed_number()) : std::to_string(bits_); }
 
   friend constexpr bool operator==(const Label&, const Label&) = default;
@@ -49,12 +49,12 @@ class Label {
   bool negative_ = false;
 };
 
-// What a file says of a label.
+// The facts that a file gives about a label.
 struct LabelName {
   Label label;
   std::string name;                            // as in the file, UTF-8 or what it is
   std::optional<std::array<double, 3>> color;  // red, green, blue from 0 to 1
-  std::int64_t layer = 0;                      // which map of several that lie on each other: OpenOptions::channel
+  std::int64_t layer = 0;                      // the map that holds it, of several that overlap: OpenOptions::channel
 };
 
 }  // namespace isoweave

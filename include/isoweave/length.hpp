@@ -1,4 +1,4 @@
-// Lengths in options: in voxels, or in the unit of what is meshed.
+// Lengths in options: in voxels, or in the unit of the volume or mesh.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,8 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// A length. Voxels: of a volume the mean side of one, of a mesh the square root of twice the mean triangle area.
+// A length. A voxel is the mean side of a volume's voxels; for a mesh it is the square root of twice the mean triangle
+// area.
 struct Length {
   double value = 0;
   bool in_voxels = false;  // else in the volume's or the mesh's own unit
@@ -15,9 +16,10 @@ struct Length {
   static constexpr Length units(double value) { return {value, false}; }
 };
 
-// Parses "0.2vox", "0.05mm", "30um", "500nm", "0.01in" or "0.05" (the volume's own unit). Units are spelled in any way
-// that volumes spell them. Their lengths are converted to `unit` ("mm" where the volume does not say). Throws
-// std::invalid_argument naming the text.
+// Parses "0.2vox", "0.05mm", "30um", "500nm", "0.01in" or "0.05", a length in `unit`. Units may be spelled as in volume
+// files. A length in another unit is converted to `unit`; an empty `unit` stands for "mm".
+// @throws std::invalid_argument naming the text, for a number that is negative or not finite, and for a unit that is
+//   not known
 Length parse_length(std::string_view text, std::string_view unit);
 
 }  // namespace isoweave

@@ -1,4 +1,4 @@
-// Measures of finished meshes: invariants, digest, distance. They trust nothing but the triangles.
+// Measures of finished meshes: invariants, digest, distance. They use nothing but the triangles.
 #pragma once
 
 #include <array>
@@ -20,11 +20,12 @@ struct TriangleAngles {
   double largest = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t under_5_degrees = 0;  // triangles with an angle below 5 degrees
 
-  // Triangles by their smallest angle, in ten equal parts of [0, 60]; an angle between two parts is in the upper one.
+  // Triangles by their smallest angle, in ten equal parts of [0, 60]. An angle between two parts is in the upper one.
   std::array<std::uint64_t, 10> smallest_in_bins{};
 };
 
-// Degenerate triangles are counted as triangles and in the digest; everything else is about the others.
+// The counts of a mesh. Degenerate triangles count as triangles and in the digest; all other counts leave them out,
+// unless they say otherwise.
 struct MeshCheck {
   std::uint64_t vertices = 0;  // referenced by a triangle
   std::uint64_t unused_vertices = 0;
@@ -45,14 +46,15 @@ struct MeshCheck {
   std::uint64_t digest = 0;
 };
 
-// Counts by sorting edges: O(n log n) time, about 80 bytes per triangle. Same result on every machine,
-// but for the last digits of the two angles in degrees.
-// Throws std::invalid_argument when a triangle refers to a vertex that the mesh does not have.
+// Counts by sorting edges, in the calling thread. The offset of the mesh counts in the digest only.
+// @throws std::invalid_argument when a triangle refers to a vertex that the mesh does not have
+// @cost O(n log n) time, about 80 bytes per triangle.
+// @determinism The same on every machine, but for the last digits of the smallest and the largest angle.
 MeshCheck check_mesh(const TriangleMesh& mesh);
 
-// Pairs of triangles of one mesh that have more points in common than they should. Triangles are closed: touching
-// counts. A vertex is its number: triangles whose corners only lie at the same place do not share them. A triangle
-// without area (all its corners on one line) is in no pair.
+// Pairs of triangles of one mesh that have more points in common than they should. Triangles are closed sets: touching
+// counts. Vertices are told apart by number: triangles whose corners only lie at the same place do not share them. A
+// triangle without area (all its corners on one line) is in no pair.
 struct SelfIntersections {
   std::uint64_t apart = 0;         // pairs without a common vertex that have a point in common
   std::uint64_t at_vertex = 0;     // pairs with one common vertex that have another point in common
@@ -60,30 +62,30 @@ struct SelfIntersections {
   std::uint64_t triangles = 0;     // in at least one of these pairs
   std::uint64_t without_area = 0;  // triangles left out
 
-  // The first of the pairs by their numbers in the mesh, from 0: the smaller one of a pair first, pairs in rising
-  // order.
+  // The first pairs, by numbers in the mesh from 0: the smaller number of a pair first, pairs in rising order.
   std::vector<std::array<std::uint64_t, 2>> first;
 
   std::uint64_t pairs() const { return apart + at_vertex + at_edge; }
 };
 
-// Exact for any float32 coordinates: by signs of determinants, evaluated in double with an error bound and without
-// rounding where that does not decide (Shewchuk 1997; triangles: Devillers, Guigue 2002). About O(n log n) time on
-// surfaces and 80 bytes per triangle, however many pairs there are; `listed` of them are returned. The result is the
-// same for any number of threads (0: all). Throws std::invalid_argument for an index out of range, a coordinate that is
-// not finite, and 2^32 triangles or more.
+// Counts the pairs of triangles that intersect. Exact for any float32 coordinates: signs of determinants are evaluated
+// in double with an error bound, and without rounding where that does not decide (Shewchuk 1997; triangles: Devillers,
+// Guigue 2002). At most `listed` pairs are returned in `first`. threads: 0 for all.
+// @throws std::invalid_argument for an index out of range, a coordinate that is not finite, and 2^32 triangles or more
+// @cost About O(n log n) time on surfaces and 80 bytes per triangle, however many pairs there are.
+// @determinism The same for any number of threads.
 SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t listed = 10, int threads = 0);
 
-// 64-bit sum over the triangles of a mix of their float32 coordinate bits, each triangle rotated so that its
-// smallest vertex comes first: equal for equal meshes whatever the order and numbering of their parts, different
-// (but for chance) when a coordinate or an orientation differs. -0 counts as 0.
+// The digest of a triangle, a mix of its float32 coordinate bits that begins with its smallest corner. The digest of a
+// mesh is the 64-bit sum over its triangles: equal for equal meshes whatever the order and numbering of their parts,
+// and different (but for chance) when a coordinate or an orientation differs. -0 counts as 0.
 std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c);
 
-// The same for corners relative to the offset of a mesh: of the bits of the float64 sums, or, where the offset is 0, of
-// the float32 coordinates as above.
+// The digest of a triangle whose corners are relative to the offset of a mesh: of the bits of the float64 sums, or,
+// where the offset is 0, of the float32 coordinates.
 std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& offset);
 
-// 16 hexadecimal digits.
+// A digest as 16 hexadecimal digits.
 std::string digest_text(std::uint64_t digest);
 
 struct DistanceOptions {
@@ -93,7 +95,7 @@ struct DistanceOptions {
   std::size_t bins = 0;  // of the histograms; 0: none are made. They take 8 bytes for each sample meanwhile
 };
 
-// Distances from one surface to another: mean, root mean square and largest over the samples, in the meshes' unit.
+// Distances from one surface to another, in the meshes' unit: mean, root mean square and largest over the samples.
 struct OneWayDistance {
   double mean = 0, rms = 0, max = 0;
   std::vector<std::uint64_t> histogram;  // samples in equal parts of [0, MeshDistance::max]; or none
@@ -104,14 +106,19 @@ struct MeshDistance {
   double mean = 0, rms = 0, max = 0;  // both ways: mean of the means, root of the mean of the squares, larger maximum
 };
 
-// Samples each mesh by area and finds exact point-to-triangle distances to the other through a bounding volume
-// hierarchy. Same result for any thread count; a mesh without area is sampled by triangle. Offsets are heeded, units
-// and spaces are not (match_place, mesh.hpp). Throws std::invalid_argument when a mesh has no triangles, an index out
-// of range or a coordinate that is not finite.
+// Compares two meshes both ways. Samples each mesh by area and finds exact point-to-triangle distances to the other
+// through a bounding volume hierarchy. A mesh without area is sampled by triangle. Offsets are applied; units and
+// spaces are not (match_place, mesh.hpp).
+// @throws std::invalid_argument when a mesh has no triangles, an index out of range, a coordinate that is not finite or
+//   2^32 triangles, and for 0 samples
+// @cost Meshes with different offsets are copied. Histograms take 8 bytes per sample meanwhile.
+// @determinism The same for any number of threads.
 MeshDistance compare_meshes(const TriangleMesh& a, const TriangleMesh& b, const DistanceOptions& options = {});
 
-// The distance of every vertex of a mesh to the nearest point of another, in the meshes' unit. Throws as compare_meshes
-// does. threads: 0: all; the result is the same for any number.
+// The distance of every vertex of a mesh to the nearest point of another, in the meshes' unit. Offsets are applied.
+// threads: 0 for all.
+// @throws std::invalid_argument as compare_meshes does
+// @determinism The same for any number of threads.
 std::vector<float> vertex_distances(const TriangleMesh& mesh, const TriangleMesh& to, int threads = 0);
 
 }  // namespace isoweave

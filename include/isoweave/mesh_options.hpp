@@ -1,4 +1,5 @@
-// What is made of a volume: which surface, how it is simplified, what its vertices carry, and where it lies.
+// The options of the mesh of a volume: which surface, how it is simplified, what its vertices carry, and its
+// coordinates.
 #pragma once
 
 #include <array>
@@ -12,43 +13,47 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// Which surface of a volume.
+// The surface of a volume.
 struct SurfaceOptions {
   double iso = 0;            // a value: slope and intercept of the volume are accounted for
   bool inside_above = true;  // inside is value >= iso; else value <= iso. NaN is outside
   bool closed = true;        // caps at the volume's border; else the surface ends there
-  // Passes of smooth_mask: the surface of a mask, a label map say, without its staircase. 0: the surface of the
-  // samples. No vertex leaves its edge of the lattice; min, max and nan of the report are those of the samples.
+  // Passes of smooth_mask, 0 to 64: the surface of a mask or label map without its staircase. 0: the surface of the
+  // samples. No vertex leaves its edge of the lattice. min, max and nan of the report are those of the samples.
   int smooth = 0;
-  // The components that are kept, found by choose_components in this volume with these `iso`, `inside_above` and
+  // The components that are kept, found by choose_components in this volume with the same `iso`, `inside_above` and
   // `closed`; null: all. The result is the mesh of a surface that never had the others: errors, numbers of triangles
-  // and distances refer to what is kept. Costs a second union-find over the triangles of each slab. Not on a device.
+  // and distances refer to the kept components. Costs a second union-find over the triangles of each slab. Not on a
+  // device.
   std::shared_ptr<const ComponentChoice> components{};
 };
 
 // Normals of the vertices: none; gradients of the samples, which merge as vertices do; or gradients that the
-// simplification keeps as well: an edge collapses where the error of position and normal is least, and only as long as
-// that is within the error (Hoppe, 1999), where a normal of unit length that is off by 1 counts as half a mean voxel.
+// simplification keeps as well. In the last case an edge collapses where the error of position and normal is least, and
+// only while that is within the error (Hoppe, 1999). A difference of length 1 between two unit normals counts as an
+// error of half a mean voxel.
 enum class Normals : std::uint8_t { kAbsent, kGradient, kQuadric };
 
-// What the vertices carry beside their places.
+// The attributes that vertices carry beside their places.
 struct AttributeOptions {
   Normals normals = Normals::kAbsent;  // unit length, outwards; zero where there is no direction
-  // Another volume of as many samples, whose values the vertices get: interpolated where a vertex is extracted, and
-  // along the edge when it collapses. Slope and intercept are accounted for. Read beside the first one.
+  // Another volume of as many samples, whose values the vertices get. Values are interpolated where a vertex is
+  // extracted, and along the edge when it collapses. Slope and intercept are applied. The volume is read during the
+  // run, and must not be the source of the run.
   std::shared_ptr<SliceSource> values{};
 };
 
-// Coordinates of the output: as the volume's own world, in a named convention (x and y change sign between the two), or
-// index * spacing without origin and direction.
+// The coordinates of the output: the volume's own world, a named convention (x and y change sign between the two), or
+// index * spacing, without origin and direction.
 enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
 
-// The offset with which to open a sink for a mesh of this volume (MeshFileOptions::offset, MeshInMemory). All 0 unless
-// the volume lies so far from the origin that rounding to 32 bits would move vertices by more than a thousandth of the
-// smallest spacing: then the place of its first sample, so that coordinates are those of the same volume at the origin.
+// The offset for a sink that gets a mesh of this volume (MeshFileOptions::offset, MeshInMemory). It is 0 unless the
+// volume lies so far from the origin that rounding to 32 bits would move vertices by more than a thousandth of the
+// smallest spacing. Then it is the place of the first sample, so that coordinates are those of the same volume at the
+// origin.
 std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space);
 
-// All that the mesh of a volume depends on.
+// Everything that the mesh of a volume depends on.
 struct MeshOptions : SurfaceOptions, SimplifyOptions, AttributeOptions {
   OutputSpace space = OutputSpace::kAsVolume;
 };

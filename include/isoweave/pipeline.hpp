@@ -1,8 +1,8 @@
 // The main job: volume in, simplified surface out, in one sweep.
 //
-// The surface is extracted slab by slab, simplified while it grows, and final triangles leave memory for the sink at
-// once. The result is, bit for bit, the mesh that a sequential greedy simplifier would make from the complete
-// surface, whatever the slab thickness, the number of threads and the schedule.
+// The surface is extracted slab by slab and simplified while it grows. Final triangles leave memory for the sink at
+// once. The result is, bit for bit, the mesh that a sequential greedy simplifier would make from the complete surface,
+// whatever the slab thickness, the number of threads and the schedule.
 #pragma once
 
 #include <cstdint>
@@ -22,33 +22,40 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// What a run makes: the mesh of a volume, the meshes of labels, a choice of components, a mesh from a mesh.
+// The kinds of runs: the mesh of a volume, the meshes of labels, a choice of components, a mesh from a mesh.
 enum class RunKind : std::uint8_t { kMesh, kLabels, kComponents, kSimplify };
 
-// Throws std::invalid_argument, naming both, where two of the things that are asked for do not go together: one table
-// for all runs, which ask it themselves. What depends on the volume is seen when the run begins.
+// Checks that the options of a run go together, by one table for all runs. Every run calls it. Checks that need the
+// volume are made when the run begins.
+// @throws std::invalid_argument, naming both, for two options that do not go together
 void require_possible(RunKind kind, const MeshOptions& options, const RunControl& control);
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
-// and a warning. Throws BadInput, CannotWrite (from the source and the sink), OverMemory, DeviceError, Interrupted, and
-// std::invalid_argument for options out of range (a NaN iso, a negative error); BadInput also when the volume's file
-// has another size or time of change in the end than in the beginning, or when its surface is not the one that
-// components were chosen in. Memory: slab plus undecided zone. With a checkpoint folder the state is saved before
-// Interrupted is thrown, and before BadInput from a source that fails in the middle. Resuming gives the same mesh, for
-// any threads, schedule and slab; throws BadInput when the state was saved by another version, for another volume or
-// with other options. What a mesh file kept in its parts is read back when it is opened again and when it is finished:
-// the digest is that of the bytes in the file, or the run fails.
+// and a warning. With a checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a
+// source that fails in the middle. A mesh file kept in parts is read back when it is opened again and when it is
+// finished: its digest is that of the bytes in the file, or the run fails.
+// @pre The volume has not been read. No other object reads it or writes to the sink meanwhile.
+// @throws BadInput, CannotWrite from the source and the sink; BadInput also when the volume's file has another size or
+//   time of change in the end than in the beginning, when components were chosen in another surface, and when a resumed
+//   state was saved by another version, for another volume or with other options
+// @throws std::invalid_argument for options out of range (a NaN iso, a negative error), options that do not go
+//   together, and components chosen with other options
+// @throws OverMemory, DeviceError, Interrupted
+// @cost Memory: a slab and the undecided zone. With more than one thread, the volume and the sink are called from
+//   threads of their own.
+// @determinism The mesh does not depend on threads, schedule, slabs, nor on being interrupted and resumed.
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control = {});
 
-// The same with levels: a sink for each, in their order, and the last one for the mesh with the largest error.
+// Meshes a volume with levels: a sink for each level, in their order, and the last sink for the mesh with the largest
+// error.
 MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, const MeshOptions& options,
                        const RunControl& control = {});
 
-// A label of a label map, and where its mesh goes.
+// A label of a label map, and the sink of its mesh.
 struct LabelSink {
   Label label;
   MeshSink* sink = nullptr;
-  std::optional<Region> box{};  // that holds every sample of the label, as find_labels tells; none: the whole volume
+  std::optional<Region> box{};  // a box with every sample of the label, as find_labels gives; none: the whole volume
 };
 
 struct LabelsReport {
@@ -59,44 +66,47 @@ struct LabelsReport {
 // Meshes labels of a label map in one sweep, each into a sink of its own: bit for bit the mesh that mesh_volume makes
 // of label_volume(label) at iso 0.5 with the same options. Every slice of the volume is read once, whatever the number
 // of labels, and no label costs more than its box. A label that does not occur gives an empty mesh and a warning in its
-// report. Surfaces of neighbouring labels are simplified each for itself: they do not share vertices, and may cross or
-// leave gaps, within the error. iso and inside_above of the options play no part.
+// report. Surfaces of neighbouring labels are simplified independently: they do not share vertices, and may cross or
+// leave gaps, within the error. iso and inside_above of the options are not used.
 //
-// Labels are worked on side by side, those with large boxes one after the other by all threads, so sinks of different
-// labels are called at the same time. None is finished before the sweep over all of them is done.
-//
-// Memory: two slabs of the volume's slices and 2 more, with `smooth` 2 for each pass besides, and for each label whose
-// box the sweep is in a slab and 2 slices more (4 with normals) of its box, one byte per sample, its undecided zone,
-// and with `smooth` instead of a byte 4, and 24 more per pass for one slice's rows near the surface. Without
-// RunControl::slab, slabs are as thick as keeps the slices of all boxes within 64 MB, one layer at least.
-//
-// Throws what mesh_volume throws, BadInput for a volume that label_volume refuses, and std::invalid_argument for a box
-// that is not within the volume and for what takes one surface: a number of triangles, levels, components that are
-// dropped, values of another volume, a device, an observer, a memory cap, checkpoints.
+// Labels are meshed side by side, those with large boxes one after the other by all threads, so sinks of different
+// labels are called at the same time. No sink is finished before the sweep over all labels is done.
+// @throws BadInput for a volume that label_volume refuses, and what mesh_volume throws
+// @throws std::invalid_argument for a box that is not within the volume, for one sink given twice, and for options of
+//   runs with one surface: a number of triangles, levels, components to be dropped, values of another volume, a device,
+//   an observer, a memory cap, checkpoints
+// @cost Memory: two slabs of the volume's slices and 2 slices more, and with `smooth` 2 for each pass besides. For each
+//   label whose box the sweep is in: a slab and 2 slices more (4 with normals) of its box, one byte per sample, and its
+//   undecided zone; with `smooth` 4 bytes instead of one, and 24 more per pass for one slice's rows near the surface.
+//   Without RunControl::slab, slabs are as thick as keeps the slices of all boxes within 64 MB, one layer at least.
+// @determinism As mesh_volume.
 LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
                          const RunControl& control = {});
 
-// Adds the report of another map of the same volume, a layer that lies on the first one.
+// Adds the report of another layer of labels: another map of the same volume.
 void add_layer(LabelsReport& report, LabelsReport&& layer);
 
-// Triangles of the full surface, without components that are not kept, in a pass over the volume that keeps nothing.
-// Throws what mesh_volume throws, and std::invalid_argument for a device.
+// The number of triangles of the full surface, without dropped components, from a pass over the volume that keeps
+// nothing.
+// @throws what mesh_volume throws, and std::invalid_argument for a device
 std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options, const RunControl& control = {});
 
-// Which components of the volume's surface a rule keeps, for SurfaceOptions::components: a pass over the volume of its
-// own, as they are known in the end only. A source can be read once: mesh_volume takes another opening of the volume.
-// Of the options only `iso`, `inside_above` and `closed` count. Takes about as long as extraction, and memory
-// for a slab and 20 bytes for each place where a part of the surface begins, seen along the slices. Does not depend on
-// threads or slabs. Throws what mesh_volume throws, and std::invalid_argument for a device.
+// Finds the components of the volume's surface that a rule keeps, for SurfaceOptions::components, in a pass over the
+// volume of its own: components are known in the end only. A source can be read once, so mesh_volume needs another
+// opening of the volume. Of the options only `iso`, `inside_above` and `closed` count.
+// @throws what mesh_volume throws; std::invalid_argument for a device; OverMemory at 2^32 seeds
+// @cost About the time of extraction, and memory for a slab and 20 bytes for each place where a part of the surface
+//   begins, seen along the slices.
+// @determinism Does not depend on threads or slabs.
 ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& options, const ComponentRule& rule,
                                   const RunControl& control = {});
 
-// Beyond such an error what is left no longer has the shape of the surface: the bound for runs that are to leave a
-// number of triangles and are given no error. A twentieth of the diagonal of the volume, or of the box around the mesh.
+// The largest error that keeps the shape of a surface: the bound for runs to a number of triangles that are given no
+// error. It is a twentieth of the diagonal of the volume, or of the box around the mesh.
 double most_shape_error(const VolumeInfo& volume);
 double most_shape_error(const TriangleMesh& mesh);
 
-// What a run will take, from a sample of the volume.
+// The forecast of a run, from a sample of the volume.
 struct Forecast {
   std::uint64_t triangles_extracted = 0;
   std::uint64_t triangles = 0, vertices = 0;  // written
@@ -105,20 +115,27 @@ struct Forecast {
   double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
 };
 
-// Reads slices at up to 24 places, extracts what lies between and simplifies a part of that, in a small part of the
-// time of the run. Components that are not kept are not known here: what is written is an upper bound then. A source
-// can be read once only: this one is of no use afterwards. Where skipping slices means to decompress them, no more than
-// the first half gigabyte is looked at. Deterministic but for `seconds`. Throws what mesh_volume throws.
+// Forecasts a run. Reads slices at up to 24 places, extracts the surface between them and simplifies a part of it, in a
+// small part of the time of the run. Dropped components are not known here: triangles and vertices are upper bounds
+// then. A source can be read once only, so this one is of no use afterwards. Where skipping slices means decompressing
+// them, only the first half gigabyte is looked at.
+// @throws what mesh_volume throws
+// @determinism All fields but `seconds`.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
-// Simplifies a mesh with the same rules, a piece of its triangles after the other: beside the mesh that is given,
-// memory is held for what is undecided, as with a volume, where triangles that share a vertex are near in the list, and
-// else for all of it. Vertices on non-manifold or badly oriented edges, and vertices whose triangles form more than one
-// fan, are locked: they stay where they are. Normals of the input are not kept, values are.
+// Simplifies a mesh by the same rules, one piece of its triangles after the other. Vertices on non-manifold or badly
+// oriented edges, and vertices whose triangles form more than one fan, are locked: they stay where they are. Triangles
+// that repeat a vertex are left out with a warning. Normals of the input are not kept, values are.
+// @throws std::invalid_argument for options out of range or that do not go together, a triangle that refers to a vertex
+//   that the mesh does not have, and values of another number than the vertices
+// @throws OverMemory for a mesh of 2^32 triangles or more; CannotWrite from the sink; Interrupted
+// @cost Memory beside the mesh: the undecided zone, where triangles that share a vertex are near in the list; else a
+//   zone of the whole mesh.
+// @determinism The mesh does not depend on threads, schedule or pieces.
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control = {});
 
-// The same with levels, as mesh_volume.
+// Simplifies a mesh with levels: sinks as for mesh_volume.
 MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
                          const RunControl& control = {});
 

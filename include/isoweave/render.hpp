@@ -13,13 +13,13 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// sRGB, 8 bits each.
+// A colour in sRGB, 8 bits each.
 struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0;
   bool operator==(const Colour&) const = default;
 };
 
-// Where the camera is, in degrees around the middle of the mesh. At 0, 0 it looks along +y with z up: in LPS
+// The place of the camera, in degrees around the middle of the mesh. At 0, 0 it looks along +y with z up: in LPS
 // coordinates at the face of a patient who stands. Azimuth turns it to the side of +x, elevation up to +z.
 struct View {
   double azimuth = 35;
@@ -38,29 +38,29 @@ struct RenderOptions {
   int samples = 3;                     // along each side of a pixel, 1 ... 8
   int threads = 0;                     // 0: all
 
-  // With `quality`: values at the ends of the colour map; none: the least and the largest there are.
+  // With `quality`: the values at the ends of the colour map; none: the least and the largest finite ones.
   std::optional<std::array<double, 2>> range{};
 };
 
-// Rows from the top, pixels from the left; alpha is not multiplied into the colours.
+// A picture: rows from the top, pixels from the left. Alpha is not multiplied into the colours.
 struct Picture {
   std::int64_t width = 0, height = 0;
   std::vector<std::array<std::uint8_t, 4>> pixels;  // red, green, blue, alpha
 };
 
 // Draws a mesh in perspective, as large as fits into the frame. Every sample shows the nearest triangle, of equally
-// near ones the first; lights stand around the camera, both sides are lit, and places between near parts are darker
+// near ones the first. Lights stand around the camera, both sides are lit, and places between near parts are darker
 // (ambient obscurance in screen space: McGuire and others 2011). `quality`: a number for each vertex, shown by the
-// colour map viridis (Smith, van der Walt 2015) in place of the colour; numbers that are not finite take the colour.
-//
-// Time grows with triangles and samples; memory: 8 bytes per sample, 4 per pixel and, for smooth shading, 36 per
-// vertex. The same picture for any number of threads. Throws std::invalid_argument for a mesh without triangles,
-// indices out of range, coordinates that are not finite, numbers that are not as many as the vertices, and options out
-// of range.
+// colour map viridis (Smith, van der Walt 2015) in place of the colour. Numbers that are not finite take the colour.
+// @throws std::invalid_argument for a mesh without triangles or with 2^32 of them, indices out of range, coordinates
+//   that are not finite, normals or `quality` of another number than the vertices, and options out of range
+// @cost Time grows with triangles and samples. Memory: 8 bytes per sample, 4 per pixel and, for smooth shading, 36 per
+//   vertex.
+// @determinism The same picture for any number of threads.
 Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options = {}, std::span<const float> quality = {});
 
-// Writes a picture as PNG of 8 bits, without alpha where all pixels are opaque. The file is complete or absent. Throws
-// CannotWrite, also in builds without libpng.
+// Writes a picture as PNG of 8 bits, without alpha where all pixels are opaque. The file is complete or absent.
+// @throws CannotWrite where the file cannot be written, and in builds without libpng
 void write_png(const std::string& path, const Picture& picture);
 
 }  // namespace isoweave

@@ -1,4 +1,4 @@
-// What a run says of itself and of the meshes that it has written.
+// The report of a run and of the meshes that it has written.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace isoweave {
 
 // A surface as it was written.
 struct SurfaceReport {
-  // In the volume's unit: as asked for; where a number of triangles was asked for, the largest of a collapse as it was
-  // made, 0 if there was none.
+  // In the volume's unit: the error that was asked for. Where a number of triangles was asked for, it is the largest
+  // error of a collapse as it was made, or 0 if there was none.
   double error = 0;
   std::uint64_t triangles = 0, vertices = 0;
-  // Non-manifold: seen around vertices that have become final. An unsimplified volume's surface has none by
-  // construction and is not looked at.
+  // Non-manifold edges and vertices are counted around vertices that have become final. The unsimplified surface of a
+  // volume has none by construction, so it is not searched for them.
   std::uint64_t open_edges = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0, components = 0;
   std::int64_t euler = 0;
   std::uint64_t digest = 0;
 };
 
-// Of the run, and of the mesh with the largest error.
+// The report of a run, and of its mesh with the largest error.
 struct MeshReport : SurfaceReport {
   int threads = 0;
   std::int64_t slab = 0;
@@ -34,12 +34,12 @@ struct MeshReport : SurfaceReport {
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
   std::uint64_t specks = 0;  // components dropped
-  // By MeshOptions::components; their triangles are among those extracted. `specks` are others.
+  // Dropped by SurfaceOptions::components. Their triangles are among those extracted. `specks` are not among them.
   std::uint64_t components_dropped = 0, triangles_dropped = 0;
   std::vector<SurfaceReport> levels;  // finer meshes, as MeshOptions::levels
   std::uint64_t locked_vertices = 0;  // simplify_mesh only: left in place, non-manifold or badly oriented
   std::int64_t resumed_at = 0;        // layers that an earlier process has done
-  // Finer levels are handed to their sinks while simplifying.
+  // Seconds by the clock. Finer levels are handed to their sinks while simplifying.
   double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
   std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
   std::vector<SlabRecord> sweep;

@@ -1,4 +1,4 @@
-// Vertices that are doubled: along seams, or in every triangle.
+// Doubled vertices: along seams, or in every triangle.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,16 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// Makes one vertex of all that have equal coordinates, 0 and -0 being equal. The first of them stays, with its normal
-// and its value. Triangles are renumbered and stay where they are, those too whose corners have become one. Tells how
-// many vertices have gone.
+// Joins vertices with equal coordinates, in place; 0 and -0 are equal. The first vertex at a place stays, with its
+// normal and value. Triangles are renumbered and stay where they are, also those whose corners have become one vertex.
+// Returns the number of vertices removed.
+// @throws std::invalid_argument when a triangle refers to a vertex that the mesh does not have
 std::uint64_t weld_vertices(TriangleMesh& mesh);
 
-// Border edges whose two ends lie where those of another border edge lie: seams, which weld_vertices closes.
+// The number of border edges whose two ends lie where the ends of another border edge lie: seams, which weld_vertices
+// closes.
+// @throws std::invalid_argument when a triangle refers to a vertex that the mesh does not have
 std::uint64_t count_seam_edges(const TriangleMesh& mesh);
-
-// Both throw std::invalid_argument when a triangle refers to a vertex that the mesh does not have.
 
 }  // namespace isoweave
 #pragma GCC visibility pop

@@ -1,4 +1,4 @@
-// New triangles become a part of the zone, pass by pass: what Zone::append does, with one thread for every item.
+// How new triangles become a part of the zone on a device: the passes of Zone::append, with one thread for every item.
 #pragma once
 
 #include "simplify/round_passes.hpp"
@@ -8,7 +8,7 @@
 namespace isoweave {
 
 struct AppendPasses {
-  static constexpr std::uint32_t kFront = 4;  // mark of vertices that later slabs add to; others as in RoundPasses
+  static constexpr std::uint32_t kFront = 4;  // mark of vertices that later slabs add to; other marks as in RoundPasses
   static constexpr std::uint32_t kSettled = RoundPasses<ScalarArithmetic>::kChanged;
 
   ZoneView zone;
@@ -16,14 +16,14 @@ struct AppendPasses {
   Index first_triangle = 0;
   std::uint32_t* marks = nullptr;      // per vertex
   std::uint32_t* side_base = nullptr;  // per vertex: counts of edge sides, then where they begin
-  std::uint32_t* side_fill = nullptr;  // per vertex: where the next one goes
+  std::uint32_t* side_fill = nullptr;  // per vertex: the place of the next side
   EdgeSide* sides = nullptr;
   const Index* front = nullptr;  // the new one
   IndexList unkeyed;             // half-edges of older triangles whose edges have no key yet
   IndexList still_unkeyed;
   IndexList settled;  // vertices whose edges may get keys
 
-  // Half-edge n of those that may find a twin: those without a key, then all of the new triangles.
+  // Half-edge n of those that may get a twin: half-edges without a key, then all half-edges of the new triangles.
   ISOWEAVE_HD Index side(std::int64_t n, std::uint32_t old) const {
     if (n < old) return unkeyed[n];
     const auto corner = static_cast<Index>(n - old);
@@ -35,7 +35,7 @@ struct AppendPasses {
     return zone.twin(h) == kNone && is_incomplete(zone.origin(h)) && is_incomplete(zone.destination(h));
   }
 
-  // Counts a side at the end with the smaller number. A new triangle is offered to its vertices to start walks at.
+  // Counts a side at the end with the smaller number, and offers a new triangle to its vertices to start walks at.
   ISOWEAVE_HD void count_side(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (n >= old) make_least(zone.vertices[zone.origin(h)].half_edge, h);
@@ -50,7 +50,7 @@ struct AppendPasses {
     sides[fetch_add(side_fill[smaller_end(h)], 1)] = EdgeSide(to < from ? from | EdgeSide::kBackwards : to, h);
   }
 
-  // The sides listed at the n-th vertex.
+  // Pairs the sides listed at the n-th vertex.
   ISOWEAVE_HD void pair_sides(std::int64_t n_vertex) {
     const std::uint32_t begin = side_base[n_vertex];
     const std::uint32_t end = side_base[n_vertex + 1];
@@ -67,7 +67,7 @@ struct AppendPasses {
     link_sorted({sides + begin, end - begin}, link, [](Index) {});
   }
 
-  // The vertices that were incomplete, and those beside them.
+  // Settles the vertices that were incomplete, and those beside them.
   ISOWEAVE_HD void settle_front(std::int64_t n, const Index* old_front) { settle_old(old_front[n]); }
   ISOWEAVE_HD void settle_ends(std::int64_t n) {
     settle_old(zone.origin(unkeyed[n]));
@@ -77,7 +77,7 @@ struct AppendPasses {
 
   ISOWEAVE_HD void mark_front(std::int64_t n) { fetch_or(marks[front[n]], kFront); }
 
-  // A vertex that later slabs do not add to is complete, and gets its quadric.
+  // Completes a vertex that later slabs do not add to, and gives it its quadric.
   ISOWEAVE_HD void settle_vertex(std::int64_t n) {
     const Index v = settled[n];
     if (!is_incomplete(v) || (marks[v] & kFront) != 0) return;
@@ -85,7 +85,7 @@ struct AppendPasses {
     if (exists(zone.vertices[v].half_edge)) give_initial_quadric(zone, v);
   }
 
-  // An edge whose ends are complete gets its key; the others wait.
+  // Gives an edge its key where both ends are complete. Other edges wait.
   ISOWEAVE_HD void settle_edge(std::int64_t n, std::uint32_t old) {
     const Index h = side(n, old);
     if (n >= old && !zone.represents_edge(h)) return;
@@ -103,7 +103,7 @@ struct AppendPasses {
     zone.set_key(h, make_key(cost, tie));
   }
 
-  // After everything else; the rounds begin without marks.
+  // Gives a vertex its turn. This pass is the last and clears the marks: rounds begin without marks.
   ISOWEAVE_HD void settle_turn(std::int64_t n) {
     const Index v = settled[n];
     give_turn(zone, v);

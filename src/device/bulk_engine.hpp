@@ -1,7 +1,7 @@
 // The engine of any device.
 //
-// The passes are those of the headers beside this one; a Device (simulated_device.hpp says what that is) runs them.
-// Surface, decisions and order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
+// The passes are those of the headers beside this one, and a Device runs them (simulated_device.hpp). The surface, the
+// decisions and the order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
 #pragma once
 
 #include <algorithm>
@@ -205,7 +205,8 @@ class BulkEngine final : public DeviceEngine {
                      out_vertices_, out_normals_, out_triangles_);
   }
   std::uint64_t room_for_vertices(std::uint64_t cap) const override {
-    // In the zone, twice, as compaction moves it from one set of arrays to another; and in the lists of its passes.
+    // The bytes of a vertex with its triangles: twice in the zone, as compaction moves them from one set of arrays to
+    // another, and in the lists of the passes.
     constexpr std::uint64_t kZone = sizeof(Vertex) + sizeof(Key) + sizeof(Turn) + 2 * sizeof(Triangle) + sizeof(Point);
     constexpr std::uint64_t kPasses = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(FinalVertex) + sizeof(Point);
     const std::uint64_t held = bytes();
@@ -229,7 +230,7 @@ class BulkEngine final : public DeviceEngine {
 
   enum List : std::size_t { kChanged, kCandidates, kMinima, kUnkeyed, kLists };
 
-  // The arrays of the zone. There are two of each: compaction moves from one to the other.
+  // The arrays of the zone. Each exists twice: compaction moves elements from one to the other.
   struct ZoneArrays {
     Buffer<Vertex> vertices;
     Buffer<VertexState> states;
@@ -275,7 +276,8 @@ class BulkEngine final : public DeviceEngine {
     device_.read(from.data(), from.size(), to.data());
   }
 
-  // A list that is empty, or goes on.
+  // A list of a pass: its items, and where its size is kept. A pass adds to the list, unless the size is set to 0
+  // first.
   IndexList list(List which, Buffer<Index>& items) { return {items.data(), list_sizes_.data() + which}; }
   std::uint32_t list_size(List which) { return read_one(list_sizes_.data() + which); }
   void set_list_size(List which, std::uint32_t size) { device_.write(&size, 1, list_sizes_.data() + which); }
@@ -312,7 +314,7 @@ class BulkEngine final : public DeviceEngine {
     return passes;
   }
 
-  // As many layers as hold no more than so many vertices, one at least.
+  // Chooses as many layers as hold no more than so many vertices, one at least.
   SlabCounts choose_layers(std::int64_t layers, std::uint64_t most_vertices) {
     SlabCounts counts;
     do {
@@ -386,7 +388,7 @@ class BulkEngine final : public DeviceEngine {
     device_.template for_each<&AppendPasses::settle_new>(signed_count(counts_.vertices), passes);
   }
 
-  // The crossings of the slab's last slice become the front, and its bits those of the next slab's first slice.
+  // Makes the front of the next slab: the crossings and the bits of this slab's last slice.
   void list_front() {
     front_next_base_.resize(plane_words() + 1);
     ExtractPasses passes = extract_passes();
@@ -459,7 +461,7 @@ class BulkEngine final : public DeviceEngine {
   Buffer<Index> changed_, candidates_, minima_;
   Buffer<std::uint32_t> list_sizes_;
 
-  // What is final.
+  // The final triangles.
   FinalPasses final_;
   Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, old_place_;
   Buffer<Index> final_triangles_, final_vertices_;

@@ -1,4 +1,4 @@
-// What is gone leaves the arrays of the zone, pass by pass: what Zone::compact does, with one thread for every item.
+// How the arrays of the zone are compacted on a device: the passes of Zone::compact, with one thread for every item.
 #pragma once
 
 #include "parallel/atomics.hpp"

@@ -1,7 +1,7 @@
-// A CUDA device, as a BulkEngine needs one (simulated_device.hpp says what that is).
+// A CUDA device, as a BulkEngine needs one (see simulated_device.hpp).
 //
-// Everything runs on one stream, but for slices on their way in, which have a stream of their own. The host waits where
-// it reads a count or a result, never within the rounds of a slab.
+// All work runs on one stream, except uploads of slices, which have a stream of their own. The host waits where it
+// reads a count or a result, never within the rounds of a slab.
 #pragma once
 
 #include <cooperative_groups.h>
@@ -45,7 +45,7 @@ __device__ void add_totals(const Totals& own, Totals* sum) {
   add_fields(&own, sum, sizeof(Totals) / sizeof(std::uint64_t));
 }
 
-// Its last field is a maximum.
+// Adds the totals of decisions, of which the last field is a maximum.
 __device__ inline void add_totals(const DecisionCounts& own, DecisionCounts* sum) {
   static_assert(offsetof(DecisionCounts, dearest) == sizeof(DecisionCounts) - sizeof(std::uint64_t));
   add_fields(&own, sum, offsetof(DecisionCounts, dearest) / sizeof(std::uint64_t));
@@ -59,7 +59,7 @@ __global__ void sum_kernel(std::int64_t count, Passes passes, Totals* sum) {
   add_totals(own, sum);
 }
 
-// A warp makes 32 bits at a time from samples that lie side by side.
+// Tests samples that lie side by side: a warp makes 32 bits at a time.
 template <auto Test, class Passes, class... Arguments>
 __global__ void fill_bits_kernel(std::int64_t count, Passes passes, std::uint32_t* out, Arguments... arguments) {
   for (std::int64_t n = first_item(); n < 32 * count; n += item_step()) {
@@ -68,7 +68,7 @@ __global__ void fill_bits_kernel(std::int64_t count, Passes passes, std::uint32_
   }
 }
 
-// What a loop of rounds counts.
+// The counts of a loop of rounds.
 struct RoundTotals {
   DecisionCounts decisions;
   std::uint64_t rounds = 0;
@@ -109,7 +109,7 @@ static __global__ void __launch_bounds__(kThreads)
   add_totals(own, totals);
 }
 
-// Memory of the host that the device copies from and to by itself.
+// Host memory that the device copies from and to without the processor.
 class Pinned {
  public:
   explicit Pinned(std::size_t bytes) : bytes_(bytes) {
@@ -177,7 +177,7 @@ class Device {
     cudaStreamDestroy(uploads_);
   }
 
-  // What the pool holds and nobody uses is free as well.
+  // The free memory of the device. Memory that the pool holds and nobody uses counts as free.
   std::uint64_t free_bytes() const {
     std::size_t free = 0;
     std::size_t total = 0;
@@ -257,7 +257,7 @@ class Device {
 
   void upload(const std::byte* from, std::size_t bytes, std::byte* to) { write_on(uploads_, from, bytes, to); }
 
-  // The ring that uploads go to has moved: they wait for what was done to it.
+  // Makes later uploads wait for all work on the ring so far, as the ring has moved.
   void order_uploads() {
     check(cudaEventRecord(uploaded_, stream()), "event");
     check(cudaStreamWaitEvent(uploads_, uploaded_, 0), "event");
@@ -289,14 +289,14 @@ class Device {
  private:
   static constexpr std::size_t kStaging = std::size_t{8} << 20;
 
-  // Memory that is freed stays with the process: slabs want it again at once.
+  // Keeps freed memory with the process, as slabs want it again at once.
   void keep_freed_memory(int device) {
     std::uint64_t all = ~std::uint64_t{0};
     check(cudaDeviceGetDefaultMemPool(&pool_, device), "memory pool");
     check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &all), "memory pool");
   }
 
-  // Threads take several items where there are many.
+  // The blocks of a launch. Each thread takes several items where there are many.
   unsigned blocks(std::int64_t count) const {
     const std::int64_t wanted = (count + kThreads - 1) / kThreads;
     return static_cast<unsigned>(std::min<std::int64_t>(wanted, std::int64_t{64} * processors_));

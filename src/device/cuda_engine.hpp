@@ -9,7 +9,7 @@ namespace isoweave {
 
 bool has_cuda_back_end();
 
-// Throws DeviceError where there is no device, or no back end.
+// Throws DeviceError where there is no device, or where the build has no back end for one.
 std::unique_ptr<DeviceEngine> make_cuda_engine(const BulkOptions& options);
 
 }  // namespace isoweave

@@ -22,7 +22,7 @@ inline void check(cudaError_t error, const char* what) {
 
 inline cudaStream_t stream() { return cudaStreamPerThread; }
 
-// Sums of those before, in place (scan.cu).
+// Replaces values by the sums of those before them (scan.cu).
 void exclusive_scan(std::uint32_t* values, std::size_t count, std::byte*& scratch, std::size_t& scratch_bytes);
 
 // Memory of the device that grows as isoweave::Array does.

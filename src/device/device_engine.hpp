@@ -1,5 +1,5 @@
-// A slab's way through a device, as the sweep sees it: samples go in, final triangles come out, and what is undecided
-// stays there.
+// The way of a slab through a device, as the sweep sees it: samples go in, final triangles come out, and the undecided
+// zone stays on the device.
 #pragma once
 
 #include <cstdint>
@@ -46,28 +46,30 @@ class DeviceEngine {
   // Slices [first, end) that the next `layers` layers read, unclipped.
   virtual std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const = 0;
 
-  // The most layers of a slab: whatever its samples are, its vertices and triangles can be counted in 32 bits. Throws
-  // OverMemory when there is no such slab.
+  // The most layers of a slab whose vertices and triangles can be counted in 32 bits, whatever its samples are. Throws
+  // OverMemory when one layer is too many.
   virtual std::int64_t most_layers() const = 0;
 
-  // Sends slices on their way that the next `layers` layers read; comes back before they are there. The window holds
-  // them, as far as the volume goes.
+  // Starts to send the slices that the next `layers` layers read, and returns before they are there. The window holds
+  // these slices, as far as the volume goes.
   virtual void upload(const SliceWindow& window, std::int64_t layers) = 0;
 
-  // Extracts the next `layers` layers, which have been uploaded, or fewer, though at least one, where they would make
-  // more than `most_vertices`, and adds them to the zone. Throws OverMemory when the zone would hold 2^30 triangles.
+  // Extracts the next `layers` layers, which have been uploaded, and adds their triangles to the zone. Extracts fewer
+  // layers, though at least one, where all of them would make more than `most_vertices`. Throws OverMemory when the
+  // zone would hold 2^30 triangles.
   virtual SlabCounts extract(std::int64_t layers, std::uint64_t most_vertices) = 0;
 
-  // Links the slab to what was there, and gives quadrics and keys to what is complete now.
+  // Links the slab to the zone, and gives quadrics and keys to the vertices and edges that are complete now.
   virtual void append() = 0;
 
   // Decides every edge that can be decided with what has been appended.
   virtual void decide() = 0;
 
-  // Finds what has become final. Returns how many of its vertices will be written for the first time.
+  // Finds the vertices and triangles that have become final. Returns the number of vertices to be written for the first
+  // time.
   virtual std::size_t name_final() = 0;
 
-  // Takes out what name_final() has found, and gives the new vertices consecutive numbers and labels.
+  // Takes out the triangles that name_final() has found, and gives the new vertices consecutive numbers and labels.
   virtual void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) = 0;
 
   // Lets the caller replace the labels of the vertices that have been written and are still held.
@@ -77,8 +79,8 @@ class DeviceEngine {
   virtual std::size_t held_vertices() const = 0;
   virtual std::uint64_t bytes() const = 0;  // held in the memory of the device
 
-  // New vertices, with their triangles, for which there is room on the device, where no more than `cap` bytes of it may
-  // be held (0: all of it).
+  // The number of new vertices, with their triangles, that the device has room for, where at most `cap` bytes of its
+  // memory may be held (0: all of it).
   virtual std::uint64_t room_for_vertices(std::uint64_t cap) const = 0;
   virtual std::uint64_t rounds() const = 0;
   virtual const DecisionCounts& decisions() const = 0;

@@ -1,5 +1,5 @@
-// Marching cubes over a slab, pass by pass: what a device does with one thread for every word of 64 lattice points. The
-// rules and the numbering are those of extract/marching_cubes.hpp: vertices and triangles come in the same order.
+// Marching cubes over a slab on a device: passes with one thread for every word of 64 lattice points. The rules and the
+// numbering are those of extract/marching_cubes.hpp: vertices and triangles come in the same order.
 #pragma once
 
 #include <bit>
@@ -41,10 +41,10 @@ struct SliceRing {
   }
 };
 
-// The bits of a slab: where its slices are inside, and what follows from that.
+// The bits of a slab: the inside bits of its slices, and the crossings and cells that follow from them.
 //
-// Slice n = 0 is the front that the slab before has left. A word is named by its slice or layer, its row and its place
-// in the row; word_of() gives its place in the arrays.
+// Slice n = 0 is the front of the slab before. A word is named by its slice or layer, its row and its place in the row;
+// word_of() gives its place in the arrays.
 struct SlabBits {
   VertexNumbering numbering;
   bool closed = true;
@@ -61,7 +61,7 @@ struct SlabBits {
     return at >= 0 && at < numbering.lattice.dims[static_cast<std::size_t>(axis)];
   }
 
-  // Edges along an axis that start at `at` on it, which is counted in samples, and exist.
+  // Whether an edge along an axis exists that starts at `at` on that axis, counted in samples.
   ISOWEAVE_HD bool has_edge(std::int64_t at, int axis) const {
     return closed ? at + 1 <= numbering.lattice.dims[static_cast<std::size_t>(axis)]
                   : is_sample(at, axis) && is_sample(at + 1, axis);
@@ -76,13 +76,13 @@ struct SlabBits {
     return below_to & ~below_from;
   }
 
-  // The x-edges, and with them the cells, of word w of a row.
+  // The x-edges that exist in word w of a row. The cells are the same bits.
   ISOWEAVE_HD std::uint64_t edge_mask(std::int64_t w) const {
     const std::int64_t nx = numbering.lattice.dims[0];
     return closed ? bits_between(w, 0, nx + 1) : bits_between(w, 1, nx);
   }
 
-  // The bits of the lattice points one further along x.
+  // The inside bits of the lattice points one step further along x.
   ISOWEAVE_HD std::uint64_t shifted(std::int64_t n, std::int64_t row, std::int64_t w) const {
     const std::uint64_t* const at = inside + word_of(n, row, w);
     return at[0] >> 1 | (w + 1 < words ? at[1] << 63 : 0);
@@ -95,7 +95,7 @@ struct SlabBits {
     if (row + 1 >= rows || !has_edge(row - 1, 1)) return 0;
     return inside[word_of(n, row, w)] ^ inside[word_of(n, row + 1, w)];
   }
-  // Between slices n and n + 1.
+  // The crossings along z between slices n and n + 1.
   ISOWEAVE_HD std::uint64_t cross_z(std::int64_t n, std::int64_t row, std::int64_t w) const {
     if (!has_edge(first_layer + n, 2)) return 0;
     return inside[word_of(n, row, w)] ^ inside[word_of(n + 1, row, w)];
@@ -126,7 +126,7 @@ struct SlabBits {
   }
 };
 
-// What the rows of a slab add up to.
+// The totals over the rows of a slab.
 struct SlabTotals {
   std::uint64_t cells = 0;  // crossed
 
@@ -160,7 +160,7 @@ struct ExtractPasses {
     return {n, row - n * rows, number - row * words};
   }
 
-  // Whether the n-th lattice point of the slab is inside, from the first one above the front on: words of 64.
+  // Whether the n-th lattice point of the slab is inside, counted from the first one above the front, in words of 64.
   template <class T>
   ISOWEAVE_HD bool is_inside(std::int64_t n, SliceRing<T> ring) {
     const Word at = word(n >> 6);
@@ -168,7 +168,7 @@ struct ExtractPasses {
     return rule.above ? f >= rule.iso : f <= rule.iso;
   }
 
-  // Vertices and triangles of a word: those of layer n and of the slice above it.
+  // Counts the vertices and triangles of a word, on layer n and on the slice above it.
   ISOWEAVE_HD void count(std::int64_t item) {
     const auto [n, row, w] = word(item);
     vertex_base[item] = count_ones(bits.cross_z(n, row, w)) + count_ones(bits.cross_x(n + 1, row, w)) +
@@ -180,7 +180,7 @@ struct ExtractPasses {
     triangle_base[item] = triangles;
   }
 
-  // Makes the vertices of a word: numbered z below the slice first, then x and y on it.
+  // Makes the vertices of a word. Crossings along z below the slice are numbered first, then those along x and y on it.
   template <class T>
   ISOWEAVE_HD void emit_vertices(std::int64_t item, SliceRing<T> ring) {
     const auto [n, row, w] = word(item);
@@ -209,7 +209,7 @@ struct ExtractPasses {
     }
   }
 
-  // Crossings of word `at` of the slab's last slice.
+  // Counts the crossings of word `at` of the slab's last slice.
   ISOWEAVE_HD void count_front(std::int64_t at, std::int64_t layers, std::uint32_t* base) {
     const auto [n, row, w] = word(at);
     base[at] = count_ones(bits.cross_x(layers, row, w)) + count_ones(bits.cross_y(layers, row, w));
@@ -259,7 +259,7 @@ struct ExtractPasses {
     return v;
   }
 
-  // The number of the first crossing on slice n in a word, along x; those along y follow.
+  // The number of the first crossing along x in a word of slice n. Crossings along y follow.
   ISOWEAVE_HD std::uint32_t number_on_slice(std::int64_t n, std::int64_t row, std::int64_t w) const {
     if (n == 0) return front_base[bits.word_of(0, row, w)];
     return inherited + vertex_base[bits.word_of(n - 1, row, w)] + count_ones(bits.cross_z(n - 1, row, w));

@@ -1,5 +1,5 @@
-// A device that is the host: what a BulkEngine needs of any device, on processors. The tests run its passes on it, so
-// that all but launches and copies is checked where there is no GPU.
+// A device that is the host: everything that a BulkEngine needs of a device, on processors. The tests run the passes on
+// it, so that all but launches and copies is checked where there is no GPU.
 #pragma once
 
 #include <cstring>
@@ -16,11 +16,11 @@ class HostDevice {
  public:
   explicit HostDevice(const Executor& executor) : executor_(executor) {}
 
-  // An array in the memory of the device. resize() keeps what was there, and leaves new elements as they are.
+  // An array in the memory of the device. resize() keeps the old elements, and leaves new ones without a value.
   template <class T>
   using Buffer = Array<T>;
 
-  // Memory that is left.
+  // The free memory of the device.
   std::uint64_t free_bytes() const { return ~std::uint64_t{0}; }
 
   // Runs Pass for the numbers from 0 to `count`, all at the same time. Passes run one after the other. They are members
@@ -30,7 +30,7 @@ class HostDevice {
     executor_.for_each(count, kBlock, [&](std::int64_t n) { (passes.*Pass)(n, arguments...); });
   }
 
-  // The same for a pass that adds to totals.
+  // Runs a pass that adds to totals.
   template <auto Pass, class Totals, class Passes>
   Totals sum(std::int64_t count, Passes passes) {
     Totals sum;
@@ -44,7 +44,7 @@ class HostDevice {
     return sum;
   }
 
-  // Bit b of out[n] tells whether Test holds for 32 * n + b.
+  // Runs a test: bit b of out[n] tells whether Test holds for 32 * n + b.
   template <auto Test, class Passes, class... Arguments>
   void fill_bits(std::int64_t count, Passes passes, std::uint32_t* out, Arguments... arguments) {
     executor_.for_each(count, kBlock, [&](std::int64_t n) {
@@ -56,7 +56,7 @@ class HostDevice {
     });
   }
 
-  // Replaces the first `count` values by the sums of those before them; the sum of all comes behind them.
+  // Replaces the first `count` values by the sums of those before them. The sum of all follows the last one.
   void scan(Buffer<std::uint32_t>& values, std::size_t count) {
     std::uint32_t total = 0;
     for (std::size_t n = 0; n < count; ++n) {
@@ -72,8 +72,8 @@ class HostDevice {
     if (values.size() > 0) std::memset(static_cast<void*>(values.data()), 0, values.size() * sizeof(T));
   }
 
-  // To and from the memory of the host, and within the device. What is read is there afterwards; what is written may be
-  // changed.
+  // Copies between host and device, and within the device. After a read the host has the data; after a write the caller
+  // may change the source.
   template <class T>
   void read(const T* from, std::size_t count, T* to) {
     copy(from, count, to);
@@ -87,13 +87,13 @@ class HostDevice {
     if (count > 0) std::memcpy(static_cast<void*>(to), from, count * sizeof(T));
   }
 
-  // Copies to the device that go on beside what else it does. order_uploads() lets them wait for what has been asked
-  // for before, await_uploads() lets everything that comes wait for them.
+  // Copies to the device while other work runs there. order_uploads() makes uploads wait for all work asked for so far;
+  // await_uploads() makes all later work wait for the uploads.
   void upload(const std::byte* from, std::size_t bytes, std::byte* to) { copy(from, bytes, to); }
   void order_uploads() {}
   void await_uploads() {}
 
-  // Runs rounds until nothing changes any more. Returns how many.
+  // Runs rounds until nothing changes any more. Returns the number of rounds.
   std::uint64_t run_rounds(const RoundPasses<ScalarArithmetic>& passes, DecisionCounts& counts) {
     std::uint64_t rounds = 0;
     for (; *passes.changed.size > 0; ++rounds) {

@@ -8,8 +8,8 @@
 
 namespace isoweave {
 
-// Calls visit(bit, case) for the crossed cells among the 32 of a half of word w, bits counted from the half's first.
-// Inlined always: what is compiled for one instruction set must not be linked into another.
+// Calls visit(bit, case) for the crossed cells among the 32 of a half of word w; bits are counted from the half's
+// first. Always inlined, as code compiled for one instruction set must not be linked into another.
 template <class Visit>
 [[gnu::always_inline]] inline void for_cells(const CellRow& row, std::size_t w, unsigned half, const Visit& visit) {
   std::array<std::uint64_t, 4> inside;  // 32 cells, and the bit behind them

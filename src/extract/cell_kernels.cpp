@@ -18,7 +18,7 @@ std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::
 
 std::uint32_t count_triangles(const CellRow& row) { return count_triangles_of_cells(row); }
 
-// Numbers of the first crossings of word w.
+// The numbers of the first crossings of word w.
 std::array<std::uint32_t, 8> bases(const CellRow& row, std::size_t w) {
   std::array<std::uint32_t, 8> base;
   for (std::size_t r = 0; r < 4; ++r) base[r] = row.x_base[r][w];
@@ -36,8 +36,8 @@ void write_triangles(const CellRow& row, std::span<std::array<std::uint32_t, 3>>
       std::array<std::uint32_t, 8> crossings;
       for (std::size_t r = 0; r < 8; ++r) crossings[r] = static_cast<std::uint32_t>(row.crossings[r][w] >> 32 * half);
       for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
-        // Of the crossings at the cell's bit of all rows, then of those at the next bit. Where there is none the number
-        // means nothing.
+        // The numbers of the crossings at the cell's bit of all rows, then those at the next bit. The number of an
+        // absent crossing means nothing.
         std::array<std::uint32_t, 16> numbers;
         std::copy(next.begin(), next.end(), numbers.begin());
         for (std::size_t r = 0; r < 8; ++r) next[r] += crossings[r] >> bit & 1;

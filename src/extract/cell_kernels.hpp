@@ -10,9 +10,10 @@
 
 namespace isoweave {
 
-// A row of cells, one bit each, and what lies around it: rows of as many words. An edge with a crossing at some bit has
-// the ends that the cell at that bit has: the cell is crossed, unless it lies behind the last one of the volume. So
-// from one crossed cell to the next there is no other crossing than those at the first one's bit.
+// A row of cells, one bit each, and the rows of samples and crossings around it, all of as many words. The ends of a
+// lattice edge at some bit are corners of the cell at that bit. So an edge with a crossing makes that cell crossed,
+// unless the cell lies behind the last one of the volume. From one crossed cell to the next there is therefore no
+// crossing but those at the first one's bit.
 struct CellRow {
   std::size_t words;
   const std::uint64_t* crossed;                   // the cells that the surface crosses
@@ -28,8 +29,8 @@ constexpr std::size_t edge_row(int axis, std::size_t dy, std::size_t dz) {
   return axis == 1 ? 4 + dz : 6 + dy;
 }
 
-// Per case, where the corners of its triangles are among 16 numbers: those of the crossings at the cell's bit of the
-// eight rows, then those at the next bit. Three for each triangle, then zeros.
+// For each case, the places of its triangles' corners among 16 numbers: those of the crossings at the cell's bit of the
+// eight rows, then those at the next bit. Each triangle has three places; zeros follow the last one.
 inline constexpr std::array<std::array<std::uint8_t, 16>, 256> kCornerPlaces = [] {
   std::array<std::array<std::uint8_t, 16>, 256> places{};
   for (std::size_t cell = 0; cell < places.size(); ++cell) {
@@ -42,17 +43,17 @@ inline constexpr std::array<std::array<std::uint8_t, 16>, 256> kCornerPlaces = [
 }();
 
 struct CellKernels {
-  // Triangles in the crossed cells. Looks at `crossed` and `inside` only.
+  // Counts the triangles in the crossed cells. Reads `crossed` and `inside` only.
   std::uint32_t (*count_triangles)(const CellRow& row);
 
-  // Writes them, cell by cell, to a span of as many, and nothing behind it.
+  // Writes the triangles, cell by cell, to a span of exactly as many, and nothing behind it.
   void (*write_triangles)(const CellRow& row, std::span<std::array<std::uint32_t, 3>> out);
 };
 
-// The best for this processor.
+// The best kernels for this processor.
 const CellKernels& cell_kernels();
 
-// All that this processor can run, the best last.
+// All kernels that this processor can run, the best last.
 std::span<const CellKernels* const> all_cell_kernels();
 
 }  // namespace isoweave

@@ -11,13 +11,14 @@ namespace {
 
 std::uint32_t count_triangles(const CellRow& row) { return count_triangles_of_cells(row); }
 
-// Of the eight rows, those of 32 cells: a half of word w.
+// The crossings of 32 cells in the eight rows: a half of word w.
 __m256i crossings_of(const CellRow& row, std::size_t w, unsigned half) {
   const auto word = [&](std::size_t r) { return static_cast<int>(row.crossings[r][w] >> 32 * half); };
   return _mm256_setr_epi32(word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7));
 }
 
-// Numbers of the first crossings of word w. Those along y come behind those along x: of the first and the third row.
+// The numbers of the first crossings of word w. Crossings along y are numbered behind those along x, by the first and
+// the third row.
 __m256i bases_of(const CellRow& row, std::size_t w) {
   const auto x = [&](std::size_t r) { return static_cast<int>(row.x_base[r][w]); };
   const auto z = [&](std::size_t r) { return static_cast<int>(row.z_base[r][w]); };

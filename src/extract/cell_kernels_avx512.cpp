@@ -15,7 +15,7 @@ constexpr std::array<std::uint8_t, 256> kTriangles = [] {
   return counts;
 }();
 
-// Byte by byte the cases of the cells of word w, as cell_case() has them.
+// The cases of the cells of word w, one byte each, as cell_case() gives them.
 __m512i cases_of(const CellRow& row, std::size_t w) {
   __m512i cases = _mm512_setzero_si512();
   for (std::size_t r = 0; r < 4; ++r) {
@@ -47,7 +47,8 @@ __m512i crossings_of(const CellRow& row, std::size_t w) {
   return _mm512_setr_epi64(word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7));
 }
 
-// Numbers of the first crossings of word w. Those along y come behind those along x: of the first and the third row.
+// The numbers of the first crossings of word w. Crossings along y are numbered behind those along x, by the first and
+// the third row.
 __m512i bases_of(const CellRow& row, std::size_t w, __m512i crossings) {
   const auto x = [&](std::size_t r) { return static_cast<long long>(row.x_base[r][w]); };
   const auto z = [&](std::size_t r) { return static_cast<long long>(row.z_base[r][w]); };

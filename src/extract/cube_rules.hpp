@@ -1,4 +1,4 @@
-// What a sample and a crossing are: the per-element rules of extraction, shared by every back end.
+// What is inside and where a crossing lies: the per-element rules of extraction, shared by every back end.
 #pragma once
 
 #include <cmath>
@@ -18,16 +18,16 @@ struct IsoRule {
 // Crossings keep this distance, in samples, from the lattice points: no degenerate triangles, no snapping.
 inline constexpr double kCrossingMargin = 1.0 / 256;
 
-// The part of the way from f0 to f1 at which iso lies. Differences beyond the largest number are taken of the halves;
-// the quotient is 0 or no number then, which it hardly ever is otherwise.
+// The part of the way from f0 to f1 at which iso lies. Where the difference is beyond the largest number, it is taken
+// of the halves: the quotient is 0 or no number then, and hardly ever otherwise.
 ISOWEAVE_HD inline double part_between(double f0, double f1, double iso) {
   const double part = (iso - f0) / (f1 - f0);
   if (part < 0 || part > 0) return part;
   return (iso / 2 - f0 / 2) / (f1 / 2 - f0 / 2);
 }
 
-// Where along a lattice edge from f0 to f1 the surface crosses, in [1/256, 255/256]. A sample outside the volume is
-// given as NaN; it and a NaN sample let the surface hug the inside sample.
+// The place along a lattice edge from f0 to f1 where the surface crosses it, in [1/256, 255/256]. A sample outside the
+// volume is given as NaN. Beside a NaN the surface hugs the inside sample.
 ISOWEAVE_HD inline double crossing_parameter(double f0, double f1, double iso, bool inside0) {
   const double t = part_between(f0, f1, iso);
   if (t != t) return inside0 ? kCrossingMargin : 1 - kCrossingMargin;

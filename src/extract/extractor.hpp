@@ -11,7 +11,7 @@
 
 namespace isoweave {
 
-// What a slab has brought.
+// The counts of a slab that has been extracted.
 struct SlabCounts {
   std::int64_t layers = 0;
   std::uint64_t cells_crossed = 0, triangles = 0, vertices = 0;

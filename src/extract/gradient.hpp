@@ -1,4 +1,4 @@
-// Normals from differences of the samples: shared by host and device. Samples are whatever gives rows of them.
+// Normals from differences of the samples, shared by host and device. `Samples` is any type that gives rows of samples.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace isoweave {
 
-// Whether samples of a type may not be doubles.
+// Whether doubles cannot hold all samples of a type.
 template <class T>
 inline constexpr bool kIsWide = std::is_integral_v<T> && sizeof(T) == 8;
 
-// What numbers of wide samples are counted from: differences are exact before they are rounded.
+// The number that wide samples are counted from, so that differences are exact before they are rounded.
 template <class T>
 struct SampleBase {
   ISOWEAVE_HD double number(T sample) const { return static_cast<double>(sample); }
@@ -49,8 +49,8 @@ struct SampleRow {
   }
 };
 
-// Central difference per unit length, one-sided where a neighbour is missing or NaN, 0 where both are; of the samples
-// times `scale`.
+// The central difference per unit length, of the samples times `scale`. It is one-sided where a neighbour is missing or
+// NaN, and 0 where both are.
 template <class Samples>
 ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std::int64_t, 3>& at,
                                     const std::array<double, 3>& spacing, double scale) {
@@ -69,7 +69,7 @@ ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std
   return {slope[0], slope[1], slope[2]};
 }
 
-// Unit length, or zero when there is no direction.
+// The vector at unit length, or zero when it has no direction.
 ISOWEAVE_HD inline Point unit_point(Vec3 v) {
   const double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
   if (!(largest > 0) || largest > std::numeric_limits<double>::max()) return {0, 0, 0};
@@ -79,7 +79,7 @@ ISOWEAVE_HD inline Point unit_point(Vec3 v) {
           static_cast<float>(scaled.z / length)};
 }
 
-// A crossing: between the samples f0 at `low` and f1 one further along an axis.
+// A crossing between two samples: f0 at `low`, and f1 one step further along an axis.
 struct Crossing {
   std::array<std::int64_t, 3> low;
   std::size_t axis;
@@ -100,7 +100,7 @@ ISOWEAVE_HD inline Vec3 crossing_gradient(const Samples& samples, const Crossing
 
 ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
 
-// Its normal, outwards.
+// The normal at a crossing, outwards.
 template <class Samples>
 ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& crossing,
                                    const std::array<double, 3>& spacing, bool above) {

@@ -11,7 +11,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kSamplesPerBlock = 4096;  // of rows that go together: less is no work for a thread
+constexpr std::int64_t kSamplesPerBlock = 4096;  // of rows that a thread takes at a time: fewer are no work for it
 
 std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
 
@@ -126,7 +126,7 @@ void MarchingCubes::classify(const SliceWindow& window, std::int64_t k, std::siz
                kernels_);
 }
 
-// Crossing bits of one row of layer n of the slab and of the slice above it; returns how many there are.
+// Finds the crossings of one row of layer n of the slab and of the slice above it. Returns how many there are.
 std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   Slice& slice = slices_[n + 1];
   const std::size_t begin = row * words_;
@@ -147,7 +147,8 @@ std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   return count;
 }
 
-// Crossings in the faces of an open volume: each is the end of two open edges, and has one to its name.
+// Counts the crossings in the faces of an open volume. The surface's border runs through them, so there are as many
+// open edges as such crossings.
 std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row) const {
   const auto is_end = [](std::int64_t at, std::int64_t size) { return at == 0 || at == size - 1; };
   const bool end_slice = is_end(next_layer_ + static_cast<std::int64_t>(n) + 1, dims_[2]);
@@ -175,7 +176,7 @@ void MarchingCubes::count_rows(std::size_t layers) {
   });
 }
 
-// How many layers hold no more than `most_vertices`, one at least.
+// The largest number of layers with no more than `most_vertices` vertices, one at least.
 std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_vertices) const {
   std::uint64_t sum = 0;
   for (std::size_t n = 0; n < layers; ++n) {
@@ -185,14 +186,14 @@ std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_
   return layers;
 }
 
-// Numbers in a slab are of 32 bits.
+// Throws OverMemory where numbers of 32 bits are not enough for a slab.
 void require_numbers(std::size_t layers, std::uint64_t count, const char* what) {
   if (count < std::numeric_limits<std::uint32_t>::max()) return;
   throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
                    ", expected fewer than 2^32: choose thinner slabs");
 }
 
-// Turns the counts of rows into the places where their vertices and triangles begin, and makes room for those.
+// Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.
 void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
   rows_of_slab_.resize(layers * rows_);
   rows_of_slab_.emplace_back();
@@ -212,7 +213,7 @@ void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
   piece.triangles.resize(triangles);
 }
 
-// Numbers crossings word by word: z below the slice, then x and y on it.
+// Numbers the crossings of a row word by word: z below the slice, then x and y on it.
 void MarchingCubes::number_row(std::size_t n, std::size_t row, std::uint32_t base) {
   for (std::size_t w = row * words_; w < (row + 1) * words_; ++w) {
     layers_[n].base[w] = base;
@@ -229,7 +230,7 @@ struct MarchingCubes::EdgeRow {
   std::int64_t j, k;       // of the lower ends
 };
 
-// Numbers the crossings, after the inherited ones, and makes vertices of them.
+// Numbers the crossings, after the inherited ones, and makes their vertices.
 template <class T>
 void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) {
   const SampleView<T> samples(window, options_.rule.iso);
@@ -238,7 +239,7 @@ void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers,
     const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
     const Slice& upper = slices_[n + 1];
     const std::uint32_t first = rows_of_slab_[number].vertices;
-    if (first == rows_of_slab_[number + 1].vertices) return;  // nobody asks for numbers there
+    if (first == rows_of_slab_[number + 1].vertices) return;  // no cell asks for numbers there
     number_row(n, row, front_size_ + first);
     const SampleRow<T> here = samples.row(j, k + 1);
     const EdgeRow<T, 2> along_z{samples.row(j, k), here, j, k};
@@ -254,7 +255,7 @@ void MarchingCubes::emit_vertices(const SliceWindow& window, std::size_t layers,
   });
 }
 
-// The vertices of the crossings of one word, numbered from `number` on.
+// Makes the vertices of the crossings of one word, numbered from `number` on.
 template <class T, int Axis>
 void MarchingCubes::emit_word(const SampleView<T>& samples, const EdgeRow<T, Axis>& edges, std::size_t w,
                               std::uint64_t crossings, std::uint64_t inside, std::uint32_t number,
@@ -288,7 +289,7 @@ bool MarchingCubes::has_cells(std::int64_t k, std::size_t row) const {
   return options_.rule.closed || (k >= 0 && k + 1 < dims_[2] && j >= 0 && j + 1 < dims_[1]);
 }
 
-// The rows of samples around a row of cells.
+// The rows of inside bits around a row of cells.
 std::array<const std::uint64_t*, 4> MarchingCubes::rows_around(std::size_t n, std::size_t row) const {
   return {&slices_[n].inside[row * words_], &slices_[n].inside[(row + 1) * words_],
           &slices_[n + 1].inside[row * words_], &slices_[n + 1].inside[(row + 1) * words_]};
@@ -306,7 +307,7 @@ void MarchingCubes::find_cells(std::size_t n, std::size_t row, Row& counts) {
   if (counts.cells > 0) counts.triangles = cell_kernels_.count_triangles(cell_row(n, row));
 }
 
-// A row of cells with all that lies around it. The numbers count once vertices have been emitted.
+// A row of cells and the rows around it. Its numbers are valid once vertices have been emitted.
 CellRow MarchingCubes::cell_row(std::size_t n, std::size_t row) const {
   CellRow cells{};
   cells.words = words_;

@@ -1,8 +1,8 @@
 // Marching cubes over slabs of layers (Lorensen and Cline, 1987; slabs and the front table as in the source paper).
 //
-// Crossings are bits. For every row of 64 lattice points there is one word of inside bits and one word of crossings
-// per axis; the number of a vertex is the number given to its word plus the crossings before it in the word. So every
-// crossing is computed once, found by its lattice position, and numbered in lattice order.
+// Crossings are bits. Every row of 64 lattice points has one word of inside bits and one word of crossings per axis.
+// The number of a vertex is the number given to its word plus the crossings before it in the word. So every crossing is
+// computed once, found by its lattice position, and numbered in lattice order.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ namespace isoweave {
 struct ExtractOptions {
   IsoRule rule;
   bool normals = false;  // from central differences of the samples; needs one slice more on either side
-  // Where a volume is a part of another one: its vertices have the places and ids that they have in the whole. Beside a
-  // border inside the whole there is nothing, so no sample there may be inside.
+  // The place of a volume that is a part of another one: its vertices have the places and ids that they have in the
+  // whole. There is no surface at a border inside the whole, so no sample there may be inside.
   std::optional<PartOfLattice> part_of{};
 };
 
@@ -63,15 +63,15 @@ class MarchingCubes final : public Extractor {
     std::vector<std::uint64_t> inside, cross_x, cross_y;
     std::vector<std::uint32_t> base;  // number of the word's first x-crossing; y-crossings follow
   };
-  // The same between two slices.
+  // The bits and vertex numbers between two slices.
   struct Layer {
     std::vector<std::uint64_t> cross_z;
     std::vector<std::uint64_t> crossed;  // cells that the surface crosses, not only along z
     std::vector<std::uint32_t> base;
   };
 
-  // What a row of a layer has: numbers of its own, then, of vertices and triangles, those of the rows before it. One
-  // more follows the last.
+  // The counts of one row of a layer; for vertices and triangles they become the sums over the rows before it. One more
+  // entry follows the last row.
   struct Row {
     std::uint32_t vertices = 0, triangles = 0;
     std::uint32_t cells = 0;      // crossed

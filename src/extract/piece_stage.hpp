@@ -1,4 +1,4 @@
-// The seam for what looks at a surface, or changes it, between extraction and simplification.
+// The seam for stages: a stage looks at a piece of the surface, or changes it, between extraction and simplification.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ class PieceStage {
   PieceStage& operator=(const PieceStage&) = delete;
   virtual ~PieceStage() = default;
 
-  // Takes the next piece. Stages after this one see what is left of it.
+  // Takes the next piece. Later stages see the piece that this one leaves.
   virtual void apply(SurfacePiece& piece) = 0;
 
-  // Bytes that it holds from piece to piece, where these grow.
+  // Bytes that the stage holds from piece to piece, if they grow.
   virtual std::uint64_t bytes() const { return 0; }
 
   // The state between two pieces.

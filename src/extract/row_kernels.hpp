@@ -9,8 +9,8 @@
 
 namespace isoweave {
 
-// Compares the n samples of a row with a threshold: sets bit i + 1 of `words` for every sample i that is no less, or no
-// more, and clears all others. NaN is neither. `words` holds at least (n + 2 + 63) / 64 words.
+// Compares the n samples of a row with a threshold. Sets bit i + 1 of `words` for every sample i that is not below it
+// (or not above it), and clears all others. NaN is neither. `words` holds at least (n + 2 + 63) / 64 words.
 template <class T>
 struct Comparison {
   using Function = void (*)(const T* row, std::int64_t n, T threshold, std::span<std::uint64_t> words);
@@ -24,21 +24,21 @@ struct RowKernels {
              Comparison<float>, Comparison<double>>
       compare;
 
-  // Bits that differ from the next one in the row, where `mask` has bits. All rows have as many words.
+  // Finds the bits that differ from the next bit in the row, where `mask` has bits. All rows have as many words.
   void (*differ_along)(const std::uint64_t* row, const std::uint64_t* mask, std::size_t words, std::uint64_t* out);
 
-  // Bits of two rows that differ.
+  // Finds the bits of two rows that differ.
   void (*differ)(const std::uint64_t* a, const std::uint64_t* b, std::size_t words, std::uint64_t* out);
 
-  // Bits where four rows, each at the bit and the next one, are not all alike, where `mask` has bits.
+  // Finds the bits where four rows, each at that bit and at the next one, are not all alike, where `mask` has bits.
   void (*cells_crossed)(const std::array<const std::uint64_t*, 4>& rows, const std::uint64_t* mask, std::size_t words,
                         std::uint64_t* out);
 };
 
-// The best for this processor.
+// The best kernels for this processor.
 const RowKernels& row_kernels();
 
-// All that this processor can run, the best last.
+// All kernels that this processor can run, the best last.
 std::span<const RowKernels* const> all_row_kernels();
 
 }  // namespace isoweave

@@ -1,4 +1,4 @@
-// Row kernels by vectors. Each instruction set has lanes of its own, a type, so that no functions of two sets share a
+// Row kernels by vectors. Each instruction set has a type of lanes of its own, so that no functions of two sets share a
 // name.
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace isoweave {
 
-// Comparisons that the compiler makes vectors of. kBytes: of a vector.
+// Comparisons that the compiler turns into vectors of kBytes bytes.
 template <int kBytes>
 struct FlagLanes {
-  // Bit i: sample i is at the threshold or above, or else at it or below.
+  // Bit i of the result: whether sample i is at the threshold or above it (or at it or below).
   template <class T, bool kAbove>
   static std::uint64_t compare(const T* samples, T threshold) {
     alignas(64) std::uint8_t flags[64];
@@ -48,7 +48,7 @@ class RowKernelsInLanes {
     return {compare<T, true>, compare<T, false>};
   }
 
-  // The first and the last word look at 64 samples, too: at some that belong to the words beside them.
+  // The first and the last word look at 64 samples, too. Some of these samples belong to the words beside them.
   template <class T, bool kAbove>
   static void compare(const T* row, std::int64_t n, T threshold, std::span<std::uint64_t> words) {
     if (n < 64) return compare_few<T, kAbove>(row, n, threshold, words);

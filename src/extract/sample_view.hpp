@@ -1,4 +1,4 @@
-// The samples of a window, as extraction reads them.
+// The view that extraction has of the samples of a window.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace isoweave {
 
-// Read access to the samples a window holds; NaN outside the volume. Integers of 64 bits count from the whole number
-// below `iso`, so that none near it is rounded.
+// Read access to the samples of a window; NaN outside the volume. Integers of 64 bits are counted from the whole number
+// below `iso`, so that no sample near the iso-value is rounded.
 template <class T>
 class SampleView {
  public:
@@ -24,7 +24,7 @@ class SampleView {
     }
   }
 
-  // The iso-value in the numbers that rows give.
+  // The iso-value, counted as the samples of rows are.
   double iso() const { return iso_; }
 
   SampleRow<T> row(std::int64_t j, std::int64_t k) const {

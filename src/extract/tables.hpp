@@ -64,8 +64,8 @@ constexpr bool share_face(int edge, int other) {
   return false;
 }
 
-// next[e]: the crossing that follows crossing e on its polygon, -1 where edge e is not crossed. Going around a face,
-// each run of inside corners is cut off by one segment, from where the run is entered to where it is left.
+// next[e] is the crossing that follows crossing e on its polygon, or -1 where edge e is not crossed. Around a face, one
+// segment cuts off each run of inside corners, from where the run is entered to where it is left.
 constexpr std::array<int, kCellEdges> chain_segments(int inside) {
   std::array<int, kCellEdges> next{};
   next.fill(-1);
@@ -87,8 +87,8 @@ struct Polygon {
   std::array<int, kCellEdges> edges{};
 };
 
-// Triangulates vertices first...last of a polygon, the side (first, last) given: tries every apex in turn and
-// undoes what does not work out. Polygons have at most 7 vertices.
+// Triangulates vertices first...last of a polygon, whose side (first, last) is given: tries every apex in turn and
+// undoes a choice that leads nowhere. Polygons have at most 7 vertices.
 constexpr bool triangulate(const Polygon& polygon, int first, int last, CellCase& out) {
   if (last - first < 2) return true;
   const auto allowed = [&](int a, int b) {

@@ -17,7 +17,7 @@ constexpr int kAttempts = 100;
   throw CannotWrite(path + ": " + what + ": " + std::generic_category().message(error));
 }
 
-// Beside the folder, as a rename cannot leave the file system.
+// Makes the temporary folder beside the folder itself, as a rename cannot leave the file system.
 std::string make_temporary(const std::string& path) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::string name = temporary_name(path);
@@ -60,7 +60,7 @@ void AtomicFolder::write_file(const std::string& name, std::span<const std::byte
 }
 
 void AtomicFolder::commit() {
-  // An empty folder of that name is replaced, and nothing else can be.
+  // A rename replaces an empty folder of that name, and nothing else.
   if (!system::rename(temporary_, path_)) cannot_write(path_, "cannot be renamed into place", errno);
   temporary_.clear();
   sync_folder(path_, path_);

@@ -17,10 +17,10 @@ class AtomicFolder {
   AtomicFolder(const AtomicFolder&) = delete;
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
-  // Throws unless nothing, or an empty folder, has the name.
+  // Throws unless the name is free, or that of an empty folder.
   static void check_free(const std::string& path);
 
-  // Creates a file in it.
+  // Creates a file in the folder.
   void write_file(const std::string& name, std::span<const std::byte> bytes);
 
   // The path under which a file of this name can be written into the folder until it is committed.

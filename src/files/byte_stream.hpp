@@ -22,7 +22,7 @@ class ByteStream {
   // corrupt, cut off inside a compressed stream, or cannot be read.
   virtual std::size_t read(std::span<std::byte> out) = 0;
 
-  // Skips up to `count` bytes and returns how many there were to skip. Reads and drops them unless overridden.
+  // Skips up to `count` bytes and returns the number skipped. Reads and drops them unless overridden.
   virtual std::uint64_t skip(std::uint64_t count);
 
   // Whether skipping costs next to nothing.
@@ -44,7 +44,8 @@ class FileStream final : public ByteStream {
   std::uint64_t end_;
 };
 
-// Inflates a zlib stream or the members of a gzip stream, told apart by their first bytes; or one without any wrapping.
+// Inflates a zlib stream or the members of a gzip stream, told apart by their first bytes, or a deflate stream without
+// any wrapping.
 class InflateStream final : public ByteStream {
  public:
   enum class Form { kZlibOrGzip, kRaw };
@@ -66,7 +67,7 @@ class InflateStream final : public ByteStream {
   std::unique_ptr<State> state_;
 };
 
-// Bytes that can only be had all at once, such as a decoded slice; they are made when the first is asked for.
+// Bytes that can only be had all at once, such as a decoded slice. They are made when the first one is read.
 class DecodedStream final : public ByteStream {
  public:
   using Decoder = std::function<std::vector<std::byte>()>;

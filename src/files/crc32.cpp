@@ -13,7 +13,7 @@ using Table = std::array<std::uint32_t, 256>;
 
 constexpr std::uint32_t times_x(std::uint32_t a) { return (a >> 1) ^ ((a & 1) != 0 ? kPolynomial : 0); }
 
-// The n-th table: what a byte adds that n bytes follow (Kounavis and Berry 2005, slicing).
+// The n-th table: the CRC of a byte that n bytes follow (Kounavis and Berry 2005, slicing).
 constexpr std::array<Table, kAtOnce> make_tables() {
   std::array<Table, kAtOnce> tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

@@ -1,5 +1,5 @@
-// CRC-32 as zlib and PNG have it (polynomial 0x04c11db7, reflected), for files of our own: they are to be had without
-// zlib. CRCs in packed files are those that the library finds that unpacks them.
+// CRC-32 as zlib and PNG have it (polynomial 0x04c11db7, reflected), for files of our own, which must be readable
+// without zlib. The library that unpacks a packed file finds the CRCs in it.
 #pragma once
 
 #include <cstddef>

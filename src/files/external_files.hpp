@@ -1,4 +1,4 @@
-// Files that a header names, and links that lead out of a folder: whoever wrote them may be a stranger.
+// Files that a header names, and links that lead out of a folder. The header may come from a stranger.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace isoweave {
 
-// To be called before the file `name`, which the header `path` names, is opened. Throws BadInput where headers may name
+// Must be called before opening the file `name`, which the header `path` names. Throws BadInput where headers may name
 // no other files (OpenOptions::external).
 void check_external(const OpenOptions& options, std::string_view path, std::string_view name);
 

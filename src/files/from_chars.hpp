@@ -7,7 +7,7 @@ namespace isoweave {
 
 std::from_chars_result double_from_chars(const char* first, const char* last, double& value);
 
-// The same without the standard library's, for tests of it.
+// The replacement for the standard library's function, for tests of it.
 std::from_chars_result double_from_chars_by_stream(const char* first, const char* last, double& value);
 
 }  // namespace isoweave

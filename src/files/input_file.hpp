@@ -26,7 +26,8 @@ class InputFile {
   // The name that messages use.
   const std::string& path() const { return path_; }
 
-  // The most bytes there can be: their number, but for a packed file whose end nobody has read yet.
+  // The most bytes that the file can have. That is their number, except for a packed file whose end has not been read
+  // yet.
   std::uint64_t size() const { return size_; }
 
   // The number of bytes. In a packed file it may take reading all of them.
@@ -35,7 +36,7 @@ class InputFile {
   // The size for messages: "120", or "at most 120 once inflated".
   std::string size_text() const;
 
-  // Whether bytes anywhere cost the same. Elsewhere bytes are to be read in their order.
+  // Whether bytes can be read in any order at the same cost. Other files should be read forward.
   virtual bool jumps() const { return true; }
 
   // Reads up to out.size() bytes from `offset` on; fewer only at the end of the file.
@@ -44,7 +45,8 @@ class InputFile {
   // Tells the system that nobody will read these bytes again soon. Changes nothing but speed.
   virtual void forget(std::uint64_t, std::uint64_t) const {}
 
-  // To be called when all that is wanted was read, up to `offset`: what is packed checks its sum if its end is near.
+  // Must be called when everything wanted has been read, up to `offset`. A packed file checks its sum if its end is
+  // near.
   virtual void check_end(std::uint64_t) const {}
 
   // The name by which a library can open the file itself. Only for a file that jumps, and while it is open.

@@ -125,7 +125,7 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
   }
   if (unknown && (differ || !common.unit.empty())) {
     common.conflict = listed(texts);
-    // What the caller gives as spacing is in the unit of the first axis, if in any.
+    // The caller's spacing is in the unit of the first axis, if that has one.
     if (texts[0] && !units[0]) common.unit.clear();
     return common;
   }

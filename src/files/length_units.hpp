@@ -9,8 +9,8 @@
 
 namespace isoweave {
 
-// A unit that meshes and volumes are given in, m, mm, um, nm or in, and how many of it another unit is: a centimetre is
-// 10 mm, a foot 12 in.
+// A unit that meshes and volumes are given in (m, mm, um, nm or in), and the factor from another unit to it: a
+// centimetre is 10 mm, a foot 12 in.
 struct LengthUnit {
   double scale = 1;
   std::string_view name;
@@ -20,14 +20,14 @@ struct LengthUnit {
 // Nothing for pixels and whatever else is no length.
 std::optional<LengthUnit> find_length_unit(std::string_view text);
 
-// The same, with inches as millimetres. Volumes are given in metric units only.
+// The metric unit of a text; inches become millimetres. Volumes are given in metric units only.
 std::optional<LengthUnit> find_metric_unit(std::string_view text);
 
-// How many of the unit `other` one `unit` is. Nothing unless both names are among those of LengthUnit.
+// The number of units `other` in one `unit`. Nothing unless both names are among those of LengthUnit.
 std::optional<double> unit_in(const LengthUnit& unit, std::string_view other);
 std::optional<double> unit_in(std::string_view unit, std::string_view other);
 
-// What the numbers of three axes are multiplied by, so that all are in `unit`.
+// The factors that bring the numbers of three axes into one unit.
 struct CommonUnit {
   std::string unit;  // one that Geometry knows; empty where no axis has a known one
   std::array<double, 3> scale{1, 1, 1};

@@ -13,8 +13,8 @@ struct TextCharacter {
   std::size_t bytes = 1;
   bool valid = false;
 
-  // It shows as itself: it is no control character (of ASCII or C1), does not turn the direction of writing, and is
-  // not invisible.
+  // Whether the character shows as itself: it is no control character (of ASCII or C1), does not turn the direction of
+  // writing, and is not invisible.
   bool is_printable() const;
 };
 
@@ -25,7 +25,7 @@ TextCharacter first_character(std::string_view text);
 // '?', and long text is cut.
 std::string printable(std::string_view text);
 
-// The same for text of several lines, whose ends stay; nothing is cut.
+// Makes text of several lines printable; the line ends stay, and nothing is cut.
 std::string printable_lines(std::string_view text);
 
 // The first characters of a text, printable, in single quotes.

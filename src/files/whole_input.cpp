@@ -39,7 +39,7 @@ std::string temporary_folder() {
   return error ? "/tmp" : found.string();
 }
 
-// All bytes that `next` gives, as a file. It gives none at the end.
+// A file with all bytes that `next` gives. An empty answer ends it.
 FilePtr keep(const Source& next, const std::string& path, std::string_view wanted = kVolumeFile) {
   const std::string folder = temporary_folder();
   Descriptor file(system::create_private(folder));
@@ -60,7 +60,7 @@ std::size_t read_pipe(int pipe, const std::string& path, std::span<std::byte> ou
   return static_cast<std::size_t>(got);
 }
 
-// Content of pipes, for as long as somebody holds it.
+// The content of pipes, kept as long as anybody holds it.
 class KeptPipes {
  public:
   FilePtr get(const system::FileStatus& pipe, const std::function<FilePtr()>& read) {

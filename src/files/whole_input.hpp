@@ -8,11 +8,12 @@
 
 namespace isoweave {
 
-// A regular file, or all that comes out of a pipe or socket. A pipe can be read once: whoever opens it while what came
-// out of it is still held, gets the same. Throws what open_file throws; CannotWrite when there is no room.
+// Opens a regular file, or everything that comes out of a pipe or socket. A pipe can be read once, so opening it again
+// while its content is still held gives the same content. Throws what open_file throws; CannotWrite when there is no
+// room.
 FilePtr open_input_file(const std::string& path, std::string_view wanted = kVolumeFile);
 
-// A file that can be read anywhere: the file itself, or what a packed one holds, as a file without a name.
+// A file that can be read in any order: the file itself, or the content of a packed one, as a file without a name.
 FilePtr jumping_file(const FilePtr& file);
 
 // A name in some folder for as long as this lives, for a library that follows links to files: what has no name gets

@@ -24,13 +24,13 @@ struct ZipEntry {
 // The header in front of an entry; its length depends on the name alone.
 std::vector<std::byte> zip_header(const ZipEntry& entry);
 
-// What stands behind the last entry, from `offset` on.
+// The directory that stands behind the last entry, from `offset` on.
 std::vector<std::byte> zip_directory(std::span<const ZipEntry> entries, std::uint64_t offset);
 
 // CRC-32 of text that follows text with the checksum `crc` (0: none).
 std::uint32_t zip_crc(std::uint32_t crc, std::string_view text);
 
-// Text as a deflate stream, made of blocks that can be packed one by one: each refers to nothing before it.
+// Packs text as a block of a deflate stream. A block refers to nothing before it, so blocks can be packed one by one.
 // Throws std::bad_alloc.
 std::vector<std::byte> deflate_block(std::string_view text, bool last);
 

@@ -28,7 +28,7 @@ struct Lattice {
   }
 };
 
-// Where a box of samples lies in a lattice.
+// The place of a box of samples in a lattice.
 struct PartOfLattice {
   std::array<std::int64_t, 3> dims{0, 0, 0};   // of the whole
   std::array<std::int64_t, 3> first{0, 0, 0};  // sample of it

@@ -1,5 +1,5 @@
 // The finaliser of splitmix64 (Steele, Lea, Flood 2014): a bijection of 64-bit words in which every input bit reaches
-// every output bit. Used as a hash and, over a counter, as a source of random numbers that needs no state.
+// every output bit. It serves as a hash and, over a counter, as a source of random numbers without state.
 #pragma once
 
 #include <cstdint>

@@ -37,7 +37,8 @@ inline double area_of(const TriangleCorners& t) {
   throw std::invalid_argument("a triangle refers to a vertex that the mesh does not have");
 }
 
-// Meshes may come from any program: who follows an index looks at it before.
+// Throws where a triangle names a vertex that the mesh does not have. Meshes may come from any program, so every index
+// is tested before it is followed.
 inline void require_in_range(const std::array<std::uint32_t, 3>& triangle, std::size_t vertices) {
   if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertices) refuse_index();
 }
@@ -46,7 +47,7 @@ inline void require_indices_in_range(const TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles) require_in_range(triangle, mesh.vertices.size());
 }
 
-// Finite, and with numbers of triangles that fit into 32 bits.
+// Throws where a coordinate is not finite, or where triangles cannot be numbered in 32 bits.
 inline void require_finite_mesh(const TriangleMesh& mesh) {
   if (mesh.triangles.size() > 0xffffffffU) throw std::invalid_argument("expected at most 2^32 - 1 triangles");
   require_indices_in_range(mesh);

@@ -1,4 +1,4 @@
-// Numbers that ride on vertices: shared by host and device.
+// Values that vertices carry: shared by host and device.
 #pragma once
 
 #include "lattice/vec3.hpp"
@@ -8,7 +8,7 @@ namespace isoweave {
 
 ISOWEAVE_HD inline bool is_infinite(double x) { return x == x && x - x != 0; }
 
-// From a at 0 to b at 1, linearly. A NaN has no say.
+// The linear interpolation from a at 0 to b at 1. Where one of the two is NaN the other one counts.
 ISOWEAVE_HD inline double value_between(double a, double b, double t) {
   if (a != a) return b;
   if (b != b) return a;
@@ -17,7 +17,7 @@ ISOWEAVE_HD inline double value_between(double a, double b, double t) {
   return is_infinite(a) || is_infinite(b) ? value : (1 - t) * a + t * b;  // the difference is beyond the largest number
 }
 
-// Where along an edge, from 0 to 1, the place x lies; both are measured from the edge's beginning.
+// The place of x along an edge, from 0 to 1. Both vectors are measured from the edge's beginning.
 ISOWEAVE_HD inline double place_along(const Vec3& edge, const Vec3& x) {
   const double squared = dot(edge, edge);
   if (!(squared > 0)) return 0.5;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kCotangentOf5Degrees = 11.430052302761343;
 
-// Of 6, 12, ... 54 degrees: between the bins of the smallest angle, which is at most 60.
+// The cotangents of 6, 12, ... 54 degrees: the limits between the bins of the smallest angle, which is at most 60.
 constexpr std::array<double, 9> kCotangentsOfBins{9.514364454222584,  4.704630109478455,  3.077683537175254,
                                                   2.246036773904216,  1.7320508075688774, 1.3763819204711736,
                                                   1.1106125148291929, 0.9004040442978399, 0.726542528005361};

@@ -8,8 +8,8 @@
 
 namespace isoweave::measure {
 
-// Angles are compared by their cotangents, which fall from 0 to 180 degrees and take sums, products, a root and a
-// quotient only: counts are the same on every machine. Degrees are left to the end.
+// Compares angles by their cotangents, which fall from 0 to 180 degrees. A cotangent takes sums, products, a root and a
+// quotient only, so counts are the same on every machine. Degrees are computed at the end.
 class AngleSurvey {
  public:
   void add(const TriangleCorners& triangle);

@@ -101,7 +101,7 @@ void for_each_edge(SideTable& table, Visit&& visit) {
   }
 }
 
-// How triangles meet, at some vertices and along the edges that end there.
+// Counts how triangles meet at some vertices and along the edges that end there.
 class Meetings {
  public:
   // among: per vertex, nonzero for those that count; null: all.
@@ -144,8 +144,9 @@ class Meetings {
     corners_.unite(corner_at(a, false), corner_at(b, false));
   }
 
-  // Fans around every vertex, counted up to two. Corners that are still roots stand for one fan each. A non-manifold
-  // edge joins nothing, so three fans or more end at it; a fan has two ends, hence its vertices have more than one.
+  // Counts the fans around every vertex, up to two. Each corner that is still a root stands for one fan. A non-manifold
+  // edge joins nothing, so three fans or more end at it. A fan has two ends, so each vertex of such an edge has more
+  // than one.
   std::vector<std::uint8_t> find_fans() {
     std::vector<std::uint8_t> fans(mesh_.vertices.size(), 0);
     for_each_side(mesh_, [&](std::uint64_t corner, std::uint32_t vertex, std::uint32_t) {
@@ -221,7 +222,7 @@ class Checker {
     }
   }
 
-  // Volumes of tetrahedra over a point of the mesh: over the origin, a mesh far from it would lose digits.
+  // Sums the volumes of tetrahedra over a point of the mesh. Over the origin, a mesh far from it would lose digits.
   void measure_surface() {
     if (mesh_.triangles.empty()) return;
     const measure::Vector apex = measure::corners_of(mesh_, 0)[0];

@@ -9,23 +9,23 @@
 
 namespace isoweave {
 
-// Union-find over labels. compact() forgets labels that no longer matter, so memory follows the vertices held.
+// Union-find over labels. compact() forgets labels that are no longer needed, so memory follows the vertices held.
 class ComponentCounter {
  public:
-  // New components of one vertex each; returns the first of their consecutive labels.
+  // Adds components of one vertex each. Returns the first of their consecutive labels.
   std::uint32_t add(std::size_t count);
 
-  // The two labels name the same component from now on. Tells whether they were two, which is to be counted below. May
-  // be called by several threads at the same time.
+  // Makes two labels name the same component. Returns whether they named two components before; such joins must be
+  // counted below. May be called by several threads at the same time.
   bool join(std::uint32_t a, std::uint32_t b);
 
-  // So many joins made one of two components. May be called by several threads at the same time.
+  // Counts joins that made one component of two. May be called by several threads at the same time.
   void count_joins(std::uint64_t count) { joined_.fetch_add(count, std::memory_order_relaxed); }
 
-  // Components so far.
+  // The number of components so far.
   std::uint64_t count() const { return added_ - joined_; }
 
-  // Labels held.
+  // The number of labels held.
   std::size_t labels() const { return parent_.size(); }
 
   // Renumbers the labels of the vertices still held, in place; all other labels become invalid.

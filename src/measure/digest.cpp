@@ -41,7 +41,7 @@ std::uint64_t mix_corners(const CornerBits& p, const CornerBits& q, const Corner
   return mix_corner(mix_corner(mix_corner(0, p), q), r);
 }
 
-// The same of 64 bits.
+// A corner with coordinates of 64 bits each.
 struct WideCornerBits {
   std::array<std::uint64_t, 3> bits{};
 
@@ -53,7 +53,7 @@ struct WideCornerBits {
 
 WideCornerBits bits_of(const Point& p, const std::array<double, 3>& offset) {
   WideCornerBits corner;
-  // Adding 0 makes -0 to 0.
+  // Adding 0 turns -0 into 0.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     corner.bits[axis] = std::bit_cast<std::uint64_t>(offset[axis] + double{p[axis]} + 0.0);
   }
@@ -70,8 +70,8 @@ std::uint64_t mix_corners(const std::array<WideCornerBits, 3>& corners, std::siz
 
 }  // namespace
 
-// Of the three rotations counts the one that begins with the smallest corner; where two corners are equal and smallest,
-// the one that has them first.
+// The digest is that of the rotation that begins with the smallest corner. Where two corners are equal and smallest, it
+// is the rotation that has them first.
 std::uint64_t triangle_digest(const Point& a, const Point& b, const Point& c) {
   const std::array<CornerBits, 3> corners{bits_of(a), bits_of(b), bits_of(c)};
   std::size_t first = is_less(corners[1], corners[0]);

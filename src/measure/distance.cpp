@@ -23,8 +23,9 @@ using measure::Vector;
 
 constexpr std::int64_t kSamplesPerBlock = 1024;
 
-// Point i of n lies in the i-th of n parts of equal area, in the order of the triangles: neighbours in number are
-// neighbours on the surface, and every part of it is met. Pure functions of (seed, i).
+// Samples a surface: point i of n lies in the i-th of n parts of equal area, in the order of the triangles. So points
+// with neighbouring numbers are neighbours on the surface, and every part of the surface is met. Points are pure
+// functions of (seed, i).
 class AreaSampler {
  public:
   AreaSampler(const TriangleMesh& mesh, const DistanceOptions& options)
@@ -35,7 +36,7 @@ class AreaSampler {
       total += measure::area_of(measure::corners_of(mesh, t));
       cumulative_.push_back(total);
     }
-    // Without area, all triangles count alike: they still are somewhere.
+    // In a mesh without area all triangles count alike: they still lie somewhere.
     if (!(total > 0) || !std::isfinite(total)) std::iota(cumulative_.begin(), cumulative_.end(), 1.0);
   }
 
@@ -52,7 +53,7 @@ class AreaSampler {
   }
 
  private:
-  // In [0, 1).
+  // A number in [0, 1).
   double uniform(std::uint64_t counter) const {
     return static_cast<double>(measure::splitmix64(key_ + counter) >> 11U) * 0x1p-53;
   }
@@ -67,7 +68,7 @@ struct Sums {
   double distance = 0, squared = 0, max = 0;
 };
 
-// keep(i, distance): called for every sample.
+// Calls keep(i, distance) for every sample.
 template <class Keep>
 Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, std::int64_t begin, std::int64_t end,
                 const Keep& keep) {
@@ -84,8 +85,8 @@ Sums block_sums(const AreaSampler& sampler, const measure::TriangleTree& tree, s
   return sums;
 }
 
-// Blocks are fixed and their sums are added in their order: the result is the same for any number of threads. Fills
-// `distances`, of all samples, where histograms are wanted.
+// Measures the distances one way. Blocks are fixed and their sums are added in the order of the blocks, so the result
+// is the same for any number of threads. Fills `distances`, of all samples, where histograms are wanted.
 OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const DistanceOptions& options,
                        const Executor& executor, std::vector<double>& distances) {
   const AreaSampler sampler(from, options);
@@ -123,7 +124,7 @@ void check_arguments(const TriangleMesh& mesh) {
   measure::require_finite_mesh(mesh);
 }
 
-// One that there is: coordinates near it lose nothing by being made relative to it.
+// An offset for both meshes: one of theirs, so that coordinates near it lose nothing.
 std::array<double, 3> common_offset(const TriangleMesh& a, const TriangleMesh& b) {
   return a.offset == std::array<double, 3>{0, 0, 0} ? b.offset : a.offset;
 }

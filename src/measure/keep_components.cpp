@@ -1,4 +1,4 @@
-// Components of a mesh that is there as a whole.
+// Components of a mesh in memory.
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
 
-// The smallest vertex of the component of each vertex.
+// For each vertex, the smallest vertex of its component.
 std::vector<std::uint32_t> component_roots(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> roots(mesh.vertices.size());
   std::iota(roots.begin(), roots.end(), 0U);
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> component_roots(const TriangleMesh& mesh) {
   return roots;
 }
 
-// Closes the gaps that vertices leave which are not kept.
+// Closes the gaps that dropped vertices leave.
 void drop_vertices(TriangleMesh& mesh, const std::vector<bool>& kept) {
   std::vector<std::uint32_t> number(mesh.vertices.size(), kDropped);
   std::uint32_t next = 0;

@@ -43,7 +43,7 @@ class ExactSum {
     add((product - high) * z);
   }
 
-  // Of the largest part: the others together are smaller.
+  // The sign of the largest part, as all others together are smaller.
   int sign() const { return count_ == 0 ? 0 : sign_of(parts_[count_ - 1]); }
 
  private:
@@ -61,7 +61,7 @@ void add_determinant(ExactSum& sum, double factor, const Point& p, const Point& 
   }
 }
 
-// Without differences, which would not be doubles: 24 products.
+// The sign from 24 products. Differences of coordinates would not be doubles.
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
   ExactSum sum;
   add_determinant(sum, 1, b, c, d);
@@ -102,7 +102,7 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d) 
     determinant += (positive - negative) * r[axis];
     magnitude += (std::abs(positive) + std::abs(negative)) * std::abs(r[axis]);
   }
-  // A magnitude of 0: every product has a factor that is exactly 0.
+  // Where the magnitude is 0, every product has a factor that is exactly 0.
   if (std::abs(determinant) > kBoundInSpace * magnitude || magnitude == 0) return sign_of(determinant);
   return exact_orientation(a, b, c, d);
 }

@@ -20,7 +20,7 @@ using Pair = std::array<std::uint64_t, 2>;
 constexpr std::int64_t kLeavesPerBlock = 64;
 constexpr std::int64_t kTrianglesPerBlock = 4096;
 
-// Moves the vertices that two triangles share to the front of both, in the same order; returns how many those are.
+// Moves the vertices that two triangles share to the front of both, in the same order. Returns their number.
 std::size_t align_shared(std::array<std::uint32_t, 3>& s, std::array<std::uint32_t, 3>& t) {
   std::size_t shared = 0;
   for (std::size_t i = 0; i < 3; ++i) {

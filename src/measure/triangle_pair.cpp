@@ -50,7 +50,8 @@ bool segment_meets_in_plane(const std::array<Point, 2>& segment, const TriangleP
 }
 
 // A triangle that crosses or touches a plane, turned so that corner 0 is alone on its side: the plane meets the two
-// sides that start there. `below`: that side is the negative one, or corner 0 is in the plane and the others above it.
+// sides that start there. `below`: corner 0 is on the negative side, or it is in the plane and the other corners are
+// above it.
 struct TurnedTriangle {
   TrianglePoints corners;
   bool below;
@@ -72,8 +73,9 @@ TurnedTriangle turned(const TrianglePoints& t, const Signs& signs) {
 
 bool has_area(const TrianglePoints& t) { return axis_with_area(t) < 3; }
 
-// Two planes meet in a line, and each triangle has an interval of it. Let both corners 0 lie above the other's plane;
-// along the line, s begins on its side 0-1 and ends on 0-2, t the other way round. Two orientations compare the ends.
+// Two planes meet in a line, and each triangle has an interval of it. Let both corners 0 lie above the other's plane.
+// Along the line, s begins on its side 0-1 and ends on 0-2, and t goes the other way round. Two orientations compare
+// the ends of the intervals.
 bool triangles_meet(const TrianglePoints& s, const TrianglePoints& t) {
   const Signs sides_of_t = sides_of(s, t);
   if (all_on_one_side(sides_of_t)) return false;
@@ -87,16 +89,16 @@ bool triangles_meet(const TrianglePoints& s, const TrianglePoints& t) {
   return orientation(p[0], p[1], q[0], q[1]) <= 0 && orientation(p[0], p[2], q[0], q[2]) >= 0;
 }
 
-// Both triangles have a segment of the line in which their planes meet, and both segments begin at the vertex v: they
-// have more in common when they go the same way. With n the normal of v a b and m that of v c d, the one in v a b goes
-// along (m . a) b - (m . b) a = -(m x n) where a lies above m's plane and b below, and the opposite way where b does;
-// the one in v c d along -(n x m) where c lies above and d below.
+// Both triangles have a segment of the line in which their planes meet, and both segments begin at the vertex v. They
+// have more points in common when the segments go the same way. Let n be the normal of v a b and m that of v c d. The
+// segment in v a b goes along (m . a) b - (m . b) a = -(m x n) where a lies above m's plane and b below, and the
+// opposite way where b lies above. The segment in v c d goes along -(n x m) where c lies above and d below.
 bool triangles_meet_beyond_vertex(const TrianglePoints& s, const TrianglePoints& t) {
   const int a = side_of(t, s[1]);
   const int b = side_of(t, s[2]);
   if (a * b > 0) return false;
   if (a == 0 && b == 0) {
-    // What is common reaches the side across from the vertex in one of them.
+    // The common part reaches the side across from the vertex in one of the two triangles.
     return segment_meets_in_plane({s[1], s[2]}, t) || segment_meets_in_plane({t[1], t[2]}, s);
   }
   const int c = side_of(s, t[1]);
@@ -104,7 +106,7 @@ bool triangles_meet_beyond_vertex(const TrianglePoints& s, const TrianglePoints&
   return c * d <= 0 && (a > b) != (c > d);
 }
 
-// In different planes they have the line of the edge in common, and no more of it than the edge.
+// Two triangles in different planes have the line of the edge in common, and no more of it than the edge.
 bool triangles_meet_beyond_edge(const TrianglePoints& s, const TrianglePoints& t) {
   if (side_of(s, t[2]) != 0) return false;
   const std::size_t axis = axis_with_area(s);

@@ -10,16 +10,17 @@ namespace isoweave::measure {
 
 using TrianglePoints = std::array<Point, 3>;
 
-// The corners do not lie on one line.
+// Whether the corners do not lie on one line.
 bool has_area(const TrianglePoints& t);
 
-// Without a common vertex: they have a point in common (Devillers, Guigue 2002).
+// Whether two triangles without a common vertex have a point in common (Devillers, Guigue 2002).
 bool triangles_meet(const TrianglePoints& s, const TrianglePoints& t);
 
-// s[0] and t[0] are one vertex: they have another point in common.
+// Whether two triangles have a second point in common, where s[0] and t[0] are one vertex.
 bool triangles_meet_beyond_vertex(const TrianglePoints& s, const TrianglePoints& t);
 
-// s[0] and t[0] are one vertex, s[1] and t[1] another: they have a point in common that is not on that edge.
+// Whether two triangles have a point in common off their edge, where s[0] and t[0] are one vertex and s[1] and t[1]
+// another.
 bool triangles_meet_beyond_edge(const TrianglePoints& s, const TrianglePoints& t);
 
 }  // namespace isoweave::measure

@@ -9,10 +9,10 @@ namespace {
 constexpr std::size_t kLeafTriangles = 4;
 constexpr std::int64_t kGrain = 4096;
 
-// Below this sine of an angle the normal of a triangle is rounding noise; its sides say where it is.
+// Below this sine of an angle the normal of a triangle is rounding noise. Its sides say where it is.
 constexpr double kLeastSine = 1e-12;
 
-// From the origin to the segment a b.
+// The squared distance from the origin to the segment a b.
 double squared_distance_to_segment(const Vector& a, const Vector& b) {
   const Vector ab = b - a;
   const double length = dot(ab, ab);
@@ -84,7 +84,7 @@ TriangleTree::Box TriangleTree::box_of(const Corners& corners) {
   return box;
 }
 
-// The centre of each triangle's box; halves are added so that huge coordinates do not overflow.
+// The centre of each triangle's box. Halves are added, so that huge coordinates do not overflow.
 std::vector<TriangleTree::Item> TriangleTree::items_of(const TriangleMesh& mesh, const Executor& executor) {
   std::vector<Item> items(mesh.triangles.size());
   executor.for_each(static_cast<std::int64_t>(items.size()), kGrain, [&](std::int64_t i) {
@@ -118,7 +118,7 @@ void TriangleTree::split_level(std::vector<Item>& items, std::size_t level, cons
   });
 }
 
-// Boxes of a level: of the triangles in leaves, of the two children elsewhere.
+// Computes the boxes of a level: of the triangles in leaves, and of the two children elsewhere.
 void TriangleTree::bound_level(std::size_t level, const Executor& executor) {
   const std::size_t nodes = std::size_t{1} << level;
   executor.for_each(static_cast<std::int64_t>(nodes), kGrain, [&](std::int64_t k) {

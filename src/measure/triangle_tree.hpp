@@ -13,7 +13,8 @@
 
 namespace isoweave::measure {
 
-// Exact up to rounding: about 1e-12 of the triangle's size. Degenerate triangles are segments or points.
+// The squared distance from a point to a triangle, exact up to rounding: about 1e-12 of the triangle's size. Degenerate
+// triangles are segments or points.
 double squared_distance(const Vector& point, const TriangleCorners& triangle);
 
 // A complete binary tree: node k of level l holds the triangles [n k / 2^l, n (k + 1) / 2^l) of an order made by
@@ -25,13 +26,13 @@ class TriangleTree {
 
   static constexpr std::size_t kNoHint = std::numeric_limits<std::size_t>::max();
 
-  // Squared distance to the nearest triangle. `hint` is in: a triangle that may be near, or kNoHint; out: the nearest.
-  // It makes runs of neighbouring points faster and changes no result.
+  // The squared distance to the nearest triangle. `hint` is a triangle that may be near, or kNoHint; it becomes the
+  // nearest triangle. A hint makes runs of neighbouring points faster and changes no result.
   double squared_distance_from(const Vector& point, std::size_t& hint) const;
 
   std::size_t leaves() const { return std::size_t{1} << depth_; }
 
-  // Calls visit(i, j) with the numbers of two triangles whose boxes have a point in common, the first of them in this
+  // Calls visit(i, j) with the numbers of two triangles whose boxes have a point in common: the first lies in this
   // leaf, the second in it or in a later one. Over all leaves every such pair comes once.
   template <class Visit>
   void for_each_near_pair(std::size_t leaf, Visit&& visit) const;
@@ -67,7 +68,7 @@ class TriangleTree {
   std::vector<Box> boxes_;              // of node k of level l at 2^l + k
 };
 
-// Down from the root, past every node that is before the leaf or away from it.
+// Walks down from the root, past every node that lies before the leaf or away from it.
 template <class Visit>
 void TriangleTree::for_each_near_pair(std::size_t leaf, Visit&& visit) const {
   const Box& box = boxes_[leaves() + leaf];

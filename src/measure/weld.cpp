@@ -1,4 +1,4 @@
-// Vertices that are doubled: at seams, or in every triangle.
+// Doubled vertices: at seams, or in every triangle.
 #include "isoweave/weld.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace isoweave {
 namespace {
 
-// Of each vertex the number of its place, and the vertices that come first in their places.
+// For each vertex the number of its place, and the vertices that come first at their places.
 struct Places {
   std::vector<std::uint32_t> number;
   std::vector<Point> points;
@@ -26,7 +26,7 @@ Places find_places(const std::vector<Point>& vertices) {
   return places;
 }
 
-// Keeps one number or point for each place, that of its first vertex.
+// Keeps one element for each place: that of its first vertex.
 template <class T>
 void keep_first(std::vector<T>& list, const Places& places) {
   if (list.empty()) return;
@@ -37,8 +37,8 @@ void keep_first(std::vector<T>& list, const Places& places) {
   list.resize(next);
 }
 
-// An edge between two places, of the triangle's vertices at them. Edges of one place pair stand together when they are
-// sorted, and among them those of the same two vertices.
+// An edge between two places, by the triangle's vertices there. Sorting puts the edges of one pair of places together,
+// and among them those of the same two vertices.
 struct Side {
   std::array<std::uint32_t, 2> places;
   std::array<std::uint32_t, 2> vertices;
@@ -55,7 +55,7 @@ Side side_between(const Places& places, std::uint32_t a, std::uint32_t b) {
   return {{at_b, at_a}, {b, a}};
 }
 
-// At each place: whether more than one vertex is there.
+// For each place: whether more than one vertex lies there.
 std::vector<bool> crowded_places(const Places& places) {
   std::vector<bool> taken(places.points.size()), crowded(places.points.size());
   for (const std::uint32_t place : places.number) {
@@ -65,7 +65,7 @@ std::vector<bool> crowded_places(const Places& places) {
   return crowded;
 }
 
-// Sides that may lie on those of other vertices; others are none of a seam.
+// The sides that may lie on sides of other vertices. No other side is part of a seam.
 std::vector<Side> sides_at_crowded_places(const TriangleMesh& mesh, const Places& places) {
   const std::vector<bool> crowded = crowded_places(places);
   std::vector<Side> sides;
@@ -80,7 +80,7 @@ std::vector<Side> sides_at_crowded_places(const TriangleMesh& mesh, const Places
   return sides;
 }
 
-// Edges of one triangle among sorted sides of one place pair.
+// Counts the edges of one triangle among sorted sides of one pair of places.
 std::uint64_t border_edges(std::vector<Side>::const_iterator begin, std::vector<Side>::const_iterator end) {
   std::uint64_t count = 0;
   while (begin != end) {

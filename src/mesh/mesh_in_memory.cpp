@@ -18,8 +18,8 @@ std::vector<T> list(const Array<T>& array) {
   return {array.begin(), array.end()};
 }
 
-// Makes an array longer, and returns what is new. What has been reserved and not used is no memory, but addresses: the
-// first of them spare the copies with which small arrays grow.
+// Makes an array longer, and returns the new part. Reserved room that is not used takes addresses but no memory. The
+// first reservation spares the copies with which small arrays grow.
 template <class T>
 std::span<T> add(Array<T>& array, std::size_t count) {
   constexpr std::size_t kFirst = (std::size_t{16} << 20) / sizeof(T);

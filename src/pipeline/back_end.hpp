@@ -1,4 +1,4 @@
-// Where pieces of a surface are simplified, and from where they leave: processors, or a device.
+// The seam for back ends: where pieces of a surface are simplified, and from where final triangles leave.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,24 @@ class BackEnd {
   BackEnd& operator=(const BackEnd&) = delete;
   virtual ~BackEnd() = default;
 
-  // Takes the next piece in, the last one of the surface if that is complete now, and decides what can be decided.
-  // Fills in what is held.
+  // Takes the next piece in, and decides the edges that can be decided. `complete`: the piece is the last one of the
+  // surface. Fills in the counts of what is held.
   virtual void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) = 0;
 
-  // Hands what is final to the sinks. Fills in what is still held, and in the report what has been written so far.
+  // Hands the final triangles to the sinks. Fills in the counts of what is still held, and in the report the counts of
+  // what has been written so far.
   virtual void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) = 0;
 
-  // In the memory of the process.
+  // The parts of the zone and the output that are in the memory of the process.
   virtual Held held() const = 0;
 
-  // Hands over the triangles held over to the next piece, where they are in the memory of the process.
+  // Hands over the triangles that are held over to the next piece, where they are in the memory of the process.
   virtual void view_undecided(const SweepObserver::Visitor&) const {}
 
-  // Returns when the sinks have everything. Throws what they threw.
+  // Returns when the sinks have received everything. Throws what they threw.
   virtual void wait_for_sinks() = 0;
 
-  // The counters of the whole run.
+  // Fills in the counters of the whole run.
   virtual void finish(MeshReport& report) const = 0;
 
   // The state between two pieces.

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
 constexpr std::string_view kFormat = "isoweave state 9\n";  // the number changes with fields and rules
 
-constexpr std::uint64_t kMostMarks = 1000;  // of a file that anyone may have written
+constexpr std::uint64_t kMostMarks = 1000;  // the most marks of a state file, which anyone may have written
 
 struct Header {
   std::uint64_t number = 0;
@@ -64,7 +64,7 @@ Header read_header(StateReader& reader) {
   return header;
 }
 
-// The newest state of a folder that is whole; nothing if there is none, and then why not, if there is one that is not.
+// The newest whole state of a folder, or nothing. Then `why` names a state that is not whole, if there is one.
 std::optional<Header> newest_state(const std::string& folder, std::string& why) {
   std::optional<Header> newest;
   for (const std::uint64_t number : kNumbers) {
@@ -92,7 +92,7 @@ namespace {
 
 constexpr int kLockAttempts = 100;
 
-// Whether the file that was locked is still the one of that name: who held it before removes it.
+// Whether the file that was locked still has its name: a process that gives up its lock removes the file.
 bool is_still_there(int fd, const std::string& path) {
   const std::optional<system::FileStatus> locked = system::status_of(fd);
   const std::optional<system::FileStatus> named = system::status_of(path);
@@ -108,7 +108,7 @@ bool is_still_there(int fd, const std::string& path) {
                     (known ? ", process " + process : ""));
 }
 
-// A locked descriptor; -1 when the file has gone meanwhile.
+// A locked descriptor, or -1 when the file has gone meanwhile.
 int open_lock(const std::string& folder, const std::string& path) {
   system::Descriptor fd(system::open_descriptor(path, system::Opening::kWriteOrCreate));
   if (fd.get() < 0) {
@@ -124,7 +124,7 @@ CheckpointLock::CheckpointLock(const std::string& folder) : path_(folder + "/loc
   for (int attempt = 0; fd_ < 0 && attempt < kLockAttempts; ++attempt) fd_ = open_lock(folder, path_);
   if (fd_ < 0) throw CannotWrite(folder + ": cannot be locked against other processes: they take turns at it");
   const std::string process = std::to_string(system::process_number());
-  // Only who is refused reads it, for the message.
+  // Only a process that is refused reads the number, for its message.
   [[maybe_unused]] const bool told =
       system::cut_off(fd_, 0) && system::write_all(fd_, std::as_bytes(std::span(process)));
 }
@@ -155,7 +155,7 @@ StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity
 
 namespace {
 
-// Whether a name in a folder is that of a state that a process was killed over while it renamed it.
+// Whether a name is that of a state that was being renamed when its process was killed.
 bool is_unfinished_state(const std::string& name) { return name.starts_with(".state-") && name.ends_with(".partial"); }
 
 void remove_unfinished_states(const std::string& folder) {

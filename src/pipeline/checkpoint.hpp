@@ -11,19 +11,19 @@
 
 namespace isoweave {
 
-// Opens a saved state behind its header. Throws BadInput when it was saved by another version or in a run with another
-// identity.
+// Opens a saved state behind its header. Throws BadInput when another version saved it, or a run with another identity.
 StateReader open_state(const Checkpoint& checkpoint, const RunIdentity& identity);
 
 class CheckpointFolder {
  public:
-  // Goes on with the numbers of the states that are there.
+  // Continues the numbers of the states in the folder.
   explicit CheckpointFolder(const std::string& folder);
 
-  // A file in place of the older state, with a header. It counts once it is committed.
+  // Begins a state with its header, in place of the older one in the folder. The state counts once the writer is
+  // committed.
   std::unique_ptr<StateWriter> begin_state(const Checkpoint& checkpoint, const RunIdentity& identity);
 
-  // Removes all states: the run is finished.
+  // Removes all states, as the run is finished.
   void clear();
 
  private:

@@ -1,4 +1,4 @@
-// Passes over a volume that keep nothing of its surface: which components it has, and how many triangles.
+// Passes over a volume that keep nothing of its surface: the choice of components, and the count of triangles.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace isoweave {
 namespace {
 
-// One pass, in which a stage sees the surface.
+// One pass over the volume, in which a stage looks at the surface.
 class Pass {
  public:
   Pass(SliceSource& volume, const SurfaceOptions& surface, const RunControl& control)
@@ -55,7 +55,7 @@ ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& opt
   const StandardFloats floats;
   SurfaceOptions all = options;
   all.components = nullptr;
-  all.smooth = 0;  // which connects what is connected
+  all.smooth = 0;  // smoothing changes no connection
   Pass pass(volume, all, control);
   ComponentFinder finder(pass.numbering(), pass.executor());
   pass.run(&finder);
@@ -67,7 +67,7 @@ ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& opt
 std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options, const RunControl& control) {
   const StandardFloats floats;
   SurfaceOptions counted = options;
-  counted.smooth = 0;  // it has as many
+  counted.smooth = 0;  // the smoothed surface has as many triangles
   Pass pass(volume, counted, control);
   if (counted.components == nullptr) return pass.run(nullptr);
   ComponentFilter filter(*counted.components, pass.numbering(), volume.info().path, pass.executor());

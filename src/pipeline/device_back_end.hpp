@@ -1,4 +1,4 @@
-// Extraction and simplification on a device: samples go there, final triangles come back, the rest stays.
+// Extraction and simplification on a device: samples go there, final triangles come back, and the zone stays there.
 #pragma once
 
 #include <utility>
@@ -10,10 +10,10 @@
 
 namespace isoweave {
 
-// The surface that is extracted stays on the device: pieces are empty.
+// The extracted surface stays on the device, so pieces are empty.
 class DeviceExtractor final : public Extractor {
  public:
-  // The engine must stay.
+  // The engine must outlive the extractor.
   explicit DeviceExtractor(DeviceEngine& engine) : engine_(engine) {}
 
   VertexNumbering numbering() const override { return engine_.numbering(); }
@@ -38,7 +38,7 @@ class DeviceExtractor final : public Extractor {
 
 class DeviceBackEnd final : public BackEnd {
  public:
-  // All of these must stay.
+  // All arguments must outlive the back end.
   DeviceBackEnd(DeviceEngine& engine, bool normals, const World& world, MeshSink& sink, const Executor& executor,
                 bool measure)
       : engine_(engine), normals_(normals), output_(world, sink, executor, measure) {}
@@ -49,7 +49,7 @@ class DeviceBackEnd final : public BackEnd {
   void wait_for_sinks() override { output_.wait(); }
   void finish(MeshReport& report) const override;
 
-  // Throw std::logic_error, likewise.
+  // Throw std::logic_error, as DeviceExtractor does.
   void exchange(StateWriter& state) override;
   void exchange(StateReader& state) override;
 

@@ -16,8 +16,8 @@ namespace isoweave {
 
 class HostBackEnd final : public BackEnd {
  public:
-  // A sink for each level of the task. World, sinks and executor must stay. stop: set, and simplify() throws
-  // Interrupted, if it is not null. Of the control, schedule, measure and observer count.
+  // Takes a sink for each level of the task. World, sinks and executor must outlive the back end. stop: unless null,
+  // simplify() throws Interrupted once it is set. Of the control, schedule, measure and observer count.
   HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks, const Executor& executor,
               const RunControl& control, const std::atomic<bool>* stop);
 

@@ -8,11 +8,11 @@
 
 namespace isoweave {
 
-// A layer needs the slice above it and, for normals, one more; smoothing two for each pass.
+// A layer needs the slice above it and, for normals, one slice more. Smoothing needs two more for each pass.
 std::int64_t slices_kept(const SurfaceOptions& options) { return 2 + 2 * static_cast<std::int64_t>(options.smooth); }
 
 Region box_to_sweep(const Region& box, const VolumeInfo& volume, const SurfaceOptions& options) {
-  // Crossings lie beside an inside sample; gradients look one sample further, smoothing two for each pass.
+  // Crossings lie beside an inside sample. Gradients look one sample further, and smoothing two for each pass.
   const std::int64_t margin = 2 + 2 * static_cast<std::int64_t>(std::max(options.smooth, 0));
   Region swept;
   for (std::size_t axis = 0; axis < 3; ++axis) {

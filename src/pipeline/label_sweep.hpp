@@ -1,4 +1,4 @@
-// The loop over one label of a label map, in step with those over the others.
+// The loop over one label of a label map, in step with the loops over the other labels.
 #pragma once
 
 #include <cstddef>
@@ -15,23 +15,23 @@
 
 namespace isoweave {
 
-// The box in which the surface around all samples of `box` can be found: extraction and smoothing see beside it what
-// they would see in the whole volume.
+// The box in which the surface around all samples of `box` lies. At its border, extraction and smoothing see the same
+// samples as in the whole volume.
 Region box_to_sweep(const Region& box, const VolumeInfo& volume, const SurfaceOptions& options);
 
-// Slices of the map below those that sweep_below() takes for new ones, which it may still read.
+// The number of slices of the map that sweep_below() may still read below the new ones.
 std::int64_t slices_kept(const SurfaceOptions& options);
 
-// Pieces of the surface of a label: as many layers as there are slices for.
+// The pieces of the surface of one label: as many layers at a time as there are slices for.
 class LabelPieces final : public PieceSource {
  public:
-  // All must stay. slab: layers of a piece at most; 0: any number.
+  // All arguments must outlive this source. slab: the most layers of a piece; 0: any number.
   LabelPieces(SurfaceField& field, Extractor& extractor, std::int64_t slab, bool simplifies);
 
   // Slices of the label's box below this one can be read.
   void set_end(std::int64_t end) { end_ = end; }
 
-  // Layers that can be taken now.
+  // The number of layers that can be taken now.
   std::int64_t layers_ready() const;
 
   bool complete() const override { return extractor_.layers_left() == 0; }
@@ -51,12 +51,12 @@ class LabelPieces final : public PieceSource {
 
 class LabelSweep {
  public:
-  // All but the label must stay.
+  // All arguments but the label must outlive the sweep.
   LabelSweep(const SliceWindow& map, const Region& box, const LabelSink& label, const Task& task,
              const RunControl& control, const Executor& executor);
 
-  // Sweeps the layers that slices of the map below `end` are enough for. The window holds those since the last call,
-  // and slices_kept() before them.
+  // Sweeps the layers for which the slices of the map below `end` are enough. The window holds the slices since the
+  // last call, and slices_kept() slices before them.
   void sweep_below(std::int64_t end);
 
   bool is_done() const { return loop_.complete(); }

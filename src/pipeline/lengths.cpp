@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kShapePart = 0.05;  // of a diagonal
 
-// So many of the unit of the suffix in the other unit; nothing where one of them is not known. An input without a unit
-// is in mm.
+// The length of `value` of the suffix's unit, in the other unit. Nothing where one of the units is not known. An input
+// without a unit is in mm.
 std::optional<double> converted(double value, std::string_view suffix, std::string_view unit) {
   const std::optional<LengthUnit> length = find_length_unit(suffix);
   if (!length) return std::nullopt;

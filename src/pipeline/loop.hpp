@@ -1,5 +1,5 @@
-// The one loop, which every run goes through: a piece of a surface is read and made, goes through stages, is decided as
-// far as is safe, and what is final of it is written.
+// The one loop, which every run goes through. Each step reads and makes a piece of the surface, passes it through the
+// stages, decides all edges that are safe to decide, and writes the final triangles.
 #pragma once
 
 #include <utility>
@@ -16,30 +16,30 @@ void check_stop(const RunControl& control);
 
 class Loop {
  public:
-  // All of these must stay. back_end: null where pieces are only looked at.
+  // All arguments must outlive the loop. back_end: null where stages only look at the pieces.
   Loop(PieceSource& source, std::vector<PieceStage*> stages, BackEnd* back_end, MeshReport& report)
       : source_(source), stages_(std::move(stages)), back_end_(back_end), report_(report) {}
 
   bool complete() const { return source_.complete(); }
 
-  // Takes the next piece, and tells what was held with it.
+  // Takes the next piece, and returns the counts of what was held with it.
   SlabRecord step();
 
-  // Returns when the sinks have everything. Throws what they threw.
+  // Returns when the sinks have received everything. Throws what they threw.
   void wait_for_sinks();
 
   // Completes the report of a surface that is complete.
   void finish();
 
-  // In the memory of the process, between two pieces.
+  // The parts of the run that are in the memory of the process between two pieces.
   Held held() const;
 
-  // Hands over what is held and not final.
+  // Hands over the triangles that are held and not final.
   void view_undecided(const SweepObserver::Visitor& visitor) const {
     if (back_end_ != nullptr) back_end_->view_undecided(visitor);
   }
 
-  // The state between two pieces, but that of the source.
+  // Reads or writes the state between two pieces, without that of the source.
   template <class Archive>
   void exchange(Archive& archive) {
     for (PieceStage* stage : stages_) stage->exchange(archive);

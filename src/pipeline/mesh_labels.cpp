@@ -1,4 +1,4 @@
-// Many labels in one sweep: each slice of the map is read once and handed to every label whose box it is in.
+// Many labels in one sweep: each slice of the map is read once and handed to every label whose box holds a part of it.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -20,7 +20,7 @@
 namespace isoweave {
 namespace {
 
-// The mask of a label has values 0 and 1, whatever the volume's surface was to be.
+// The options for the mask of a label, which has the values 0 and 1 whatever the iso-value of the volume was to be.
 MeshOptions mask_options(const MeshOptions& options) {
   MeshOptions mask = options;
   mask.iso = 0.5;
@@ -57,7 +57,7 @@ struct Lane {
   MeshReport report;
 };
 
-// Counts and times of a label, added to those of all.
+// Adds the counts and times of a label to those of all labels.
 void add_to(MeshReport& total, const MeshReport& label) {
   total.triangles += label.triangles;
   total.vertices += label.vertices;
@@ -155,8 +155,8 @@ class LabelsSweep {
     warn_of_rounding(task_, total);
   }
 
-  // Layers of the next slab: no more triangles of all labels than keep all threads busy, and no more slices of all
-  // boxes than the memory for slices has room for.
+  // The layers of the next slab. All labels together should have no more triangles than keep all threads busy, and the
+  // slices of all boxes should fit into the memory for slices.
   std::int64_t next_layers() const {
     if (control_.slab > 0) return std::min(control_.slab, volume_.dims[2] - done_);
     const SlabGoal& goal = slab_goal(task_.simplify.needed);
@@ -174,7 +174,7 @@ class LabelsSweep {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(most), 1, std::min(doubled, volume_.dims[2] - done_));
   }
 
-  // The slices of the next slab, and those before it that a label may not have been able to use yet.
+  // Reads the slices of the next slab. The window keeps the slices before them that a label may not have used yet.
   void read_slab() {
     Stopwatch clock;
     const std::int64_t layers = next_layers();
@@ -189,7 +189,8 @@ class LabelsSweep {
     clock.lap(report_.total.seconds_read);
   }
 
-  // Large labels one after the other, by all threads; small ones side by side, by one thread each.
+  // Sweeps the slab in every label: large labels one after the other by all threads, then small ones side by side by
+  // one thread each.
   void sweep_slab() {
     std::vector<Lane*> small;
     for (Lane& lane : lanes_) {
@@ -208,7 +209,7 @@ class LabelsSweep {
     lane.sweep->sweep_below(done_);
   }
 
-  // Adds up what the labels hold and have written. One that is done gives its memory back.
+  // Adds up what the labels hold and have written. A label that is done gives its memory back.
   void record_slab() {
     SlabRecord record;
     record.layer = done_;

@@ -48,7 +48,7 @@ MeshSurface::MeshSurface(const TriangleMesh& mesh, const Executor& executor, con
   while (inherited_with(pieces_.triangles) > mesh.vertices.size() / kInheritedPart) pieces_.triangles *= 2;
 }
 
-// The first and the last triangle of every vertex.
+// Finds the first and the last triangle of every vertex.
 void MeshSurface::find_uses() {
   const VertexOwners owners(executor_, mesh_.triangles);
   if (!mesh_.triangles.empty() && owners.largest_vertex() >= mesh_.vertices.size()) measure::refuse_index();
@@ -71,7 +71,7 @@ void MeshSurface::find_uses() {
   });
 }
 
-// Vertices that pieces of so many triangles would have in common with the one before, in all.
+// The number of vertices, over all pieces, that pieces of so many triangles would inherit.
 std::uint64_t MeshSurface::inherited_with(std::uint64_t piece) const {
   std::atomic<std::uint64_t> sum{0};
   executor_.for_blocks(static_cast<std::int64_t>(mesh_.vertices.size()), kBlock,
@@ -85,7 +85,7 @@ std::uint64_t MeshSurface::inherited_with(std::uint64_t piece) const {
   return sum;
 }
 
-// Each piece has passes over all that is held, so it is to bring as much.
+// Chooses the size of the next piece. Every piece costs passes over all triangles held, so it should bring as many.
 void MeshSurface::read(const Held& held, MeshReport&) { wanted_ = held.triangles; }
 
 void MeshSurface::make(SurfacePiece& piece, MeshReport& report) {
@@ -104,7 +104,7 @@ void MeshSurface::make(SurfacePiece& piece, MeshReport& report) {
   clock.lap(report.seconds_extract);
 }
 
-// In the order in which triangles name them.
+// Adds the new vertices in the order in which triangles name them.
 void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
   collect(
       executor_, static_cast<std::int64_t>(end - next_), kBlock,
@@ -148,7 +148,7 @@ void MeshSurface::add_triangles(std::uint64_t end, SurfacePiece& piece) {
   dropped_ += repeats;
 }
 
-// Those that have been incomplete before, then the new ones.
+// Lists the incomplete vertices: those that have been incomplete before, then the new ones.
 void MeshSurface::list_incomplete(std::uint64_t end, SurfacePiece& piece) {
   const auto vertex = [&](std::uint32_t n) {
     return n < piece.inherited ? incomplete_[n] : vertices_[n - piece.inherited];

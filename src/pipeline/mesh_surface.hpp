@@ -1,4 +1,4 @@
-// A mesh that is there as a whole as one more source of a surface.
+// A mesh in memory as a source of pieces.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace isoweave {
 
-// Pieces of consecutive triangles of a mesh: what is held while one is simplified stays small, and in the caches. Ids
-// are positions in the mesh. Triangles that repeat a vertex are left out.
+// Pieces of consecutive triangles of a mesh. So the triangles held while a piece is simplified stay few, and in the
+// caches. Ids are positions in the mesh. Triangles that repeat a vertex are left out.
 //
 // A vertex is incomplete from the first of its triangles to the last. Where these lie far apart, as in a mesh whose
 // triangles have been shuffled, pieces are made larger, up to the whole mesh.
@@ -24,16 +24,16 @@ class MeshSurface final : public PieceSource {
     bool exactly = false;     // of each of them
   };
 
-  // The mesh must outlive this. Throws std::invalid_argument when a triangle refers to a vertex that the mesh does not
-  // have, and OverMemory for a mesh of 2^32 triangles or more.
+  // The mesh must outlive this source. Throws std::invalid_argument when a triangle refers to a vertex that the mesh
+  // does not have, and OverMemory for a mesh of 2^32 triangles or more.
   MeshSurface(const TriangleMesh& mesh, const Executor& executor, const Pieces& pieces);
 
   bool complete() const override { return next_ == mesh_.triangles.size(); }
 
-  // How many triangles the next piece is to have, where their number is free.
+  // Sets the size of the next piece, where that is free.
   void read(const Held& held, MeshReport& report) override;
 
-  // Fills `piece` with the next triangles: as many as wanted or more, if there are so many.
+  // Fills `piece` with the next triangles: as many as wanted or more, as far as there are so many.
   void make(SurfacePiece& piece, MeshReport& report) override;
 
   // Triangles left out so far.

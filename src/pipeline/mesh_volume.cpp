@@ -73,7 +73,7 @@ class VolumeRun final : public SavedRun::State {
       return;
     }
     extractor_ = sweep_.make_extractor();
-    // A zone that has been left in the middle cannot be saved.
+    // A zone that was left in the middle of a decision cannot be saved.
     const bool saves = !control_.checkpoint.folder.empty();
     back_end_ = std::make_unique<HostBackEnd>(task_.simplify, world_, sinks_, executor, control_,
                                               saves ? nullptr : control_.stop.get());
@@ -85,7 +85,7 @@ class VolumeRun final : public SavedRun::State {
     throw std::invalid_argument("components: expected those of " + expected + ", found those of " + components.surface);
   }
 
-  // A state is saved where reading fails between two slabs.
+  // Takes a step. A state is saved where reading fails between two slabs.
   void step() {
     try {
       sweep_.step();
@@ -113,7 +113,8 @@ class VolumeRun final : public SavedRun::State {
     warn_of_nothing(task_, sweep_.pieces().range().empty(), report_);
   }
 
-  // A volume that is another one than when components were chosen may have the same name, size and time.
+  // Refuses components that were chosen in another surface: the volume may have changed, with the same name, size and
+  // time.
   void finish_components() {
     if (!filter_) return;
     const ComponentChoice& choice = *task_.surface.components;

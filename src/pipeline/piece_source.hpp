@@ -8,7 +8,7 @@
 
 namespace isoweave {
 
-// What a run holds between two pieces, in the memory of the process.
+// The amounts that a run holds between two pieces, in the memory of the process.
 struct Held {
   std::uint64_t triangles = 0;    // undecided
   std::uint64_t zone_bytes = 0;   // of the zone, with the last piece; 0: not known
@@ -25,10 +25,10 @@ class PieceSource {
   // Whether no piece is left.
   virtual bool complete() const = 0;
 
-  // Gets what the next piece is made of, as much as is right beside what is held. Adds the time to the report.
+  // Reads the input of the next piece, as much as is right beside what the run holds. Adds the time to the report.
   virtual void read(const Held& held, MeshReport& report) = 0;
 
-  // Makes the next piece of what has been read. Adds the time, and what was found, to the report.
+  // Makes the next piece from what has been read. Adds the time and the counts to the report.
   virtual void make(SurfacePiece& piece, MeshReport& report) = 0;
 
   // Whether reading for the next piece is to begin before this one is simplified.

@@ -1,4 +1,4 @@
-// What goes together in a run and what does not: one table.
+// The features that go together in a run and those that do not, in one table.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 namespace isoweave {
 namespace {
 
-// Who refuses a feature.
+// The kinds of runs that refuse a feature.
 constexpr unsigned kDevice = 1;      // a CUDA device
 constexpr unsigned kLabels = 2;      // meshes of labels
 constexpr unsigned kComponents = 4;  // the choice of components

@@ -11,7 +11,7 @@
 namespace isoweave {
 namespace {
 
-// Without a stream, as each run says what it is: a process that has made none yet pays a third of a millisecond.
+// Numbers as text. No stream is used: a process that has made none yet would pay a third of a millisecond, once a run.
 std::string numbers_text(std::span<const double> numbers) {
   std::string text;
   for (const double number : numbers) {
@@ -23,8 +23,8 @@ std::string numbers_text(std::span<const double> numbers) {
   return text;
 }
 
-// What was chosen of the file that was opened, and size and time of change of that file or of the one that describes a
-// folder.
+// The chosen part of the file that was opened, and the size and time of change of that file, or of the file that
+// describes a folder.
 std::string file_text(const VolumeInfo& volume) {
   const std::string& path = volume.header.empty() ? volume.path : volume.header;
   std::string part = volume.part.empty() ? "" : ", " + volume.part;
@@ -43,7 +43,7 @@ std::string volume_text(const VolumeInfo& volume) {
          numbers_text(std::array{volume.slope, volume.intercept}) + file_text(volume);
 }
 
-// Fields are taken apart by name: one that is added to a task does not compile before it is told here.
+// A task as text. Its fields are taken apart by name, so a new field of a task does not compile before it is told here.
 std::string simplify_text(const SimplifyTask& task) {
   [[maybe_unused]] const auto& [side, unit, error, level_errors, triangles, needed, zone, level_costs] = task;
   [[maybe_unused]] const auto& [numbering, a0, retire, drop_specks, most_distance, cell, largest, normals_count,

@@ -1,4 +1,4 @@
-// What a saved state, or a part of a result, is good for.
+// The text that says for which runs a saved state, or a part of a result, is valid.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ struct RunIdentity {
 
 RunIdentity identity_of(const Task& task);
 
-// What the surface that components are chosen in depends on.
+// Everything that the surface in which components are chosen depends on.
 std::string surface_text(const VolumeInfo& volume, const SurfaceOptions& surface);
 
-// What was read of a file that somebody wrote meanwhile may be of two volumes: throws BadInput when the volume is not
-// as it was when the run began.
+// Throws BadInput when the volume is not as it was when the run began: the slices that were read may be of two volumes
+// then.
 void require_unchanged(const Task& task, const RunIdentity& before);
 
 }  // namespace isoweave

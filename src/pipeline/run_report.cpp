@@ -20,7 +20,7 @@ std::string short_number(double number) {
   return {digits.begin(), end.ptr};
 }
 
-// Why more triangles are left than a run was to stop at.
+// The reason why more triangles are left than the number at which the run was to stop.
 std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error, std::string_view unit) {
   const std::string length = short_number(most_error) + (unit.empty() ? "" : " ") + std::string(unit);
   const std::string within = std::isfinite(most_error) ? " within an error of " + length : "";
@@ -43,7 +43,7 @@ void report_errors(const SimplifyTask& task, MeshReport& report) {
 void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report) {
   const double most_error = report.error;
   const auto dearest = static_cast<CostBits>(simplifier.counts().dearest);
-  // Lower costs are all the same.
+  // All costs up to the floor are the same.
   const bool none = dearest <= cost_bits(kCostFloor);
   report.error = none ? 0 : task.side * std::sqrt(static_cast<double>(cost_value(dearest)));
   if (report.triangles <= task.triangles) return;

@@ -1,4 +1,4 @@
-// What goes into a report: times, warnings, counters of the simplifier.
+// The contents of a report: times, warnings, counters of the simplifier.
 #pragma once
 
 #include <array>
@@ -26,27 +26,28 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// Errors of the mesh and of its finer levels, which are in the report from then on.
+// Fills in the errors of the mesh and of its finer levels.
 void report_errors(const SimplifyTask& task, MeshReport& report);
 
-// A warning when coordinates cannot be turned into the space that is asked for.
+// Warns when coordinates cannot be turned into the space that is asked for.
 void warn_of_space(const Task& task, MeshReport& report);
 
-// Where rounding moves vertices by more than it should: the sinks have no offset, or 64 bits are too few.
+// Warns where rounding moves vertices by more than it should: the sinks have no offset, or 64 bits are too few.
 void warn_of_rounding(const Task& task, MeshReport& report);
 
-// Where a volume of values lies elsewhere than the volume.
+// Warns where a volume of values lies elsewhere than the volume.
 void warn_of_values(const Task& task, MeshReport& report);
 
-// Why a mesh has no triangles: each component is dropped, or there is no surface. no_samples: all were NaN.
+// Warns of a mesh without triangles, with the reason: every component is dropped, or there is no surface. no_samples:
+// all samples were NaN.
 void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report);
 
-// The outcome of a run to a number of triangles: `report.error`, which is the error that was asked for, becomes the
-// largest of a collapse, and where more triangles are left a warning says why. To be called when all else is in the
-// report.
+// Reports the outcome of a run to a number of triangles: `report.error`, the error that was asked for, becomes the
+// largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all else is in
+// the report.
 void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report);
 
-// Adds what a slab has brought.
+// Adds the counts of a slab.
 void add_extracted(const SlabCounts& slab, MeshReport& report);
 
 // Copies the simplifier's counters.

@@ -1,4 +1,4 @@
-// When the state of a run is saved, and how it is loaded: the run names what belongs to its state.
+// When the state of a run is saved, and how it is loaded. The run itself reads and writes its state.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace isoweave {
 
 class SavedRun {
  public:
-  // The state of a run, but for what its sinks have.
+  // The state of a run, without the parts of its sinks.
   class State {
    public:
     virtual ~State() = default;
@@ -25,24 +25,24 @@ class SavedRun {
     virtual void wait_for_sinks() = 0;
   };
 
-  // The state and the sinks must stay. Takes the lock of the folder where the caller has none.
+  // The state and the sinks must outlive this. Takes the lock of the folder where the caller has none.
   SavedRun(const RunControl& control, RunIdentity identity, std::int64_t layers, std::span<MeshSink* const> sinks,
            State& state);
 
   bool saves() const { return folder_.has_value(); }
 
-  // Goes on from the saved state that the control names, if it names one. Throws BadInput.
+  // Loads the saved state that the control names, if it names one. Throws BadInput.
   void load();
 
-  // Saves a state, unless one of this layer has been saved. The sinks' part is made durable first: a state must not
-  // know more than the mesh has.
+  // Saves a state, unless one of this layer has been saved. The sinks first make their parts durable: a state must not
+  // refer to more of the mesh than is on disk.
   void save();
   void save_if_due();
 
   // Throws Interrupted when the run is to stop, after saving a state if there is a folder.
   void stop_if_asked();
 
-  // The run is finished, and its sinks are: removes the states.
+  // Removes the states, when the run and its sinks are finished.
   void clear();
 
  private:

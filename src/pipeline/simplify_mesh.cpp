@@ -1,4 +1,4 @@
-// The loop over a mesh that is there as a whole.
+// The loop over a mesh in memory.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace isoweave {
 namespace {
 
-// What takes the place of the mean voxel face.
+// The area that takes the place of the mean voxel face.
 double mean_face(const TriangleMesh& mesh, const Executor& executor) {
   const double area = mean_triangle_area(mesh, executor);
   return area > 0 ? 2 * area : 1;
@@ -44,7 +44,8 @@ SurfaceMeasure measure_of(const TriangleMesh& mesh, const SimplifyOptions& optio
   return {a0, side, VertexNumbering::of_file(), {side, side, side}, largest, mesh.unit};
 }
 
-// Where distances are bounded, pieces would have to come in the order of their heights.
+// The pieces of a mesh. Where distances are bounded the mesh is one piece, as pieces would have to come in the order of
+// their heights.
 MeshSurface::Pieces pieces_of(const TriangleMesh& mesh, const SimplifyOptions& options, std::uint64_t piece) {
   if (options.max_distance.value > 0) return {.triangles = mesh.triangles.size(), .exactly = true};
   if (piece > 0) return {.triangles = piece, .exactly = true};

@@ -39,9 +39,9 @@ void SlabPlanner::note_extracted(const SlabCounts& slab) {
   recent_triangles_ = slab.triangles;
 }
 
-// The formula is a fit: surfaces with more vertices, or more of what is kept beside triangles, take more.
+// Compares the zone with the formula, a fit: surfaces with more vertices, or more kept beside triangles, take more.
 void SlabPlanner::weigh_zone(const SlabRecord& record, const Held& held) {
-  constexpr std::uint64_t kEnough = 20'000;  // triangles; what does not grow hardly counts then
+  constexpr std::uint64_t kEnough = 20'000;  // triangles; with fewer the fixed part weighs too much
   if (cap_ == 0 || record.live_triangles < kEnough) return;
   const double expected = memory_model(held, 1).zone(static_cast<double>(record.live_triangles));
   if (expected > 0) heavier_ = std::max(heavier_, static_cast<double>(held.zone_bytes) / expected);
@@ -63,7 +63,7 @@ MemoryModel SlabPlanner::memory_model(const Held& held, double heavier) const {
           heavier};
 }
 
-// Thinner slabs, and fewer slices read ahead.
+// Makes slabs thinner and reads fewer slices ahead until the slab fits into the cap.
 void SlabPlanner::fit_into_cap(SlabPlan& plan, const Held& held, double ring) const {
   const MemoryModel model = memory_model(held, heavier_);
   while (plan.layers > 1 && (is_too_thick(plan) || room(model, kUsedPart, plan, held, ring) <
@@ -71,20 +71,21 @@ void SlabPlanner::fit_into_cap(SlabPlan& plan, const Held& held, double ring) co
     plan.layers = (plan.layers + 1) / 2;
     plan.ahead = std::min(plan.ahead, plan.layers);
   }
-  // A single layer may take more of the cap than slabs are planned for, unless a number of triangles holds much.
+  // A single layer may take more of the cap than slabs are planned for, unless a run to a number of triangles holds
+  // many.
   const bool careful = plan.layers > 1 || task_.simplify.triangles > 0;
   const double left = room(model, careful ? kUsedPart : kLastPart, plan, held, ring);
   if (left < per_layer() || left <= 0) refuse_layer(model, held, ring);
   plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(left / 2));
 }
 
-// The ring never shrinks: memory that thick slabs of few triangles would make of it is missing where there are more.
+// Whether a plan makes the ring too large: it never shrinks, and the memory is missing where triangles are many.
 bool SlabPlanner::is_too_thick(const SlabPlan& plan) const {
   const auto more = static_cast<double>(plan.layers + plan.ahead - 2);  // slices
   return more * static_cast<double>(field_.slice_bytes()) > kRingPart * static_cast<double>(cap_);
 }
 
-// Triangles for which a part of the cap has room.
+// The number of triangles that a part of the cap has room for.
 double SlabPlanner::room(const MemoryModel& model, double part, const SlabPlan& plan, const Held& held,
                          double ring) const {
   const auto layers = static_cast<double>(plan.layers);

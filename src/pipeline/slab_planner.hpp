@@ -1,4 +1,4 @@
-// How much of a volume a slab takes in: a matter of memory and speed, never of the result.
+// How many layers of a volume a slab takes in: the choice changes memory and speed, never the result.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace isoweave {
 
-// Layers of a slab, slices to be read ahead of it, and vertices that it may turn out to hold.
+// The plan of a slab: its layers, the slices to be read ahead, and the most vertices that it may hold.
 struct SlabPlan {
   std::int64_t layers = 0;
   std::int64_t ahead = 0;
@@ -21,18 +21,19 @@ struct SlabPlan {
 
 class SlabPlanner {
  public:
-  // field: what is extracted. reader_bytes: what the source may hold. All but the control are used as long as this is.
+  // field: the field that is extracted. reader_bytes: the most that the source may hold. All arguments but the control
+  // must outlive the planner.
   SlabPlanner(const Task& task, const RunControl& control, const VolumeInfo& field, const Extractor& extractor,
               int threads, std::uint64_t reader_bytes);
 
-  // The next slab beside what is held and a ring with room for `ring` slices. Throws OverMemory when there is no room
-  // for one layer.
+  // The plan of the next slab, beside what is held and a ring with room for `ring` slices. Throws OverMemory when there
+  // is no room for one layer.
   SlabPlan next(const Held& held, std::int64_t ring) const;
 
-  // A slab that has been extracted: the next one is taken to be like it.
+  // Notes a slab that has been extracted: the next one is expected to be like it.
   void note_extracted(const SlabCounts& slab);
 
-  // What the zone turned out to hold with a slab.
+  // Notes how much memory the zone took with a slab.
   void weigh_zone(const SlabRecord& record, const Held& held);
 
   template <class Archive>

@@ -1,4 +1,4 @@
-// The field whose surface is extracted: the samples of a volume, or those of its mask made smooth.
+// The field whose surface is extracted: the samples of a volume, or the smoothed field of its mask.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace isoweave {
 
 class SurfaceField {
  public:
-  // measure: find the range of the samples of a volume that is smoothed. The volume and the executor are used as long
-  // as this is. Throws std::invalid_argument for an iso-value that is not finite and for passes out of range.
+  // measure: find the range of the samples of a volume that is smoothed. The volume and the executor must outlive the
+  // field. Throws std::invalid_argument for an iso-value that is not finite and for passes out of range.
   SurfaceField(SliceSource& volume, const SurfaceOptions& options, const Executor& executor, bool measure);
 
   SliceSource& source() { return smoothed_ ? *smoothed_ : volume_; }
   const VolumeInfo& info() const { return smoothed_ ? smoothed_->info() : volume_.info(); }
   const IsoRule& rule() const { return rule_; }
 
-  // Slices of it that there are once slices of the volume below `end` are.
+  // The number of slices of the field that can be read once the slices of the volume below `end` can.
   std::int64_t slices_from(std::int64_t end) const;
 
-  // What is known of the samples of slice k of the volume, if it is smoothed and measured.
+  // The range of the samples of slice k of the volume, if the volume is smoothed and measured.
   const SampleRange* range(std::int64_t k) const { return smoothed_ ? smoothed_->range(k) : nullptr; }
 
-  // What it holds, at most.
+  // The most bytes that a field holds.
   static std::uint64_t memory(const VolumeInfo& volume, const SurfaceOptions& options);
 
-  // What it says of itself, before there is one.
+  // The description that a field will have.
   static VolumeInfo info_of(const VolumeInfo& volume, const SurfaceOptions& options);
 
  private:

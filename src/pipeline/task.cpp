@@ -46,7 +46,8 @@ SurfaceMeasure measure_of(const VolumeInfo& volume) {
   return {voxel * voxel, voxel, VertexNumbering::of_cube_edges(volume.dims), cell, cell, volume.geometry.unit};
 }
 
-// An open volume of one sample along an axis has crossings and no triangles, which only the simplifier can stand.
+// Whether the volume has cells. An open volume of one sample along an axis has crossings and no triangles; only the
+// simplifier can take such a surface.
 bool has_cells(const VolumeInfo& volume, const SurfaceOptions& surface) {
   return surface.closed || std::ranges::min(volume.dims) > 1;
 }
@@ -56,7 +57,7 @@ std::string size_text(const VolumeInfo& volume) {
          std::to_string(volume.dims[2]);
 }
 
-// A volume of values has a sample wherever the other one has.
+// Throws where the volume of values does not have a sample for every sample of the volume.
 void check_values(const VolumeInfo& volume, const AttributeOptions& attributes) {
   if (attributes.values == nullptr) return;
   const VolumeInfo& values = attributes.values->info();
@@ -152,7 +153,7 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
   }
-  // Edges whose keys are not known yet have cost 0 and must stay live, also when nothing is simplified.
+  // An edge whose key is not known yet has cost 0. It must stay live, also when nothing is simplified.
   return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
 }
 

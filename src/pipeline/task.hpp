@@ -1,5 +1,5 @@
-// The task of a run: all that its result depends on, resolved and checked once, before anything is read. Lengths are in
-// the unit of what is meshed, costs in units of a0, iso-values those of samples as they are stored.
+// The task of a run: everything that its result depends on, resolved and checked once, before anything is read. Lengths
+// are in the unit of the volume or mesh, costs in units of a0, iso-values those of samples as they are stored.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct SimplifyTask {
   std::vector<CostBits> level_costs;
 };
 
-// What the simplifier has to know of a surface, beside the options.
+// The facts about a surface that the simplifier needs, beside the options.
 struct SurfaceMeasure {
   double a0 = 1;  // a mean face, length squared
   double side = 1;
@@ -56,15 +56,16 @@ struct Task {
   bool has_normals() const { return attributes.normals != Normals::kAbsent; }
 };
 
-// Throws std::invalid_argument for options out of range and for what does not go together, and BadInput for a volume
-// with more samples than can be numbered and for values of another size.
+// Resolves the task of a run. Throws std::invalid_argument for options out of range and for options that do not go
+// together, and BadInput for a volume with more samples than can be numbered and for a volume of values of another
+// size.
 Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunControl& control,
              const std::array<double, 3>& offset = {0, 0, 0}, RunKind kind = RunKind::kMesh);
 
-// The same surface, not simplified and without attributes.
+// The options for the same surface, not simplified and without attributes.
 MeshOptions full_surface(const SurfaceOptions& surface);
 
-// Passes over the volume that keep nothing, on the way to the run that is controlled.
+// The control for a pass over the volume that keeps nothing, on the way to the run that is controlled.
 RunControl passing_control(const RunControl& control);
 
 // Throws BadInput when a volume has more samples than can be numbered.
@@ -86,7 +87,7 @@ void require_different(std::span<MeshSink* const> sinks);
 // Throws std::invalid_argument unless there is a sink for each level and one more, all different.
 void check_sinks(std::span<MeshSink* const> sinks, std::size_t levels);
 
-// That of all sinks. Throws std::invalid_argument where they have several.
+// The offset of all sinks. Throws std::invalid_argument where they differ.
 std::array<double, 3> common_offset(std::span<MeshSink* const> sinks);
 
 }  // namespace isoweave

@@ -66,7 +66,7 @@ void VolumePieces::make(SurfacePiece& piece, MeshReport& report) {
 
 std::uint64_t VolumePieces::bytes() const { return window_->bytes() + (values_window_ ? values_window_->bytes() : 0); }
 
-// Range of the slices just read, the last ones in the window.
+// Finds the range of the slices just read, the last ones in the window.
 void VolumePieces::measure_samples(std::int64_t slices) {
   const VolumeInfo& volume = task_.volume;
   std::vector<SampleRange> ranges(static_cast<std::size_t>(slices));

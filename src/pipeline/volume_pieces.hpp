@@ -19,11 +19,12 @@ namespace isoweave {
 
 class VolumePieces final : public PieceSource {
  public:
-  // Reads on from where the extractor is. All of these must stay.
+  // Continues from the layer where the extractor is. All arguments must outlive this source.
   VolumePieces(const Task& task, SurfaceField& field, Extractor& extractor, SlabPlanner& planner,
                const Executor& executor);
 
-  // Reads the field, and the volume of values, from where the extractor is. To be called once, before the first piece.
+  // Begins to read the field, and the volume of values, from the layer where the extractor is. Must be called once,
+  // before the first piece.
   void open();
 
   bool complete() const override { return extractor_.layers_left() == 0; }
@@ -32,21 +33,21 @@ class VolumePieces final : public PieceSource {
   bool reads_early() const override { return extractor_.takes_slices_early(); }
   std::uint64_t bytes() const override;
 
-  // Whether an exception came from reading: what has been made is whole then.
+  // Whether an exception came from reading. The pieces made so far are whole then.
   bool failed_reading() const { return failed_reading_; }
 
   std::uint64_t voxels() const { return voxels_; }  // read
   const SampleRange& range() const { return range_; }
   void set_range(const SampleRange& range) { range_ = range; }
 
-  // Of the slice where an earlier run was cut off. Another one is refused with the name of the state. To be called
-  // before open().
+  // Sets the checksum that the next slice must have: an earlier run was cut off there. Another slice is refused with
+  // the name of the state. Must be called before open().
   void expect_next_slice(std::uint32_t crc, const std::string& state);
 
-  // The first slice that the next slab needs, if it has been read: its checksum, or nothing.
+  // The checksum of the first slice that the next slab needs, or nothing if that slice has not been read.
   std::optional<std::uint32_t> crc_of_next_slice() const;
 
-  // The state between two slabs, with that of extractor and planner.
+  // Reads or writes the state between two slabs, with that of extractor and planner.
   template <class Archive>
   void exchange(Archive& archive) {
     extractor_.exchange(archive);

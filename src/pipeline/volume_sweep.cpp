@@ -30,7 +30,7 @@ void VolumeSweep::begin(Extractor& extractor, std::vector<PieceStage*> stages, B
   find_constant();
 }
 
-// A volume of one value that is outside has no surface, and may declare more samples than anyone can look at.
+// Finds a volume of one value outside. It has no surface, and may declare more samples than anyone can look at.
 void VolumeSweep::find_constant() {
   const VolumeInfo& volume = task_.volume;
   const std::optional<SampleBytes> sample = constant_sample(source_);

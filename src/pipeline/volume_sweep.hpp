@@ -1,4 +1,4 @@
-// The loop over a volume, whatever becomes of its surface.
+// The loop over a volume, for any extractor and back end.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace isoweave {
 
 class VolumeSweep {
  public:
-  // All of these must stay.
+  // All arguments must outlive the sweep.
   VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report);
 
   const Executor& executor() const { return executor_; }
@@ -24,16 +24,17 @@ class VolumeSweep {
   // Marching cubes over the field.
   std::unique_ptr<Extractor> make_extractor() const;
 
-  // How the surface is extracted and where it goes; all must stay. back_end: may be null. To be called once.
+  // Begins the loop with an extractor, stages and a back end, which may be null. All of them must outlive the sweep.
+  // Must be called once.
   void begin(Extractor& extractor, std::vector<PieceStage*> stages, BackEnd* back_end);
 
-  // Reading begins where the extractor is.
+  // Begins to read from the layer where the extractor is.
   void open() { pieces_->open(); }
 
-  // Whether no slab is left that could hold some surface.
+  // Whether no slab is left that could have a surface.
   bool complete() const { return all_outside_ || loop_->complete(); }
 
-  // Takes the next slab in, and tells the caller of it.
+  // Takes the next slab in, and reports it to the caller.
   void step();
 
   Loop& loop() { return *loop_; }
@@ -61,7 +62,7 @@ class VolumeSweep {
   std::optional<VolumePieces> pieces_;
   std::optional<Loop> loop_;
   std::int64_t layers_ = 0;
-  bool all_outside_ = false;  // as is known without reading a sample
+  bool all_outside_ = false;  // known without reading a sample
 };
 
 }  // namespace isoweave

@@ -33,9 +33,9 @@ Camera::Camera(const TriangleMesh& mesh, const RenderOptions& options)
   fit(mesh);
 }
 
-// A point is inside the frame when |x - eye.x| <= a (z - eye.z), a being the frame's filled half width, and likewise
-// for y. So the largest x - a z and -x - a z over all points bound eye.x and eye.z: half of their sum is how far back
-// the eye has to be, half of their difference where it is to the side.
+// A point is inside the frame when |x - eye.x| <= a (z - eye.z), where a is the frame's filled half width, and likewise
+// for y. So the largest x - a z and -x - a z over all points bound eye.x and eye.z: half of their sum is the distance
+// that the eye has to be back, half of their difference its place to the side.
 void Camera::fit(const TriangleMesh& mesh) {
   const double a = kFilled * width_;
   const double b = kFilled * height_;
@@ -54,7 +54,7 @@ void Camera::fit(const TriangleMesh& mesh) {
   const double depth = farthest.value + nearest.value;
   const double back = std::max((right.value + left.value) / (2 * a), (top.value + bottom.value) / (2 * b));
   const double gap = back - nearest.value;  // from the eye to what is nearest
-  // The eye is not on the surface, not even on that of a line or a point.
+  // The eye is never on the surface, not even on that of a line or a point.
   const double size = std::max(gap, depth);
   const double eye = -nearest.value - (size > 0 ? std::max(gap, 1e-3 * size) : 1);
   eye_ = {(right.value - left.value) / 2, (top.value - bottom.value) / 2, eye};

@@ -10,7 +10,7 @@ namespace isoweave::render {
 
 inline Vec3 vec3_of(const Point& p) { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
 
-// In camera coordinates x goes to the right, y up, z away from the eye; what is seen has 0 < z <= 1. A point of the
+// In camera coordinates x goes to the right, y up, z away from the eye. Visible points have 0 < z <= 1. A point of the
 // frame stands for the ray x, y, 1.
 class Camera {
  public:
@@ -31,11 +31,11 @@ class Camera {
             (1 - 2 * row / static_cast<double>(rows_)) * height_, 1};
   }
 
-  // Where a point in camera coordinates is in the frame; the inverse of ray().
+  // The column and row of a point in camera coordinates; the inverse of ray().
   double column_of(const Vec3& p) const { return (p.x / p.z / width_ + 1) / 2 * static_cast<double>(columns_); }
   double row_of(const Vec3& p) const { return (1 - p.y / p.z / height_) / 2 * static_cast<double>(rows_); }
 
-  // Half of what the frame shows at the distance of the mesh's middle, from top to bottom.
+  // Half of the height that the frame shows at the distance of the mesh's middle.
   double reach() const { return reach_; }
 
   // Samples per unit of length at a distance.

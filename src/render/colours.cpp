@@ -12,7 +12,7 @@ double linear(std::uint8_t byte) {
   return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
 
-// Every ninth of the map; between them straight lines are less than two steps of 255 away from it.
+// Every ninth of the map. Straight lines between these colours are less than two steps of 255 away from it.
 constexpr std::array<Colour, 10> kViridis{{{68, 1, 84},
                                            {72, 40, 120},
                                            {62, 74, 137},

@@ -10,14 +10,14 @@
 
 namespace isoweave::render {
 
-// Red, green, blue in [0, 1] of linear light, by the transfer function of sRGB (IEC 61966-2-1).
+// The linear light of a colour: red, green, blue in [0, 1], by the transfer function of sRGB (IEC 61966-2-1).
 Vec3 light_of(const Colour& colour);
 std::uint8_t byte_of_light(double light);
 
-// The least and the largest of the finite numbers; the first larger than the second where there are none.
+// The least and the largest of the finite numbers. The first is larger than the second where there are none.
 std::array<double, 2> finite_range(std::span<const float> numbers);
 
-// Viridis at a place in [0, 1].
+// The colour of viridis at a place in [0, 1].
 Vec3 viridis(double place);
 
 }  // namespace isoweave::render

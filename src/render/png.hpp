@@ -9,10 +9,10 @@
 
 namespace isoweave::render {
 
-// Throws CannotWrite, which names `path`, in builds without libpng: before a picture is made in vain.
+// Throws CannotWrite, which names `path`, in builds without libpng. Called before a picture is made in vain.
 void require_png(const std::string& path);
 
-// The bytes of the file. `path` stands for it in messages.
+// The bytes of a PNG file. `path` stands for the file in messages.
 std::vector<std::byte> png_bytes(const Picture& picture, const std::string& path);
 
 }  // namespace isoweave::render

@@ -10,7 +10,7 @@
 namespace isoweave::render {
 namespace {
 
-// Lights by the direction towards them, in camera coordinates, and their strength. They move with the camera.
+// A light: the direction towards it, in camera coordinates, and its strength. Lights move with the camera.
 struct Light {
   Vec3 towards;
   double strength;
@@ -39,7 +39,7 @@ constexpr double kEdgeStrength = 0.7;
 
 using Tap = std::array<double, 2>;  // in parts of the reach
 
-// Five turns: 5/14 of one from tap to tap, half of that before the first.
+// The taps go round five turns: 5/14 of a turn from tap to tap, half of that before the first.
 constexpr std::array<Tap, kTaps> spiral_of_taps() {
   constexpr Tap kStep{-0.62348980185873359, 0.78183148246802969};  // cosine and sine
   std::array<Tap, kTaps> taps{};
@@ -61,7 +61,8 @@ Vec3 unit(const Vec3& v) {
   return length > 0 ? (1 / length) * v : Vec3{0, 0, -1};
 }
 
-// Of a sample, in [0, 1): neighbours differ, so what taps miss becomes a grain that the samples of a pixel average.
+// A number in [0, 1) for each sample. Neighbours differ, so what taps miss becomes a grain that the samples of a pixel
+// average.
 double grain(std::int64_t column, std::int64_t row) {
   const double x = 0.06711056 * static_cast<double>(column) + 0.00583715 * static_cast<double>(row);
   const double y = 52.9829189 * (x - std::floor(x));  // interleaved gradient noise (Jimenez 2014)
@@ -92,7 +93,7 @@ Stars stars_of(const TriangleMesh& mesh) {
   return stars;
 }
 
-// As long as twice the area.
+// The normal of a triangle, as long as twice its area.
 Vec3 area_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
   const auto& t = mesh.triangles[triangle];
   const Vec3 a = vec3_of(mesh.vertices[t[0]]);
@@ -162,7 +163,7 @@ Shader::Place Shader::place_at(std::int64_t column, std::int64_t row) const {
   return place;
 }
 
-// Towards the eye, whichever side is seen.
+// The normal towards the eye, whichever side of the surface is seen.
 Vec3 Shader::normal_at(const Place& place) const {
   const auto& [a, b, c] = place.seen.corners;
   const Vec3 of_triangle = unit(cross(b - a, c - a));
@@ -184,7 +185,7 @@ Vec3 Shader::surface_colour(const Place& place) const {
   return viridis(high > low ? (number - low) / (high - low) : 0);
 }
 
-// How much of the sample is an edge: 1 within half a line's width of a side, by the distance in the frame.
+// The share of a sample that is an edge: 1 within half a line's width of a side, by the distance in the frame.
 double Shader::edge_strength(const Place& place) const {
   const double step_x = camera_.ray(1, 0).x - camera_.ray(0, 0).x;
   const double step_y = camera_.ray(0, 1).y - camera_.ray(0, 0).y;
@@ -196,8 +197,8 @@ double Shader::edge_strength(const Place& place) const {
   return nearest < kEdgeHalfWidth * options_.samples ? kEdgeStrength : 0;
 }
 
-// 1 in the open, less where other parts rise beside the place: the estimator of McGuire, Osman, Bukowski and
-// Hennessy 2011, "The Alchemy screen-space ambient obscurance algorithm".
+// The openness of a place: 1 in the open, less where other parts rise beside it. The estimator is that of McGuire,
+// Osman, Bukowski and Hennessy 2011, "The Alchemy screen-space ambient obscurance algorithm".
 double Shader::openness(const Place& place, const Vec3& normal) const {
   const double reach = kObscuranceReach * camera_.reach();
   const double radius = reach * camera_.samples_per_unit(place.position.z);

@@ -11,13 +11,13 @@ namespace isoweave::render {
 
 using CornerNormals = std::vector<std::array<Point, 3>>;  // of each triangle
 
-// For smooth shading: the mesh's own normals where it has some, or at each corner of a triangle the mean, by area, of
-// the triangles around the vertex that are not across a crease from it.
+// The normals for smooth shading: the mesh's own where it has some, or at each corner of a triangle the mean, by area,
+// of the triangles around the vertex that are not across a crease.
 CornerNormals smooth_normals(const TriangleMesh& mesh, const Executor& executor);
 
 class Shader {
  public:
-  // Everything is used as long as the shader is.
+  // All arguments must outlive the shader.
   Shader(const TriangleMesh& mesh, const CornerNormals& normals, std::span<const float> quality,
          const RenderOptions& options, const Camera& camera, const Visibility& visibility);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kTrianglesPerBlock = 1024;
 
-// Samples whose middle is between two places in the frame, and no fewer for rounding.
+// The samples whose middle lies between two places in the frame, and no fewer for rounding.
 struct Interval {
   std::int64_t first, end;
 };
@@ -21,7 +21,7 @@ Interval samples_between(double low, double high, std::int64_t count) {
           static_cast<std::int64_t>(std::floor(std::clamp(high + 0.5 + kSlack, 0.0, most)))};
 }
 
-// Distances are positive, so their bits are in their order.
+// A word that orders samples by distance: distances are positive, so their bits are in their order.
 std::uint64_t word_of(double distance, std::uint32_t triangle) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(distance))} << 32U | triangle;
 }
@@ -42,7 +42,7 @@ Visibility::Visibility(const TriangleMesh& mesh, const Camera& camera, const Exe
   });
 }
 
-// Every sample in the triangle's box.
+// Draws a triangle: tests every sample in its box.
 void Visibility::draw(const SeenTriangle& seen, std::uint32_t triangle, const Camera& camera) {
   const auto& [a, b, c] = seen.corners;
   const auto [left, right] = std::minmax({camera.column_of(a), camera.column_of(b), camera.column_of(c)});

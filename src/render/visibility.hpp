@@ -10,13 +10,13 @@
 
 namespace isoweave::render {
 
-// Corners of a triangle in camera coordinates, and what rays through it weigh them with: Olano, Greer 1997, "Triangle
+// The corners of a triangle in camera coordinates, and the sides that weigh them for rays: Olano, Greer 1997, "Triangle
 // scan conversion using 2D homogeneous coordinates".
 struct SeenTriangle {
   SeenTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Camera& camera);
 
-  // Weights of the corners where the ray meets the plane, not yet divided by their sum. Inside they have the same sign.
-  // A side gives the same number, but for the sign, to both of its triangles: no gaps.
+  // The weights of the corners where the ray meets the plane, not yet divided by their sum. Inside the triangle they
+  // have the same sign. A side gives the same number, but for the sign, to both of its triangles, so there are no gaps.
   Vec3 weights(const Vec3& ray) const { return {dot(sides[0], ray), dot(sides[1], ray), dot(sides[2], ray)}; }
 
   std::array<Vec3, 3> corners;
@@ -27,8 +27,8 @@ inline bool all_of_one_sign(const Vec3& w) {
   return (w.x >= 0 && w.y >= 0 && w.z >= 0) || (w.x <= 0 && w.y <= 0 && w.z <= 0);
 }
 
-// For each sample the distance z and the number of the nearest triangle in one word, so that the nearest is the least
-// word, whichever thread comes first.
+// For each sample, the distance z and the number of the nearest triangle in one word. The nearest is the least word,
+// whichever thread comes first.
 class Visibility {
  public:
   Visibility(const TriangleMesh& mesh, const Camera& camera, const Executor& executor);

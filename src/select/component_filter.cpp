@@ -43,7 +43,7 @@ void ComponentFilter::find_parts(const SurfacePiece& piece) {
   });
 }
 
-// The first vertex of a part tells what becomes of it: as a vertex that was there before, or as a seed.
+// Judges every connected part of a piece by its first vertex: that vertex is inherited, or a seed.
 void ComponentFilter::judge_parts(const SurfacePiece& piece) {
   kept_.resize(parents_.size());
   const auto each_vertex = [&](const auto& visit) {
@@ -60,7 +60,7 @@ void ComponentFilter::judge_parts(const SurfacePiece& piece) {
   });
 }
 
-// Vertices of the front that are of one part now.
+// Whether every inherited vertex is in a part that is judged as the vertex was before.
 bool ComponentFilter::agrees_with_front() const {
   return std::equal(front_is_kept_.begin(), front_is_kept_.end(), kept_.begin());
 }

@@ -1,4 +1,4 @@
-// Components that are not kept go before anything downstream sees them.
+// The stage that drops components that are not kept, before any later part of the loop sees them.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ namespace isoweave {
 
 class ComponentFilter final : public PieceStage {
  public:
-  // path: of the volume. The choice must outlive the filter.
+  // path: of the volume, for messages. The choice must outlive the filter.
   ComponentFilter(const ComponentChoice& choice, const VertexNumbering& numbering, std::string path,
                   const Executor& executor)
       : choice_(choice), numbering_(numbering), path_(std::move(path)), executor_(executor) {}
 
-  // Takes what is dropped out of the next piece: what is left keeps its order, as if there had never been more. Throws
-  // BadInput, and nothing is changed, when a component is kept in part: the choice is not one of this surface.
+  // Takes the dropped components out of the next piece. The rest keeps its order, as if there had never been more.
+  // Throws BadInput, and changes nothing, when a component is kept in part: the choice belongs to another surface then.
   void apply(SurfacePiece& piece) override;
 
   std::uint64_t triangles() const { return triangles_; }  // kept so far
@@ -54,7 +54,7 @@ class ComponentFilter final : public PieceStage {
   std::vector<std::uint8_t> front_is_kept_;  // of all vertices that the next piece inherits
   std::uint64_t triangles_ = 0;
 
-  // Of the piece.
+  // The vertices of the piece.
   Array<std::uint32_t> parents_;  // sets of connected vertices
   Array<std::uint8_t> kept_;      // per vertex
 };

@@ -35,7 +35,7 @@ void ComponentFinder::apply(SurfacePiece& piece) {
   list_front(piece);
 }
 
-// Every vertex for itself.
+// Makes every vertex a set of its own.
 void ComponentFinder::begin(const SurfacePiece& piece) {
   parents_.resize(piece.inherited + piece.positions.size());
   labels_.resize(parents_.size());
@@ -47,8 +47,8 @@ void ComponentFinder::begin(const SurfacePiece& piece) {
   new_roots_.clear();
 }
 
-// Of the layer that begins with a vertex. Every triangle of a layer has a vertex that came with the layer, its last
-// one.
+// Finds the end of the layer that begins with a vertex. The last vertex of every triangle of a layer is new in that
+// layer.
 ComponentFinder::LayerEnd ComponentFinder::end_of_layer(const SurfacePiece& piece, std::uint32_t first_vertex) const {
   const std::uint64_t* const ids = piece.ids.begin();
   const std::int64_t layer = numbering_.layer_of(ids[first_vertex - piece.inherited]);
@@ -70,7 +70,8 @@ void ComponentFinder::join_triangles(const SurfacePiece& piece, std::size_t firs
   });
 }
 
-// The vertices of a layer that are roots as soon as it is joined.
+// Adds the seeds of a layer: its new vertices that are still roots when all triangles of the layer have joined their
+// vertices.
 void ComponentFinder::add_seeds(const SurfacePiece& piece, std::uint32_t first, std::uint32_t end) {
   collect(
       executor_, end - first, kBlock,
@@ -94,7 +95,7 @@ void ComponentFinder::add_seeds(const SurfacePiece& piece, std::uint32_t first, 
   new_roots_.insert(new_roots_.end(), found_.begin(), found_.end());
 }
 
-// Roots that later layers have joined: so are their components.
+// Joins the seeds whose parts of the surface a later layer has joined: their components are one.
 void ComponentFinder::join_seeds(std::uint32_t inherited) {
   const auto join = [&](std::uint32_t v) {
     const std::uint32_t root = find_root(span_of(parents_), v);
@@ -105,7 +106,7 @@ void ComponentFinder::join_seeds(std::uint32_t inherited) {
                      [&](std::int64_t n) { join(new_roots_[static_cast<std::size_t>(n)]); });
 }
 
-// Triangles that come one after the other are of one component as a rule, and counted together.
+// Counts triangles by component. Consecutive triangles are of one component as a rule, and are counted together.
 void ComponentFinder::count_triangles(const SurfacePiece& piece) {
   const auto count = static_cast<std::int64_t>(piece.triangles.size());
   executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
@@ -135,7 +136,7 @@ void ComponentFinder::list_front(const SurfacePiece& piece) {
   });
 }
 
-// Gives the triangles found beside seeds to the first seed of their component.
+// Adds the triangles of all seeds of a component to its first seed.
 void ComponentFinder::sum_up() {
   for (std::uint32_t n = 0; n < seeds_.size(); ++n) {
     const std::uint32_t root = find_root(seed_parents_, n);

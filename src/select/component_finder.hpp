@@ -1,5 +1,6 @@
-// The first of two passes that drop components: how large they are is known in the end only, when the surface has long
-// gone by. So this pass notes vertices by which the second one, whatever its slabs, knows a component again.
+// The first of two passes that drop components. The size of a component is known in the end only, when its triangles
+// have left memory. So this pass notes seeds: vertices by which the second pass, whatever its slabs, knows a component
+// again.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,13 @@
 
 namespace isoweave {
 
-// Vertices of a surface are in order: that in which they are extracted, layer by layer, the same for all slabs. A seed
-// is the first vertex of a connected part of one layer's surface, if it is not on the slice below. Then the first
-// vertex of a connected part of a slab of any thickness is a seed, or on the slice below the slab.
+// The vertices of a surface are in the order in which they are extracted, layer by layer: the same order for all slabs.
+// A seed is the first vertex of a connected part of one layer's surface, if that vertex is not on the slice below. So
+// the first vertex of a connected part of a slab, of any thickness, is a seed or lies on the slice below the slab.
 //
-// An edge between two vertices of a slice lies in a face of a cell below it and of one above, so the layer below tells
-// what is connected on a slice. The first slice of an open volume has no layer below: there each vertex is a seed.
+// An edge between two vertices of a slice lies in a face of a cell below the slice and of a cell above it. So the layer
+// below tells which vertices of a slice are connected. The first slice of an open volume has no layer below: each of
+// its vertices is a seed.
 class ComponentFinder final : public PieceStage {
  public:
   ComponentFinder(const VertexNumbering& numbering, const Executor& executor)
@@ -28,13 +30,13 @@ class ComponentFinder final : public PieceStage {
   // Looks at the next piece, of one layer or more. Throws OverMemory at 2^32 seeds.
   void apply(SurfacePiece& piece) override;
 
-  // What the rule keeps of the surface, which is complete. Same result for any pieces and any number of threads. To be
-  // called once.
+  // The choice that the rule makes, once the surface is complete. The result is the same for any pieces and any number
+  // of threads. Must be called once only.
   ComponentChoice choose(const ComponentRule& rule);
 
   std::uint64_t bytes() const override;
 
-  // Throw std::logic_error: this pass is short, and made anew by a run that is resumed.
+  // Throw std::logic_error: no state is saved of this short pass, and a resumed run makes it anew.
   void exchange(StateWriter& state) override;
   void exchange(StateReader& state) override;
 
@@ -57,12 +59,12 @@ class ComponentFinder final : public PieceStage {
   const VertexNumbering numbering_;
   const Executor& executor_;
 
-  // Of the whole surface, in the order of the vertices.
+  // The seeds of the whole surface, in the order of the vertices.
   std::vector<std::uint64_t> seeds_;           // ids
   std::vector<std::uint32_t> seed_parents_;    // which of them are of one component
   std::vector<std::uint64_t> seed_triangles_;  // that were found beside them
 
-  // Of the piece.
+  // The vertices of the piece.
   Array<std::uint32_t> parents_;          // sets of connected vertices
   Array<std::uint32_t> labels_;           // of vertices that are roots, or were: a seed of the component
   std::vector<std::uint32_t> new_roots_;  // vertices whose seeds came with the piece

@@ -1,5 +1,5 @@
-// Columns of the volume, along z: what lies in one of them is held side by side, and decided by one worker after the
-// other, so that it stays in a cache.
+// Columns of the volume, along z. The zone holds the vertices and triangles of a column side by side, and one worker
+// decides the edges of a column one after the other, so that the column stays in a cache.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,13 @@ namespace isoweave {
 
 class Columns {
  public:
-  static constexpr std::uint32_t kAlong = 32;  // after so many along x or y the numbers start again
+  static constexpr std::uint32_t kAlong = 32;  // columns along x or y; then the numbers begin again
   static constexpr std::size_t kCount = std::size_t{kAlong} * kAlong;
 
   // a0: mean voxel face, length squared.
   explicit Columns(double a0) : per_length_(1 / (kSide * std::sqrt(a0))) {}
 
-  // Less than kCount, for any point: a mesh file may be anywhere.
+  // The column of a point: less than kCount for any point, as a mesh file may lie anywhere.
   std::uint32_t operator()(const Vec3& p) const { return part(p.x) + kAlong * part(p.y); }
 
  private:

@@ -10,9 +10,9 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kBlock = 8192;
-constexpr std::uint64_t kInOrder = 4000;  // so many triangles are left to one queue in the end
+constexpr std::uint64_t kInOrder = 4000;  // the last triangles are left to one queue
 
-// How many items have a cost, in steps of a 256th.
+// A histogram of the costs of items, in steps of a 256th.
 class CostHistogram {
  public:
   CostHistogram() : counts_(kSteps, 0) {}
@@ -46,7 +46,7 @@ class CostHistogram {
   std::vector<std::uint64_t> counts_;
 };
 
-// The costs that add(triangle, histogram) gives of every triangle there is.
+// The histogram of all live triangles: add(triangle, histogram) adds the costs of one of them.
 template <class Add>
 CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add& add) {
   CostHistogram sum;
@@ -94,7 +94,7 @@ void CountTarget::finish() {
   simplifier_.zone().retire_all();
 }
 
-// The highest limit that leaves so many triangles, of those held and of those that are final.
+// The highest limit that leaves so many triangles: the final ones and those that are held.
 CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
   const Zone& zone = simplifier_.zone();
   const std::uint64_t gone = simplifier_.triangles() - simplifier_.live_triangles();

@@ -8,25 +8,25 @@
 
 namespace isoweave {
 
-// Raises the limit on costs step by step. Keys never decrease, so a limit leaves every triangle all of whose vertices
-// have dearer edges only, and collapses no more edges than have keys within it: from that follows how far it can be
-// raised before anything is decided, and the cost at which the number is met is never overtaken.
+// Raises the limit on costs step by step. Keys never decrease. So a limit leaves every triangle all of whose vertices
+// have dearer edges only, and it lets no more edges collapse than have keys within it. These two bounds tell how far
+// the limit can be raised before anything is decided. The cost at which the number is met is never overtaken.
 class CountTarget {
  public:
-  // To be made before anything is appended to the simplifier.
+  // The target must be made before anything is appended to the simplifier.
   CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles)
       : CountTarget(simplifier, executor, triangles, most_held(triangles)) {}
   CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles, std::uint64_t most_held);
 
-  // For a surface of which more will come, after decide(): makes what is held smaller while it is more than
-  // `most_held`, if that is possible.
+  // For a surface of which more will come, after decide(): while the zone holds more than `most_held` triangles,
+  // decides more edges if that is possible.
   void thin_out();
 
-  // What should be held between two slabs where so many triangles are wanted.
+  // The most triangles that the zone should hold between two slabs when so many triangles are wanted in the end.
   static std::uint64_t most_held(std::uint64_t triangles) { return triangles + triangles / 4 + 50'000; }
 
-  // For a complete surface: decides in order until no more than the number is left, or until all edges are retired.
-  // Then everything is final.
+  // For a complete surface: decides edges in order until no more than the number of triangles is left, or until all
+  // edges are retired. Then everything is final.
   void finish();
 
  private:

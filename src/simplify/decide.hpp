@@ -16,16 +16,16 @@
 
 namespace isoweave {
 
-// Decides edges of a zone, one after the other. Reads and writes the two stars of an edge only: deciders in different
-// threads may work on the same zone as long as the stars of their edges share no triangle. Arithmetic is how several
-// faces or edges are computed at once: every kind gives the same bits.
+// Decides edges of a zone, one after the other. A decision reads and writes the two stars of its edge only, so deciders
+// in different threads may work on the same zone as long as the stars of their edges share no triangle. Arithmetic
+// computes several faces or edges at once. Every kind of arithmetic gives the same bits.
 template <class Arithmetic>
 class BasicDecider {
  public:
   ISOWEAVE_HD explicit BasicDecider(const ZoneView& zone) : zone_(zone) {}
 
-  // Gathers the stars of the edge's ends, one after the other, and shows them to see(star) until that answers false.
-  // Tells whether it never did; then the stars stay for decide().
+  // Gathers the stars of the edge's ends, one after the other, and shows each to see(star) until see() answers false.
+  // Returns whether see() never answered false. Then the stars stay for decide().
   template <class See>
   ISOWEAVE_HD bool look_at(Index half_edge, const See& see) {
     edge_ = half_edge;
@@ -50,15 +50,15 @@ class BasicDecider {
   ISOWEAVE_HD const Star& first() const { return u_; }
   ISOWEAVE_HD const Star& second() const { return v_; }
 
-  // Decides the edge looked at, whose key must be the smallest of all live edges that conflict with it. Afterwards
-  // changed() lists the edges whose keys changed.
+  // Decides the edge whose stars have been gathered. Its key must be the smallest of all live edges that conflict with
+  // it. Afterwards changed() lists the edges whose keys changed.
   ISOWEAVE_HD void decide();
 
   ISOWEAVE_HD const std::array<Index, Star::kRoom>& changed() const { return changed_; }
   ISOWEAVE_HD int changed_count() const { return changed_count_; }
 
-  // After a collapse: the end of the n-th of them that is not the merged vertex, and the key that it had, the smaller
-  // one where two edges have become one.
+  // After a collapse, for the n-th changed edge: the end that is not the merged vertex, and the key before the
+  // collapse. Where two edges have become one, that is the smaller of the two keys.
   ISOWEAVE_HD Index changed_end(std::size_t n) const { return changed_end_[n]; }
   ISOWEAVE_HD Key key_before(std::size_t n) const { return before_[n]; }
 
@@ -67,10 +67,11 @@ class BasicDecider {
   }  // second()'s vertex is gone then, and first()'s has the merged star
   ISOWEAVE_HD const Star& merged() const { return merged_; }
 
-  // Nothing has been decided: what decides it has not been extracted yet. Both ends are deferred.
+  // Whether nothing has been decided, as the part of the surface that the decision needs has not been extracted yet.
+  // Both ends are deferred then.
   ISOWEAVE_HD bool deferred() const { return deferred_; }
 
-  // The edge's whole component was a tetrahedron and has gone: first()'s vertex and its three neighbours.
+  // Whether a speck has vanished: the tetrahedron of first()'s vertex and its three neighbours.
   ISOWEAVE_HD bool vanished() const { return vanished_; }
   ISOWEAVE_HD const DecisionCounts& counts() const { return counts_; }
 
@@ -79,12 +80,12 @@ class BasicDecider {
 
   static constexpr CostBits kTried = 0xffffffffu;  // above every limit
 
-  // The face of a star of three that does not hold `other`.
+  // The face of a star of three faces that does not hold `other`.
   ISOWEAVE_HD static Index far_face(const Star& star, Index other) {
     return star.out[(star.place_of(other) + 1) % 3] >> 2;
   }
 
-  // Faces that hold both ends of the edge: they go when it collapses.
+  // Drops the faces that hold both ends of the edge: they vanish when the edge collapses.
   ISOWEAVE_HD static void drop_shared_faces(const Star& star, Index other, Fan& fan) {
     const std::size_t place = star.place_of(other);
     fan.drop(place);
@@ -180,7 +181,8 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   update_keys(key);
 }
 
-// Both ends see nobody but each other and two more, and all their faces close.
+// Whether the two stars form a closed tetrahedron: both ends have the same two neighbours beside each other, and no
+// border.
 template <class Arithmetic>
 ISOWEAVE_HD bool BasicDecider<Arithmetic>::is_tetrahedron() const {
   if (u_.border || v_.border || u_.neighbours != 3 || v_.neighbours != 3) return false;
@@ -191,8 +193,8 @@ ISOWEAVE_HD bool BasicDecider<Arithmetic>::is_tetrahedron() const {
   return true;
 }
 
-// Vanishes at a cost of its own: half its longest edge, squared. Until an edge has that key it goes back, so that
-// levels nest.
+// Decides an edge of a tetrahedron. A speck vanishes at a cost of its own: half its longest edge, squared. An edge with
+// a smaller key goes back with that cost, so that levels nest.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::decide_tetrahedron(CostBits key) {
   double longest = 0;
@@ -227,19 +229,19 @@ ISOWEAVE_HD bool BasicDecider<Arithmetic>::topology_allows() {
   const int opposite = border_edge ? 1 : 2;
   if (u_.neighbours + v_.neighbours - 2 - opposite > kMaxValence) return false;
   if (arithmetic_.count_common(u_, v_) != opposite) return false;
-  // What is left to exclude: both ends only see each other and the opposite vertices. Then the surface is a tetrahedron
-  // (both stars hold the face over the opposite vertices), or, on a border, a single triangle.
+  // One case is left to exclude: both ends have no neighbours but each other and the opposite vertices. Then the
+  // surface is a tetrahedron (both stars hold the face over the opposite vertices), or, on a border, a single triangle.
   return !(u_.neighbours == opposite + 1 && v_.neighbours == opposite + 1 && u_.border == v_.border);
 }
 
-// Of the faces that are left.
+// Whether the faces that stay after the collapse keep their sides.
 template <class Arithmetic>
 ISOWEAVE_HD bool BasicDecider<Arithmetic>::keeps_sides(Vec3 x) const {
   return arithmetic_.keeps_sides(u_fan_, u_.count(), x) &&
          arithmetic_.keeps_sides(v_fan_, v_.count(), x - edge_vector_);
 }
 
-// Where the full cost is least among the points x (gradient . x = offset) that keep the enclosed volume when the edge
+// The place of least full cost among the points x (gradient . x = offset) that keep the enclosed volume when the edge
 // shrinks to x (Lindstrom and Turk, 1998).
 template <class Arithmetic>
 ISOWEAVE_HD Vec3 BasicDecider<Arithmetic>::best_place(const Quadric& full, Vec3 gradient, double offset) const {
@@ -250,7 +252,7 @@ ISOWEAVE_HD Vec3 BasicDecider<Arithmetic>::best_place(const Quadric& full, Vec3 
   return strength > 0 ? best + ((offset - dot(gradient, best)) / strength) * response : best;
 }
 
-// Whether the faces around the merged vertex stay within the distance that is allowed.
+// Whether the faces around the merged vertex stay within the distance bound.
 template <class Arithmetic>
 ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const {
 #ifndef __CUDA_ARCH__
@@ -259,14 +261,15 @@ ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const
   return Reach::kWithin;
 }
 
-// Weight of the vertices' quadrics in a full cost, where weights are 2 in all. Only they know about normals: where
-// these count, so do they.
+// Weight of the vertices' quadrics in a full cost, where all weights add up to 2. Only the quadrics know about normals,
+// so where normals count the quadrics count as much as the faces.
 template <class Arithmetic>
 ISOWEAVE_HD double BasicDecider<Arithmetic>::memory() const {
   return zone_.normal_quadrics.empty() ? kMemory : 1;
 }
 
-// What the vertex of a star remembers, the planes of its faces, and on a border those of its border edges.
+// The full quadric of a star's vertex: its own quadric, the planes of its faces, and on a border the planes of its
+// border edges.
 template <class Arithmetic>
 ISOWEAVE_HD Quadric BasicDecider<Arithmetic>::full_quadric(const Star& star, const Quadric& faces) const {
   const Quadric sum = memory() * zone_.vertices[star.vertex].quadric + faces;
@@ -284,8 +287,8 @@ ISOWEAVE_HD Quadric BasicDecider<Arithmetic>::with_normals(const Quadric& full) 
   return with_best_normal(full, u + moved(zone_.normal_quadrics[v_.vertex], -edge_vector_));
 }
 
-// The first position that keeps every face on its side and within reach: the best one, then the two ends and the
-// midpoint, cheapest first, as long as they cost no more than the limit.
+// Finds the first place that keeps every face on its side and within the distance bound. Tried are the best place, then
+// the two ends and the midpoint, cheapest first, as long as they cost no more than the limit.
 template <class Arithmetic>
 ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
   x = best;
@@ -310,15 +313,15 @@ ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, C
   return Reach::kBeyond;
 }
 
-// The cost of the place that was taken, which may be below the key: that grows with each time that an edge goes back.
-// It never counts as more than the key, which is what is compared with the error.
+// The cost of the place that was taken. It may be below the key, as the key grows each time the edge goes back. It
+// never counts as more than the key, because the key is compared with the error.
 template <class Arithmetic>
 ISOWEAVE_HD CostBits BasicDecider<Arithmetic>::cost_as_made(const Quadric& full, Vec3 x, CostBits key) {
   const CostBits cost = to_cost(evaluate(full, x));
   return cost < key ? cost : key;
 }
 
-// Blocks the edge and all that conflict with it.
+// Blocks the edge and all edges that conflict with it.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::defer() {
   deferred_ = true;
@@ -335,8 +338,8 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::raise_key(CostBits cost) {
   changed_[static_cast<std::size_t>(changed_count_++)] = edge_;
 }
 
-// Takes out the triangle of half-edge h, one of the two at the edge: its two other edges become one, which keeps
-// the identity of the one with the smaller key.
+// Removes the triangle of half-edge h, one of the two at the edge. The two other edges of the triangle become one,
+// which keeps the key and the tie of the edge with the smaller key.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_sides(Index h) {
   const Index a = next(h);
@@ -353,14 +356,15 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_sides(Index h) {
     zone_.half(outer[n]).key = key;
     zone_.triangles[outer[n] >> 2].tie_low[outer[n] & 3] = tie_low;
   }
-  // The opposite vertex may have started its walks here. Another collapse may look at the same vertex from its side.
+  // The opposite vertex may have its starting half-edge here. Another collapse may change the same vertex from its
+  // side.
   Index& start = zone_.vertices[zone_.origin(b)].half_edge;
   if (load_relaxed(start) == b) store_relaxed(start, outer_a);
   zone_.remove_triangle(h >> 2);
   ++counts_.removed;
 }
 
-// Merges the two ends into the vertex of u_, x away from where that was.
+// Merges the two ends into the vertex of u_, which moves by x.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::collapse(Vec3 x) {
   const Index back = zone_.twin(edge_);
@@ -384,7 +388,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::collapse(Vec3 x) {
   join_rings();
 }
 
-// Of both ends: their sum, or where normals count the best one at x.
+// Merges the normals of both ends: their sum, or, where normals count, the best normal at x.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_normals(Vec3 x) {
   if (zone_.normals.empty()) return;
@@ -398,8 +402,8 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::merge_normals(Vec3 x) {
   normal = unit_point(merged.offset);
 }
 
-// The star of the merged vertex: around u_ from the first opposite vertex to the second, and around v_ back to the
-// first.
+// Gathers the star of the merged vertex: around u_ from the first opposite vertex to the second, then around v_ back to
+// the first.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::join_rings() {
   Index& start = zone_.vertices[u_.vertex].half_edge;
@@ -420,8 +424,8 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::join_rings() {
   start = merged_.out[0];
 }
 
-// Keys of the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key it
-// replaces, and lies behind the collapse that made it.
+// Gives keys to the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key of the
+// edges that it replaces, and comes after the collapse that made it.
 template <class Arithmetic>
 ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
   const Star& star = merged_;

@@ -1,4 +1,4 @@
-// What every schedule is to the simplifier: it decides all edges of a zone that can be decided.
+// The interface of every schedule: a driver decides all edges of a zone that can be decided.
 #pragma once
 
 #include <atomic>
@@ -17,20 +17,20 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
   virtual ~Driver() = default;
 
-  // To be called after every append to the zone. Leaves the least key of every vertex in zone.turn_keys. Stops early
-  // when *stop becomes true; the zone is of no use then.
+  // Must be called after every append to the zone. Leaves the least key of every vertex in zone.turn_keys. Returns
+  // early when *stop becomes true; the zone is of no use then.
   virtual void run(const std::atomic<bool>* stop) = 0;
 
   virtual DecisionCounts counts() const = 0;
 
-  // Passes over lists of vertices or edges so far.
+  // The number of passes over lists of vertices or edges so far.
   virtual std::uint64_t rounds() const = 0;
 };
 
-// Turns of all vertices.
+// Gives all vertices their turns.
 void give_all_turns(const Zone& zone);
 
-// Turns of the vertices whose edges got keys with the last append.
+// Gives turns to the vertices whose edges got keys with the last append.
 void give_turns(const Zone& zone, const Executor& executor);
 
 }  // namespace isoweave

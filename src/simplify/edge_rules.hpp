@@ -47,11 +47,11 @@ ISOWEAVE_HD inline CostBits postponed_cost(CostBits cost) {
   return cost_bits(raised > kPostponeFloor ? raised : kPostponeFloor);
 }
 
-// How costs become keys. The full cost of an edge, which is known when it is decided, is about twice that of its ends'
-// quadrics on the surface as it was extracted, and less and less of that afterwards.
+// How costs become keys. The full cost of an edge is known when the edge is decided. On the surface as it was extracted
+// it is about twice the cost of the quadrics at the ends; later it is lower in relation.
 struct KeyFactors {
   float first;   // of the quadrics' cost, for edges as they were extracted
-  float merged;  // the same for edges at a merged vertex
+  float merged;  // of the quadrics' cost, for edges at a merged vertex
   float limit;   // an edge that is decided goes back when its full cost exceeds its key by this
 };
 
@@ -71,8 +71,8 @@ ISOWEAVE_HD inline std::uint64_t mix_bits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// A face keeps its side and stays a face when its normal, of any length, changes so. A face without area imposes
-// nothing.
+// Whether a face keeps its side and stays a face when its normal, of any length, changes so. A face without area
+// imposes nothing.
 template <class Real>
 ISOWEAVE_HD inline auto keeps_side(const BasicVec3<Real>& before, const BasicVec3<Real>& after) {
   const Real size_before = dot(before, before);

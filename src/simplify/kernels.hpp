@@ -15,15 +15,15 @@ struct EdgeEnds {
   const Vertex* second;
 };
 
-// Where the faces around a vertex lie, measured from it. Slot n is the face between neighbours n and n + 1, and the
-// last one closes the circle; where there is no face the normal is zero.
+// The faces around a vertex, with places measured from the vertex. Slot n holds the face between neighbours n and n +
+// 1, and the last slot closes the circle. A slot without a face has a normal of zero.
 struct alignas(64) Fan {
   static constexpr std::size_t kRoom = 40;  // 29 neighbours, rounded up to whole vectors, and one vector beyond
 
   double x[kRoom], y[kRoom], z[kRoom];                       // of the neighbours
   double normal_x[kRoom], normal_y[kRoom], normal_z[kRoom];  // of the faces, twice as long as their area
 
-  // Leaves a face out of what is computed from now on.
+  // Leaves a face out of all later computations.
   void drop(std::size_t slot) { normal_x[slot] = normal_y[slot] = normal_z[slot] = 0; }
 };
 
@@ -37,25 +37,26 @@ struct Kernels {
   // Costs of collapsing edges.
   void (*edge_costs)(std::span<const EdgeEnds> edges, CostBits* costs);
 
-  // Fills a fan. After the neighbours come 8 or more numbers that repeat the first of them, for a closed fan, or the
-  // last: an open one has no face between its last neighbour and its first.
+  // Fills a fan. The list of neighbours must be followed by 8 or more further numbers. For a closed fan they repeat the
+  // first neighbour. For an open fan, which has no face between its last neighbour and its first, they repeat the last
+  // one.
   void (*measure)(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan);
 
-  // Planes of the faces in slots below `slots`, with a weight of `weight` per twice the area.
+  // Sums the planes of the faces in slots below `slots`, each with a weight of `weight` times twice its area.
   FaceSums (*sum_faces)(const Fan& fan, std::size_t slots, double weight);
 
   // Whether all faces keep their side when the vertex moves.
   bool (*keeps_sides)(const Fan& fan, std::size_t slots, Vec3 move);
 
-  // How many pairs of equal numbers two lists have. b has `count` numbers and is filled up to a multiple of 16 with
+  // Counts the pairs of equal numbers in two lists. b has `count` numbers, and is filled up to a multiple of 16 with
   // numbers that a does not have.
   int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
 };
 
-// The best for this processor.
+// The best kernels for this processor.
 const Kernels& kernels();
 
-// All that this processor can run, the best last.
+// All kernels that this processor can run, the best last.
 std::span<const Kernels* const> all_kernels();
 
 // The kernels applied to stars.
@@ -78,7 +79,7 @@ class VectorArithmetic {
     return kernels_.keeps_sides(fan, slots, move);
   }
 
-  // Neighbours that two stars have in common.
+  // The number of neighbours that two stars have in common.
   int count_common(const Star& a, Star& b) const {
     b.pad(kNone);
     return kernels_.count_common({a.neighbour.data(), a.count()}, b.neighbour.data(), b.count());

@@ -26,7 +26,7 @@ class KernelsInLanes {
     BasicQuadric<Real> quadric;
   };
 
-  // The first kColumns doubles of every vertex, by columns. What lies behind them may be changing.
+  // Loads the first kColumns doubles of every vertex, by columns. The rest of a vertex may be changing meanwhile.
   template <std::size_t kColumns, class VertexOf>
   [[gnu::always_inline]] static void load_vertices(const VertexOf& vertex_of, Real* columns) {
     static_assert(offsetof(Vertex, position) == 0 && offsetof(Vertex, quadric) == 4 * sizeof(double));
@@ -75,8 +75,8 @@ class KernelsInLanes {
     return {isoweave::shifted(v.x, by.x), isoweave::shifted(v.y, by.y), isoweave::shifted(v.z, by.z)};
   }
 
-  // The repeated neighbour makes the slots past the last one zero. What has just been stored is not loaded with the
-  // next number beside it: a load waits until all stores that it takes from are through.
+  // The repeated neighbour makes the slots past the last one zero. A number that has just been stored is not loaded
+  // together with its neighbour in memory: such a load waits until all stores that it takes from are complete.
   static void measure(const Vertex* vertices, Vec3 centre, const Index* neighbours, std::size_t count, Fan& fan) {
     const Vec from{centre.x, centre.y, centre.z};
     const Vec3 repeated = vertices[neighbours[count]].position - centre;
@@ -102,7 +102,7 @@ class KernelsInLanes {
     return {Real::load(fan.normal_x + n), Real::load(fan.normal_y + n), Real::load(fan.normal_z + n)};
   }
 
-  // All lanes are added, also those beyond the last slot, which are zero: the number of turns stays the same.
+  // Adds all lanes, also those beyond the last slot, which are zero: so the number of turns of the loop stays the same.
   static FaceSums sum_faces(const Fan& fan, std::size_t slots, double weight) {
     constexpr std::size_t kColumns = 8;
     Real total[kColumns / N];

@@ -11,11 +11,12 @@
 
 namespace isoweave {
 
-// Of every vertex, what it waits for. If all its new triangles are in one column one thread passes over them in their
-// order, and the last one is enough to know; those of a few vertices between columns are counted.
+// Counts, for every vertex, the new triangles whose edges have no keys yet. If all new triangles of a vertex are in one
+// column, one thread passes over them in their order, and the last one is enough to know. Vertices between columns are
+// few, and their triangles are counted.
 class KeyCountdown {
  public:
-  // So many vertices there are now, and none waits for anything yet.
+  // Begins for so many vertices, none of which waits for anything yet.
   void begin(std::size_t vertices) { awaited_.resize(vertices, kNothing); }
 
   void expect_nothing() { awaited_.assign(awaited_.size(), kNothing); }
@@ -24,7 +25,7 @@ class KeyCountdown {
 
   bool waits(Index v) const { return load_relaxed(awaited_[v]) != kNothing; }
 
-  // Triangle t, which names v, is through. Tells whether v has all its keys now, of whichever threads.
+  // Counts off triangle t, which names v. Returns whether v has all its keys now, whichever threads gave them.
   bool count_off(Index v, Index t) {
     const Index awaited = load_relaxed(awaited_[v]);
     if (awaited == t) {

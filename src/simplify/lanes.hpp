@@ -10,7 +10,8 @@
 
 namespace isoweave {
 
-// Compilers ignore the attributes where they depend on a template's argument.
+// The types of vectors, by the number of their lanes: compilers ignore the attributes where these depend on a
+// template's argument.
 template <std::size_t N>
 struct LaneTypes;
 
@@ -91,7 +92,7 @@ bool all(typename Lanes<N>::Mask mask) {
   return both != 0;
 }
 
-// All but the first of a, and the first of b.
+// All lanes of a but the first, then the first lane of b.
 template <std::size_t N>
 [[gnu::always_inline]] inline Lanes<N> shifted(const Lanes<N>& a, const Lanes<N>& b) {
   return [&]<std::size_t... Lane>(std::index_sequence<Lane...>) {
@@ -100,7 +101,7 @@ template <std::size_t N>
   (std::make_index_sequence<N>());
 }
 
-// Rows become columns in every group of W lanes: in steps, blocks of half the size change places across the diagonal.
+// Transposes every group of W lanes: in steps, blocks of half the size change places across the diagonal.
 template <std::size_t N, std::size_t W>
 [[gnu::always_inline]] inline void transpose(Lanes<N> (&rows)[W]) {
   const auto exchange = [&]<std::size_t... Lane>(auto half, std::index_sequence<Lane...>) {
@@ -119,7 +120,7 @@ template <std::size_t N, std::size_t W>
   exchange(std::integral_constant<std::size_t, 1>(), kAll);
 }
 
-// W doubles from each of `Count` places: from[row], from[row + W], ...
+// Loads W doubles from each of `Count` places: from[row], from[row + W], ...
 template <std::size_t W, std::size_t Count>
 [[gnu::always_inline]] inline auto load_rows(const double* const* from, std::size_t row, std::size_t offset) {
   if constexpr (Count == 1) {
@@ -132,7 +133,7 @@ template <std::size_t W, std::size_t Count>
   }
 }
 
-// The W doubles that lie `offset` doubles after each of N places, by columns. Reads nothing else.
+// Loads the W doubles that lie `offset` doubles after each of N places, by columns. Reads nothing else.
 template <std::size_t W, std::size_t N>
 [[gnu::always_inline]] inline void load_columns(const double* const (&from)[N], std::size_t offset, Lanes<N>* columns) {
   Lanes<N> rows[W];

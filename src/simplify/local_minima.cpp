@@ -16,33 +16,33 @@ namespace {
 constexpr std::size_t kPlaces = Columns::kCount;
 constexpr std::uint32_t kNowhere = 2 * kPlaces;
 
-// Asks for a line of memory before it is needed.
+// Fetches a line of memory before it is needed.
 void fetch(const void* line) { __builtin_prefetch(line, 1, 2); }
 
 }  // namespace
 
-// Places in a row, that lie side by side.
+// Consecutive columns, whose vertices lie near each other.
 struct LocalMinima::Stretch {
   std::atomic<std::size_t> next{0};
   std::size_t end = 0;
 };
 
-// Serves pairs. It holds both ends of one that it looks at, all their neighbours when it decides the edge, and the
-// vertex that it lets the pair wait for. It never waits for another worker with anything in hand.
+// Serves pairs. A worker holds both ends of the pair that it looks at, all their neighbours when it decides the edge,
+// and the vertex that it lets the pair wait for. A worker that holds a vertex never waits for another worker.
 class LocalMinima::Worker {
  public:
   Worker(Zone& zone, std::uint16_t number) : zone_(zone), decider_(zone), number_(number) {}
 
   const DecisionCounts& counts() const { return decider_.counts(); }
 
-  // owners: nullptr when this is the only worker.
+  // owners: nullptr when there is only this worker.
   void begin(std::vector<std::uint16_t>* owners, WorkPool& pool) {
     owners_ = owners;
     pool_ = &pool;
   }
 
-  // Gives the edges of new triangles their keys, turns to the vertices that have all of them now, and serves what
-  // follows.
+  // Gives keys to the edges of new triangles and turns to the vertices that have all their keys now, and serves the
+  // pairs that this makes.
   void settle(TriangleRange range, const std::atomic<bool>* stop) {
     zone_.settle_edges(range, unkeyed_);
     for (Index t = range.begin; t < range.end; ++t) {
@@ -53,16 +53,16 @@ class LocalMinima::Worker {
     serve_all(stop);
   }
 
-  // Edges that got no keys.
+  // The edges that got no keys, as an end of them is incomplete.
   std::vector<Index>& unkeyed() { return unkeyed_; }
 
-  // Serves the pair that v belongs to and everything that follows from it.
+  // Serves the pair that v belongs to and all pairs that this wakes.
   void serve(Index v, const std::atomic<bool>* stop) {
     todo_.push_back(v);
     serve_all(stop);
   }
 
-  // Serves what other workers leave, until all are through.
+  // Serves the pairs that other workers leave, until no worker has any.
   void help(const std::atomic<bool>* stop) {
     while (pool_->take(todo_)) serve_all(stop);
   }
@@ -92,7 +92,7 @@ class LocalMinima::Worker {
   bool hold(Index v) {
     if (owners_ == nullptr) return true;
     const std::atomic_ref<std::uint16_t> owner((*owners_)[v]);
-    std::uint16_t found = owner.load(std::memory_order_relaxed);  // an exchange takes longer
+    std::uint16_t found = owner.load(std::memory_order_relaxed);  // a load first: an exchange takes longer
     if (found != 0) return found == number_;
     const bool is_free =
         owner.compare_exchange_strong(found, number_, std::memory_order_acquire, std::memory_order_relaxed);
@@ -109,8 +109,8 @@ class LocalMinima::Worker {
 
   std::atomic_ref<Index> waits_for(Index v) { return std::atomic_ref<Index>(zone_.turns[v].waits_for); }
 
-  // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for a vertex that
-  // comes before. False when another worker holds something: nothing has been done.
+  // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for a vertex
+  // whose turn comes earlier. Returns false, and does nothing, when another worker holds a vertex that is needed.
   bool visit(Index v) {
     if (!hold(v)) return false;
     if (!has_turn(zone_, v)) return true;
@@ -135,9 +135,9 @@ class LocalMinima::Worker {
     return true;
   }
 
-  // Around one end of the pair of v: a neighbour whose turn comes before that of the pair, which is held then; v if
-  // there is none, and all are held; kNone if another worker holds something. Half of all looks end with the first:
-  // neighbours are not held for it.
+  // Looks around one end of the pair of v. Returns a neighbour whose turn comes before that of the pair, and holds it.
+  // Returns v if there is no such neighbour, and holds all neighbours. Returns kNone if another worker holds one of
+  // them. Half of all looks end at the first end of the pair, and hold no neighbours.
   Index hold_for(const Star& star, Index v) {
     const auto [seen, tied] = last_before(star, v);
     if (seen != v) return hold(seen) && turn_key(seen) < turn_key(v) ? seen : kNone;
@@ -147,7 +147,7 @@ class LocalMinima::Worker {
     return tied_still ? earliest_in_full(star, v) : last;
   }
 
-  // Whoever does not hold the vertex may be told an old one.
+  // The key of v's turn. It may be an old one unless this worker holds v.
   Key turn_key(Index v) const { return std::atomic_ref(zone_.turn_keys[v]).load(std::memory_order_relaxed); }
 
   struct Before {
@@ -155,9 +155,9 @@ class LocalMinima::Worker {
     bool tied;
   };
 
-  // Around one end of the pair of v: of the neighbours whose turns come before that of the pair by their keys the last
-  // one, as the others are likely to be through when it is; v if there is none. One neighbour, the other end, has the
-  // pair's key; if more do, whole ties have to be compared.
+  // Finds, around one end of the pair of v, the last neighbour among those whose turns come before that of the pair:
+  // the others are likely to be served before it is. Gives v if there is no such neighbour. The other end of the pair
+  // has the pair's key. If a second neighbour has that key as well, whole ties have to be compared.
   Before last_before(const Star& star, Index v) const {
     const Key own = turn_key(v);
     Key latest = 0;
@@ -166,7 +166,7 @@ class LocalMinima::Worker {
     for (std::size_t n = 0; n < star.count(); ++n) {
       const Index x = star.neighbour[n];
       const Key key = turn_key(x);
-      const Key rank = key - 1;  // an unknown turn, 0, is the last to be through
+      const Key rank = key - 1;  // an unknown turn, 0, counts as the last
       const bool later = (key < own) & (rank >= latest);
       last = later ? x : last;
       latest = later ? rank : latest;
@@ -191,8 +191,8 @@ class LocalMinima::Worker {
     waits_for(pair).store(before, std::memory_order_release);
   }
 
-  // Wakes the pairs that v no longer comes before; the others go on waiting for it. The turn of a pair that waits does
-  // not change.
+  // Wakes the pairs that v's turn no longer comes before; the others keep waiting for v. The turn of a waiting pair
+  // does not change.
   void wake_waiters(Index v) {
     Index kept = kNone;
     for (Index w = zone_.turns[v].first_waiter; w != kNone;) {
@@ -210,11 +210,11 @@ class LocalMinima::Worker {
     zone_.turns[v].first_waiter = kept;
   }
 
-  // New turns for the vertices whose least edge has changed, all of them held.
+  // Gives new turns to the vertices whose least edge has changed. This worker holds all of them.
   void settle() {
     const Star& first = decider_.first();
     const Star& second = decider_.second();
-    if (decider_.deferred()) return;  // whoever waits for these vertices goes on to
+    if (decider_.deferred()) return;  // the pairs that wait for these vertices keep waiting
     if (decider_.vanished()) {
       end_turns(first.vertex);
       for (std::size_t n = 0; n < 3; ++n) end_turns(first.neighbour[n]);
@@ -230,7 +230,7 @@ class LocalMinima::Worker {
     end_turns(second.vertex);
     renew_turn(zone_, decider_.merged());
     follow(first.vertex);
-    // Edges that were the turn of their other end have another key now.
+    // Neighbours whose turn was an edge to a merged vertex have another key now.
     for (int n = 0; n < decider_.changed_count(); ++n) {
       const auto place = static_cast<std::size_t>(n);
       const Index w = decider_.changed_end(place);
@@ -240,7 +240,8 @@ class LocalMinima::Worker {
     }
   }
 
-  // The first turn of a vertex, unless it is incomplete. Others may hold it, to wait for it.
+  // Gives a vertex its first turn, unless it is incomplete. Another worker may hold the vertex, to let a pair wait for
+  // it.
   void begin_turns(Index v) {
     if (zone_.states[v] == VertexState::kIncomplete) return;
     while (!hold(v)) {
@@ -258,8 +259,9 @@ class LocalMinima::Worker {
     wake_waiters(gone);
   }
 
-  // What v's new turn brings about. If its other end has the same turn they are a pair. When that end gets its turn at
-  // the same time from another worker, at least one of the two sees the other's: both store theirs first.
+  // Acts on v's new turn. If the other end of that edge has the same turn, the two are a pair. Both ends may get their
+  // turns at the same time from two workers: each worker stores its turn before it reads the other one, so at least one
+  // of them sees the pair.
   void follow(Index v) {
     wake_waiters(v);
     if (!has_turn(zone_, v)) return;
@@ -274,8 +276,8 @@ class LocalMinima::Worker {
   std::uint16_t number_;
   std::vector<std::uint16_t>* owners_ = nullptr;
   WorkPool* pool_ = nullptr;
-  std::vector<Index> todo_;   // a stack: what was woken last lies nearest
-  std::vector<Index> later_;  // met another worker
+  std::vector<Index> todo_;   // a stack: the vertex woken last lies nearest
+  std::vector<Index> later_;  // vertices to be tried again: another worker held one of their stars
   std::vector<Index> held_;
   std::vector<Index> unkeyed_;
 };
@@ -330,7 +332,8 @@ void LocalMinima::run(const std::atomic<bool>* stop) {
   ++rounds_;
 }
 
-// Of those settled that were there before the last piece. Those that are at new triangles get theirs with these.
+// Gives turns to the settled vertices that are older than the last piece. Those of them at new triangles get their
+// turns when the edges of these triangles get their keys.
 void LocalMinima::give_turns_to_old() {
   const std::span<const Index> old = zone_.settled.old;
   executor_.for_each(static_cast<std::int64_t>(old.size()), 4096, [&](std::int64_t n) {
@@ -343,7 +346,7 @@ void LocalMinima::give_turns_to_old() {
   });
 }
 
-// Every worker begins with a stretch of its own, so that they seldom meet, and share few lines of memory.
+// Gives every worker a stretch of columns to begin with, so that workers seldom meet and share few lines of memory.
 void LocalMinima::share_places(std::span<Stretch> stretches) const {
   const auto work_before = [&](std::size_t place) { return zone_.unsettled(place).begin + places_.start[place]; };
   const std::size_t all = zone_.unsettled(kPlaces - 1).end - zone_.unsettled(0).begin + places_.items.size();
@@ -355,7 +358,7 @@ void LocalMinima::share_places(std::span<Stretch> stretches) const {
   }
 }
 
-// Whoever walks around a vertex waits for one line of memory after the other: what is there is asked for before.
+// Fetches the memory around a vertex. A walk around a vertex would wait for one line of memory after the other.
 void LocalMinima::fetch_around(std::uint32_t n) const {
   const auto* const vertex = reinterpret_cast<const std::byte*>(&zone_.vertices[awake(n)]);
   fetch(vertex);
@@ -365,11 +368,11 @@ void LocalMinima::fetch_around(std::uint32_t n) const {
   fetch(&zone_.triangles[triangle_[n]] + 1);
 }
 
-// The pairs of a place.
+// Serves the pairs of a column.
 void LocalMinima::serve_place(std::size_t place, Worker& worker, const std::atomic<bool>* stop) const {
   const auto items =
       std::span(places_.items).subspan(places_.start[place], places_.start[place + 1] - places_.start[place]);
-  constexpr std::size_t kAhead = 128;  // what is around them fits a cache
+  constexpr std::size_t kAhead = 128;  // vertices fetched ahead: their surroundings fit a cache
   for (std::size_t begin = 0; begin < items.size(); begin += kAhead) {
     const auto next = items.subspan(begin, std::min(kAhead, items.size() - begin));
     for (const std::uint32_t n : next) fetch_around(n);
@@ -379,7 +382,8 @@ void LocalMinima::serve_place(std::size_t place, Worker& worker, const std::atom
   }
 }
 
-// Turns know no limit: those beyond the last one are there already.
+// Lists the vertices whose turns a higher limit lets through. Turns know no limit: those beyond the last limit have
+// been kept.
 void LocalMinima::list_let_through() {
   woken_.clear();
   if (zone_.limit <= limit_) return;
@@ -411,10 +415,10 @@ Index LocalMinima::awake(std::size_t n) const {
   return n < old.size() ? old[n] : woken_[n - old.size()];
 }
 
-// v, which has a turn, and the other end of its least edge are a pair.
+// Whether v, which has a turn, and the other end of its least edge are a pair.
 bool LocalMinima::is_in_pair(Index v) const { return same_turn(zone_, v, other_end(zone_, zone_.turns[v].edge, v)); }
 
-// Groups vertices that have a turn by columns of the volume.
+// Groups the vertices that have a turn by columns of the volume.
 void LocalMinima::group_by_place() {
   const Columns column(zone_.options.a0);
   place_.resize(zone_.settled.old.size() + woken_.size());

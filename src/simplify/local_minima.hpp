@@ -1,9 +1,10 @@
 // The parallel schedule: every vertex waits for its turn.
 //
-// An edge is decided where its key is a local minimum (the safe rule); whoever is not yet there waits for a vertex that
-// comes earlier, and is woken when that vertex has been served. Jones and Plassmann (1993) colour graphs this way.
-// There is no global order and there are no rounds: a worker follows the chain of earlier keys from vertex to vertex,
-// decides at its end, and goes on with what that has woken, all within a few rings.
+// A worker decides an edge whose key is a local minimum (the safe rule). A pair that is not there yet waits for a
+// vertex whose turn comes earlier, and is woken when that vertex has been served. Jones and Plassmann (1993) colour
+// graphs this way. There is no global order and there are no rounds: a worker follows the chain of earlier keys from
+// vertex to vertex, decides the edge at its end, and goes on with the pairs that this has woken, all within a few
+// rings.
 #pragma once
 
 #include <memory>
@@ -43,11 +44,11 @@ class LocalMinima final : public Driver {
   const Executor& executor_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<std::uint16_t> owners_;  // per vertex: the worker that holds it, 0 for none
-  CostBits limit_ = kRetiredCost;      // of the run before
+  CostBits limit_ = kRetiredCost;      // of the last run
   std::vector<Index> woken_;           // vertices that waited for one that has settled, or for a higher limit
-  std::vector<std::uint32_t> place_;   // of those settled and those woken, doubled; odd if there is a pair to serve
-  std::vector<Index> triangle_;        // one at each of them that has a place
-  Buckets places_;                     // of their numbers
+  std::vector<std::uint32_t> place_;   // columns of settled and woken vertices, doubled; odd: a pair is to be served
+  std::vector<Index> triangle_;        // a triangle at each of these vertices that has a column
+  Buckets places_;                     // the numbers of these vertices by column
   std::uint64_t rounds_ = 0;
 };
 

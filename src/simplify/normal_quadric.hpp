@@ -2,8 +2,8 @@
 //
 // Over a face every component of the normal is a linear function of position, gradient . x + offset. A vertex at x with
 // a normal s has the error of its position and, for each component, weight * (gradient . x + offset - s)^2, summed over
-// the faces. What of that holds no s is added to the quadric of the vertex; this is the rest. The best s at a given x
-// is a weighted mean, so that a quadric over position alone is left to be minimised.
+// the faces. The terms without s are added to the quadric of the vertex, and this class has the rest. The best s at a
+// given x is a weighted mean, so a quadric over position alone is left to be minimised.
 #pragma once
 
 #include "parallel/annotations.hpp"
@@ -39,7 +39,7 @@ ISOWEAVE_HD inline Quadric square_of(const Vec3& a, double b, double scale) {
   return q;
 }
 
-// What is left of a quadric over position and normal where the normal is the best one at each place.
+// The least value, over all normals, of a quadric over position and normal: a quadric over position.
 ISOWEAVE_HD inline Quadric with_best_normal(const Quadric& q, const NormalQuadric& n) {
   if (!(n.weight > 0)) return q;
   const double offsets[3] = {n.offset.x, n.offset.y, n.offset.z};

@@ -1,5 +1,5 @@
-// The order in which the zone holds a piece. Sources make pieces layer by layer, row by row: passes and walks around
-// vertices would find neighbours as far apart as a layer is large.
+// The order in which the zone holds a piece. Sources make pieces layer by layer and row by row. In that order, passes
+// and walks around vertices would find neighbours as far apart in memory as a layer is large.
 #pragma once
 
 #include <array>
@@ -14,25 +14,25 @@
 
 namespace isoweave {
 
-// Groups the new vertices and the triangles of a piece by columns; within each they keep their order.
+// Groups the new vertices and the triangles of a piece by columns. Within a column the order stays.
 class PieceOrder {
  public:
-  // front: the inherited vertices, in the zone. They keep their numbers.
+  // front: the inherited vertices, by their numbers in the zone, which they keep.
   void sort(const SurfacePiece& piece, const ZoneView& zone, std::span<const Index> front, const Executor& executor);
 
-  // Sorted, with the numbers that vertices have now.
+  // The triangles in their new order, with the new numbers of their vertices.
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return {triangles_.data(), triangles_.size()}; }
 
   // The triangles of column c: from column_starts()[c] to column_starts()[c + 1].
   std::span<const std::size_t> column_starts() const { return by_column_.start; }
 
-  // The same of the new vertices.
+  // The new vertices of column c, likewise.
   std::span<const std::size_t> vertex_column_starts() const { return new_vertices_.start; }
 
-  // Of the n-th new vertex: its place in the piece.
+  // The place of the n-th new vertex in the piece.
   std::uint32_t place_of_vertex(std::size_t n) const { return new_vertices_.items[n]; }
 
-  // Of a vertex that the piece gives a number.
+  // The new number of a vertex, from its number in the piece.
   std::uint32_t number(std::uint32_t in_piece) const { return numbers_[in_piece]; }
 
   std::uint64_t bytes() const;

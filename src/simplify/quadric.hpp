@@ -90,7 +90,7 @@ ISOWEAVE_HD inline BasicVec3<Real> solve(const Factors<Real>& f, const BasicVec3
   return {x, y, z};
 }
 
-// Where q is least; `towards` is what the pull draws to.
+// The place where q is least; the pull draws it to `towards`.
 template <class Real>
 ISOWEAVE_HD inline BasicVec3<Real> minimiser(const BasicQuadric<Real>& q, const Factors<Real>& f,
                                              const BasicVec3<Real>& towards) {

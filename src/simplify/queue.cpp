@@ -32,8 +32,8 @@ void Queue::offer_live_edges() {
   }
 }
 
-// Edges of equal cost, by tie. What they push costs more, so the group is settled while it runs; entries whose edge has
-// gone, moved to another half-edge or got another key are stale.
+// Decides edges of equal cost, by tie. Edges that this pushes cost more, so the group is sorted once. An entry is stale
+// if its edge has gone, moved to another half-edge or got another key.
 void Queue::decide_group() {
   if (group_.size() > 1) {
     std::sort(group_.begin(), group_.end(),

@@ -10,11 +10,11 @@
 namespace isoweave {
 
 // Offers all live edges in the order of their keys. An edge whose stars hold a flagged vertex flags its own ends and is
-// set aside; the others are decided. A flag at a vertex says that an edge there comes earlier and could not be decided;
-// the edges whose keys are not known yet are the first such edges.
+// set aside; every other edge is decided. A flag at a vertex says that an edge there comes earlier and could not be
+// decided. The first such edges are those whose keys are not known yet.
 class Queue final : public Driver {
  public:
-  // Stops when at least `most_removed` triangles have gone.
+  // Stops when at least `most_removed` triangles have been removed.
   Queue(Zone& zone, std::uint64_t most_removed = ~std::uint64_t{0})
       : zone_(zone), decider_(zone), most_removed_(most_removed) {}
 

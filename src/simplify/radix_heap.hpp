@@ -1,6 +1,6 @@
 // Monotone priority queue of edges (radix heap: Ahuja, Mehlhorn, Orlin and Tarjan, 1990).
 //
-// Nothing is pushed below the last cost popped, so an entry only moves to lower buckets, at most 32 times, and a push
+// No entry is pushed below the last cost popped. So an entry only moves to lower buckets, at most 32 times, and a push
 // is an append. Entries come out in groups of equal cost, which the caller orders by tie.
 #pragma once
 
@@ -28,7 +28,7 @@ class RadixHeap {
   // cost must not be below the cost of the last group popped.
   void push(std::uint32_t cost, std::uint32_t edge) { buckets_[bucket_of(cost)].push_back({cost, edge}); }
 
-  // Moves all entries of the least cost into `group`. False when there are none left.
+  // Moves all entries of the least cost into `group`. Returns false when there are none left.
   bool pop_group(std::vector<Entry>& group) {
     group.clear();
     if (buckets_[0].empty() && !refill()) return false;

@@ -1,9 +1,9 @@
 // Bulk rounds, pass by pass: what a device does with one thread for every item of a list, and the schedule `rounds` on
 // processors. Docs/determinism.md has the argument.
 //
-// A round: list the vertices near which something has changed; of their least edges pick those that are local minima;
-// decide all of these, as their stars share no triangle; renew the turns of the vertices touched, which are the list of
-// changes for the next round. The order of a list means nothing.
+// A round lists the vertices near which something has changed, picks the local minima among their least edges, decides
+// all of these, as their stars share no triangle, and renews the turns of the vertices touched. These vertices are the
+// list of changes for the next round. The order of a list means nothing.
 #pragma once
 
 #include "simplify/decide.hpp"
@@ -11,7 +11,7 @@
 
 namespace isoweave {
 
-// Filled by many threads at once, read in the next pass.
+// A list that many threads fill at once and that the next pass reads.
 struct IndexList {
   Index* items = nullptr;  // room for as many as can be pushed
   std::uint32_t* size = nullptr;
@@ -31,7 +31,7 @@ struct RoundPasses {
   IndexList candidates;            // vertices whose least edge may have become a local minimum
   IndexList minima;                // edges
 
-  // 1: candidates, from the n-th vertex changed: it and its neighbours.
+  // Pass 1 lists candidates: the n-th changed vertex and its neighbours.
   ISOWEAVE_HD void list_candidates(std::int64_t n) const {
     const Index v = changed[n];
     list(v, kCandidate, candidates);
@@ -44,8 +44,8 @@ struct RoundPasses {
     });
   }
 
-  // 2: the least edge of the n-th candidate, if it is a local minimum. An edge with two candidates for ends is looked
-  // at from the smaller one.
+  // Pass 2 picks the least edge of the n-th candidate, if it is a local minimum. Where both ends of an edge are
+  // candidates, the end with the smaller index looks at it.
   ISOWEAVE_HD void pick_minimum(std::int64_t n) const {
     const Index v = candidates[n];
     const Index edge = zone.turns[v].edge;
@@ -55,7 +55,7 @@ struct RoundPasses {
     if (comes_first(v, v) && comes_first(v, other)) minima.push(edge);
   }
 
-  // 3: decides the n-th minimum, and lists the vertices at whose edges something has changed.
+  // Pass 3 decides the n-th minimum, and lists the vertices at whose edges something has changed.
   ISOWEAVE_HD void decide(std::int64_t n, DecisionCounts& counts) const {
     BasicDecider<Arithmetic> decider(zone);
     decider.look_at(minima[n]);
@@ -74,7 +74,7 @@ struct RoundPasses {
     counts += decider.counts();
   }
 
-  // 4: the turn of the n-th vertex changed.
+  // Pass 4 renews the turn of the n-th changed vertex.
   ISOWEAVE_HD void renew(std::int64_t n) const {
     const Index v = changed[n];
     store_relaxed(marks[v], 0);
@@ -85,7 +85,7 @@ struct RoundPasses {
     }
   }
 
-  // 4, too: candidates of the next round are listed anew.
+  // Pass 4 also clears the marks of candidates, as the next round lists its own.
   ISOWEAVE_HD void forget_candidate(std::int64_t n) const { store_relaxed(marks[candidates[n]], 0); }
 
  private:
@@ -97,7 +97,7 @@ struct RoundPasses {
     if (has_turn(zone, v)) mark(v, as, in);
   }
 
-  // No neighbour of `end` has a turn that comes before v's.
+  // Whether no neighbour of `end` has a turn that comes before v's.
   ISOWEAVE_HD bool comes_first(Index v, Index end) const {
     Star star;
     star.gather(zone, end);

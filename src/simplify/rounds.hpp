@@ -1,4 +1,4 @@
-// The bulk-synchronous schedule: what a device does, on processors.
+// The bulk-synchronous schedule: the rounds of a device, on processors.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ class Rounds final : public Driver {
   std::vector<std::uint32_t> marks_;
   List changed_, candidates_, minima_;
   DecisionCounts counts_;
-  CostBits limit_ = kRetiredCost;  // of the run before: turns beyond it have not been kept
+  CostBits limit_ = kRetiredCost;  // of the last run: turns beyond it have not been kept
   std::uint64_t rounds_ = 0;
 };
 

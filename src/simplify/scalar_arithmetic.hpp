@@ -1,5 +1,5 @@
-// The arithmetic of a decision one number after the other: what one thread of a device does. Every sum has the order of
-// the kernels in lanes, and the same bits.
+// The arithmetic of a decision one number after the other, for one thread of a device. Every sum has the order of the
+// kernels in lanes, and gives the same bits.
 #pragma once
 
 #include <cmath>
@@ -10,10 +10,11 @@ namespace isoweave {
 
 class ScalarArithmetic {
  public:
-  // Where the neighbours of a vertex lie, measured from it. Slot n is the face between neighbours n and n + 1.
+  // The faces around a vertex, with places measured from the vertex. Slot n holds the face between neighbours n and n +
+  // 1.
   class Fan {
    public:
-    // Leaves a face out of what is computed from now on.
+    // Leaves a face out of all later computations.
     ISOWEAVE_HD void drop(std::size_t slot) { dropped_ |= std::uint64_t{1} << slot; }
 
    private:

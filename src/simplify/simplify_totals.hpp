@@ -1,4 +1,4 @@
-// What simplification counts.
+// The counts of a simplification.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct DecisionCounts {
   }
 };
 
-// What final vertices are seen to be when their stars are whole for the last time.
+// The defects that final vertices show while their stars are whole for the last time.
 struct SurfaceDefects {
   std::uint64_t nonmanifold_edges = 0;
   std::uint64_t nonmanifold_vertices = 0;

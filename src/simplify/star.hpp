@@ -8,10 +8,10 @@
 
 namespace isoweave {
 
-// Counter-clockwise: face n lies between neighbours n and n + 1 (modulo the number of neighbours in a closed star; an
-// open star has one neighbour more than faces).
+// The faces and neighbours of a vertex, counter-clockwise. Face n lies between neighbours n and n + 1 (modulo the
+// number of neighbours in a closed star; an open star has one neighbour more than faces).
 struct Star {
-  // Stars with more faces cannot merge within kMaxValence and are gathered up to here only.
+  // A star with more faces cannot merge within kMaxValence. It is gathered up to here only.
   static constexpr int kCapacity = 28;
   static constexpr int kPadding = 16;
   static constexpr int kRoom = 64;
@@ -24,7 +24,7 @@ struct Star {
   std::array<Index, kRoom> out;  // half-edge of face n that starts at the vertex
   std::array<Index, kRoom> neighbour;
 
-  // A closed star starts with half-edge `start`, an open one at its border.
+  // Gathers the star of v. A closed star starts with half-edge `start`, an open one at its border.
   ISOWEAVE_HD void gather(const ZoneView& zone, Index v, Index start) {
     vertex = v;
     walk(zone, start);
@@ -33,9 +33,9 @@ struct Star {
 
   ISOWEAVE_HD void gather(const ZoneView& zone, Index v) { gather(zone, v, zone.vertices[v].half_edge); }
 
-  // The star that is left of two closed ones that start at the edge between them, when that edge collapses into the
-  // vertex of a: from the first opposite vertex around a to the second, and around b back to the first. Copies of fixed
-  // size: how many there are cannot be predicted.
+  // Makes the star that is left of two closed stars, a and b, that start at the edge between them, when that edge
+  // collapses into the vertex of a: from the first opposite vertex around a to the second, and around b back to the
+  // first. Copies have a fixed size, as the number of faces cannot be predicted.
   ISOWEAVE_HD void join(const Star& a, const Star& b) {
     vertex = a.vertex;
     const auto from_a = static_cast<std::size_t>(a.faces - 2);
@@ -58,15 +58,15 @@ struct Star {
     return n;
   }
 
-  // What lies past the last neighbour, so that loops can take whole vectors.
+  // Fills the places past the last neighbour, so that loops can take whole vectors.
   ISOWEAVE_HD void pad(Index with) {
     for (std::size_t n = 0; n < kPadding; ++n) neighbour[count() + n] = with;
   }
 
   ISOWEAVE_HD std::size_t count() const { return static_cast<std::size_t>(neighbours); }
 
-  // Calls visit(w) for every neighbour, those past the capacity included, until it answers false. Tells whether it
-  // never did.
+  // Calls visit(w) for every neighbour, also those past the capacity, until visit() answers false. Returns whether it
+  // never answered false.
   template <class Visit>
   ISOWEAVE_HD bool each_neighbour(const ZoneView& zone, const Visit& visit) const {
     for (int n = 0; n < neighbours; ++n) {

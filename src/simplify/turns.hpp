@@ -25,7 +25,7 @@ ISOWEAVE_HD inline void walk_edges(const ZoneView& zone, Index v, const Offer& o
   if (!exists(h)) offer(previous(before));
 }
 
-// The same for the vertex of a star that has not overflowed.
+// Offers every edge at the vertex of a star that has not overflowed.
 template <class Offer>
 ISOWEAVE_HD inline void walk_edges(const ZoneView&, const Star& star, const Offer& offer) {
   const auto faces = static_cast<std::size_t>(star.faces);
@@ -58,16 +58,16 @@ ISOWEAVE_HD inline void set_turn(const ZoneView& zone, Index v, const Around& ar
 
 }  // namespace turn_rules
 
-// Sets v's turn from its edges. v must be complete or final and still there. Whoever does not own v may read its key
-// meanwhile, as an atomic.
+// Sets v's turn from its edges. v must be complete or final and must not have been merged into another vertex. A thread
+// that does not own v may read the key of the turn meanwhile, as an atomic.
 ISOWEAVE_HD inline void renew_turn(const ZoneView& zone, Index v) { turn_rules::set_turn(zone, v, v); }
 
-// The same for the vertex of a star that has just been gathered.
+// Sets the turn of the vertex of a star that has just been gathered.
 ISOWEAVE_HD inline void renew_turn(const ZoneView& zone, const Star& star) {
   star.overflow ? turn_rules::set_turn(zone, star.vertex, star.vertex) : turn_rules::set_turn(zone, star.vertex, star);
 }
 
-// The turn of a vertex in whatever state it is.
+// Sets the turn of a vertex in any state.
 ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
   if (zone.states[v] == VertexState::kIncomplete || zone.states[v] == VertexState::kDeferred) {
     publish(zone.turn_keys[v], kUnknownTurn);
@@ -80,7 +80,7 @@ ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
 
 ISOWEAVE_HD inline bool is_unknown(Key turn) { return cost_of(turn) == kUnknownCost; }
 
-// There is an edge to decide at v, and its key is known.
+// Whether v has an edge to decide whose key is known.
 ISOWEAVE_HD inline bool has_turn(const ZoneView& zone, Index v) {
   const CostBits cost = cost_of(zone.turn_keys[v]);
   return cost != kUnknownCost && cost <= zone.limit;
@@ -91,14 +91,14 @@ ISOWEAVE_HD inline Index other_end(const ZoneView& zone, Index edge, Index v) {
   return origin == v ? zone.destination(edge) : origin;
 }
 
-// v and w have the same least edge; v has a turn.
+// Whether v and w have the same least edge, where v has a turn.
 ISOWEAVE_HD inline bool same_turn(const ZoneView& zone, Index v, Index w) {
   if (zone.turn_keys[v] != zone.turn_keys[w]) return false;
   const Index edge = zone.turns[w].edge;
   return edge != kNone && (edge == zone.turns[v].edge || edge == zone.twin(zone.turns[v].edge));
 }
 
-// v's turn comes before w's, which is known.
+// Whether v's turn comes before w's, which is known.
 ISOWEAVE_HD inline bool earlier(const ZoneView& zone, Index v, Index w) {
   if (zone.turn_keys[v] != zone.turn_keys[w]) return zone.turn_keys[v] < zone.turn_keys[w];
   const Index a = zone.turns[v].edge;

@@ -1,4 +1,4 @@
-// How the workers of a parallel schedule share what is left to do, and end together.
+// How the workers of a parallel schedule share the work that is left, and end together.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,10 @@
 
 namespace isoweave {
 
-// Vertices that workers with much to do leave to those with nothing to do.
+// Vertices that busy workers leave to idle ones.
 class WorkPool {
  public:
-  // One worker more is at work. It is not while it waits in take(), nor when it has left.
+  // Counts one more worker as busy. A worker is not busy while it waits in take(), nor after it has left.
   void enter() {
     const std::lock_guard lock(mutex_);
     ++working_;
@@ -28,7 +28,7 @@ class WorkPool {
 
   bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
 
-  // Takes the older half of a stack.
+  // Takes the older half of a busy worker's stack.
   void give(std::vector<Index>& todo) {
     const auto half = todo.begin() + static_cast<std::ptrdiff_t>(todo.size() / 2);
     {
@@ -40,7 +40,7 @@ class WorkPool {
     changed_.notify_one();
   }
 
-  // Waits for something to do. False when nobody is at work any more.
+  // Waits for vertices to work on. Returns false when no worker is busy any more.
   bool take(std::vector<Index>& todo) {
     if (failed()) return false;
     std::unique_lock lock(mutex_);
@@ -56,7 +56,8 @@ class WorkPool {
     return true;
   }
 
-  // A worker has thrown. It may hold vertices for ever: the others end as soon as they see it.
+  // Tells the others that a worker has thrown. It may hold vertices for ever, so the others end as soon as they see
+  // this.
   void fail() {
     failed_.store(true, std::memory_order_relaxed);
     const std::lock_guard lock(mutex_);
@@ -70,11 +71,11 @@ class WorkPool {
   std::vector<Index> vertices_;
   std::size_t working_ = 0;
   std::size_t waiting_ = 0;
-  std::atomic<bool> wanted_{false};  // somebody waits, and nothing is there
+  std::atomic<bool> wanted_{false};  // a worker waits, and the pool is empty
   std::atomic<bool> failed_{false};
 };
 
-// A worker's time at work, however it ends.
+// The time that a worker is busy, however it ends.
 struct WorkingTime {
   explicit WorkingTime(WorkPool& where) : pool(where) { pool.enter(); }
   ~WorkingTime() {

@@ -57,7 +57,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   if (extracted_surface_) know_more(piece, first_triangle, executor);
   first_unsettled_ = first_triangle;
   column_starts_.assign(order_.column_starts().begin(), order_.column_starts().end());
-  if (piece.incomplete.empty()) {  // nothing is left to link to
+  if (piece.incomplete.empty()) {  // no later piece links to this one
     order_ = {};
     first_side_ = {};
     next_side_ = {};
@@ -66,7 +66,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   settle_vertices(on_front, executor);
 }
 
-// To be called when an array has changed its size.
+// Shows the arrays in the view. Must be called when an array has changed its size.
 void Zone::show_arrays() {
   const auto show = [](auto& view, auto& array) { view = {array.data(), array.size()}; };
   show(vertices, vertex_array_);
@@ -98,7 +98,7 @@ void Zone::settle_all() {
   settled.first_new = settled.end = static_cast<Index>(vertices.size());
 }
 
-// What a source promises of each piece.
+// Checks the promises of a source about a piece.
 void Zone::check_piece(const SurfacePiece& piece) const {
   const std::size_t known = piece.inherited + piece.positions.size();
   ISOWEAVE_CHECK(piece.inherited == front_.size());
@@ -111,7 +111,8 @@ void Zone::check_piece(const SurfacePiece& piece) const {
   for (const std::uint32_t v : piece.incomplete) ISOWEAVE_CHECK(v < known);
 }
 
-// The vertices that were incomplete, those beside them, those that were deferred, and the new ones up to `end`.
+// Lists the settled vertices: those that were incomplete, those beside them, those that were deferred, and the new ones
+// up to `end`.
 void Zone::list_settled(Index end) {
   settled.clear();
   settled.first_new = static_cast<Index>(vertices.size());
@@ -168,7 +169,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   countdown.begin(end);
 }
 
-// Their half-edges are written where their vertices are linked.
+// Makes room for the new triangles. Their half-edges are written where their vertices are linked.
 void Zone::add_triangles(const Executor& executor) {
   const Index first = triangle_count();
   triangle_array_.resize(first + order_.triangles().size());
@@ -176,7 +177,7 @@ void Zone::add_triangles(const Executor& executor) {
   touch(std::span(triangle_array_.begin() + first, triangle_array_.end()), executor);
 }
 
-// Shows the new triangles to the extracted surface, which forgets what lies too far below all that is held.
+// Shows the new triangles to the extracted surface, which forgets the triangles too far below everything that is held.
 void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Vertex& vertex : vertices) {
@@ -195,7 +196,7 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
   extracted_surface_->append(corners, piece.complete_below);
 }
 
-// Vertices that later pieces do not add to are complete now: they get their quadrics, or are locked.
+// Completes the vertices that later pieces do not add to: they get their quadrics, or are locked.
 void Zone::settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor) {
   std::atomic<std::uint64_t> newly_locked{0};
   executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
@@ -233,7 +234,7 @@ void Zone::initial_quadric(Star& star) {
   if (options.normals_count) give_normal_quadric(*this, v);
 }
 
-// Edges that get their keys together.
+// A batch of edges that get their keys together.
 struct Zone::EdgeBatch {
   static constexpr std::size_t kCapacity = 64;
 
@@ -281,7 +282,8 @@ void Zone::settle_edges(TriangleRange range, std::vector<Index>& unkeyed) {
   EdgeBatch batch;
   for (Index t = range.begin; t < range.end; ++t) {
     triangles[t].levels = 0;
-    // Which sides stand for their edges cannot be predicted: all are written, and passed over if they do not.
+    // The sides that represent their edges cannot be predicted. So every side is written, and the next one overwrites
+    // it if it does not represent its edge.
     Index edges[3];
     std::size_t count = 0;
     for (Index c = 0; c < 3; ++c) {
@@ -302,7 +304,7 @@ void Zone::set_aside(std::span<const Index> unkeyed) {
   first_unsettled_ = triangle_count();
 }
 
-// False when an end is incomplete. Else the edge gets its tie, and a key now or with the rest of the batch.
+// Returns false when an end is incomplete. Else gives the edge its tie, and its key now or with the rest of the batch.
 bool Zone::settle_edge(Index h, EdgeBatch& batch) {
   const Index a = origin(h);
   const Index b = destination(h);
@@ -330,7 +332,7 @@ void Zone::give_keys(EdgeBatch& batch) {
 }
 
 void Zone::compact(const Executor& executor) {
-  // A vertex is held as long as a triangle uses it, or will.
+  // A vertex stays as long as a triangle uses it, or a later piece will.
   std::vector<std::uint8_t> used(vertices.size(), 0);
   const auto use = [&](Index v) { std::atomic_ref(used[v]).store(1, std::memory_order_relaxed); };
   for (const Index v : front_) use(v);

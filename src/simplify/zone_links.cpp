@@ -1,4 +1,4 @@
-// How triangles come together: twins, and vertices around which they do not form one fan.
+// How triangles are linked: half-edges get their twins, and vertices whose faces are not one fan are found.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,9 +19,9 @@ constexpr std::uint32_t kNoFan = std::uint32_t{1} << 31;  // beside a number of 
 
 using Four [[gnu::vector_size(16), gnu::may_alias]] = std::uint32_t;
 
-// The sides of edges at a vertex that run one way.
+// The sides of triangles that run one way at a vertex: all leave it, or all arrive.
 struct Sides {
-  static constexpr std::size_t kRoom = 16;  // a fan's hub has more: they are counted only
+  static constexpr std::size_t kRoom = 16;  // a fan's hub has more sides: they are only counted
 
   alignas(Four) std::array<Index, kRoom> other_end;
   std::array<Index, kRoom> half_edge;
@@ -40,21 +40,23 @@ struct Sides {
   const Four* ends() const { return reinterpret_cast<const Four*>(other_end.data()); }
 };
 
-// Those that leave a vertex and those that arrive there. A triangle has one of each, at the same place in the lists.
+// The sides that leave a vertex and those that arrive there. A triangle has one of each, at the same place in the
+// lists.
 struct SidesAt {
   static constexpr std::uint8_t kNoSide = Sides::kRoom;
 
   Sides leaving;
   Sides arriving;
-  std::array<std::uint8_t, Sides::kRoom> after;  // of the side that arrives: the one that leaves on its edge
+  std::array<std::uint8_t, Sides::kRoom> after;  // for each side that arrives: the side that leaves on its edge
 
   std::size_t most() const { return std::max(leaving.count, arriving.count); }
 };
 
 bool several(std::uint32_t bits) { return (bits & (bits - 1)) != 0; }
 
-// Gives the sides that leave a vertex their twins, which arrive there. see_bad(half-edge) is told of an edge that has
-// two sides that leave, or two that arrive. All are compared with all, by bits: which fit cannot be predicted.
+// Makes twins of the sides that leave a vertex and those that arrive there. see_bad(half-edge) is told of an edge with
+// two sides that leave, or two that arrive. All sides are compared with all, by bits, as the pairs that fit cannot be
+// predicted.
 template <std::size_t kLanes, class SeeBad>
 void link_leaving(const ZoneView& zone, SidesAt& sides, const SeeBad& see_bad) {
   const Sides& leaving = sides.leaving;
@@ -98,8 +100,8 @@ class Zone::Linker {
     list_sides(executor);
   }
 
-  // The triangles of the column that the n-th vertex of the piece, a new one, is in; `column` is one that is not behind
-  // that, and is moved on.
+  // The triangles of the column of the n-th vertex of the piece, a new one. `column` must not lie behind that column,
+  // and is moved on to it.
   TriangleRange column_of(Index n, std::size_t& column) const {
     if (n < inherited_) return {};
     while (zone_.order_.vertex_column_starts()[column + 1] <= n - inherited_) ++column;
@@ -108,8 +110,8 @@ class Zone::Linker {
     return {first + static_cast<Index>(starts[column]), first + static_cast<Index>(starts[column + 1])};
   }
 
-  // The n-th vertex of the piece, v in the zone: its sides get their twins, or are added to the bad ones. If its faces
-  // are one closed fan, and all in this piece, that is its star.
+  // Links the n-th vertex of the piece, v in the zone: its sides get their twins, or are added to the bad ones. If its
+  // faces are one closed fan, and all of them are in this piece, they become `star`.
   bool link(Index n, Index v, TriangleRange own_column, std::vector<Index>& bad, Star& star) const {
     SidesAt sides;
     Index first = kNone;
@@ -150,8 +152,8 @@ class Zone::Linker {
   }
 
  private:
-  // A triangle is listed at its corners, with the number of the half-edge that leaves there, counted from the first new
-  // one. Known sides follow, each at both of its ends.
+  // Lists the sides at every vertex. A triangle is listed at its corners, by the half-edge that leaves there, counted
+  // from the first new one. Known sides follow, each at both of its ends.
   void list_sides(const Executor& executor) {
     const VertexOwners owners(executor, triangles_);
     owners.for_parts(zone_.first_side_.size(), [&](const VertexOwners::Part& part) {
@@ -185,7 +187,7 @@ class Zone::Linker {
     }
   }
 
-  // More sides than are compared with each other: they are sorted.
+  // Sorts the sides of a vertex that has too many of them to compare all with all.
   template <class SeeBad>
   void link_hub(Index n, const SeeBad& see_bad) const {
     std::vector<EdgeSide> sides;
@@ -198,8 +200,8 @@ class Zone::Linker {
         sides, [&](Index leaving, Index arriving) { zone_.set_twin(leaving, arriving); }, see_bad);
   }
 
-  // As star.gather(zone, v) would, from the sides of a vertex whose triangles are all new. False where they are not one
-  // closed fan.
+  // Gathers the star of a vertex from its sides, where all its triangles are new, as star.gather(zone, v) would.
+  // Returns false where the faces are not one closed fan.
   bool gather(const SidesAt& sides, Index v, Star& star) const {
     const Sides& leaving = sides.leaving;
     if (leaving.count == 0) return false;
@@ -225,12 +227,12 @@ class Zone::Linker {
   const std::span<const std::array<std::uint32_t, 3>> triangles_;  // sorted
   const Index first_new_;
   const Index first_known_;
-  const std::vector<std::array<Index, 3>> known_;  // their ends' numbers in the piece, and half-edge
+  const std::vector<std::array<Index, 3>> known_;  // numbers of the ends in the piece, and the half-edge
 };
 
-// Finds twins, and what each vertex of the piece has to know of its triangles. The ends of a bad edge are marked: what
-// its sides are linked to is of no matter. Vertices that this makes complete get their quadrics while their faces are
-// at hand, if they can.
+// Finds the twins of a piece, and the facts about its triangles that each vertex needs. The ends of a bad edge are
+// marked; its sides may be linked to anything. Vertices that are complete now get their quadrics while their faces are
+// at hand, if possible.
 void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,
                 const Executor& executor) {
   const Linker linker(*this, piece, first_triangle, executor);
@@ -256,7 +258,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const
   }
 }
 
-// A walk both ways around its vertex meets all faces, and no edge there is bad.
+// Whether the faces of a vertex are one fan: a walk both ways around it meets all of them, and no edge there is bad.
 bool Zone::is_one_fan(const Star& star) const {
   const std::uint32_t corners = corner_array_[star.vertex];
   if (!star.border && !star.overflow) return static_cast<std::uint32_t>(star.faces) == corners;
@@ -270,8 +272,9 @@ bool Zone::is_one_fan(const Star& star) const {
   return faces == corners;
 }
 
-// The half-edges that a piece can bring another side for, with the numbers that it gives to their ends: only a triangle
-// between incomplete vertices can. Where they have a twin already, only a piece that is not a manifold.
+// The half-edges that a piece can bring a twin for, with the numbers that the piece gives to their ends. Only a
+// triangle between incomplete vertices has such half-edges. One that has a twin already can get another side only from
+// a piece that is not a manifold.
 std::vector<std::array<Index, 3>> Zone::known_sides_of(const SurfacePiece& piece) const {
   Array<Index> number;  // of incomplete vertices
   number.resize(settled.first_new);

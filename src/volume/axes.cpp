@@ -24,7 +24,7 @@ constexpr double kLargestStep = 1e30;
 
 bool is_usable_step(double length) { return length >= kSmallestStep && length <= kLargestStep; }
 
-// Some unit vector orthogonal to `a`: against the world axis that `a` leans to least.
+// A unit vector orthogonal to `a`: across the world axis that `a` leans to least.
 Vector3 any_normal(const Vector3& a) {
   std::size_t least = 0;
   for (std::size_t axis = 1; axis < 3; ++axis) {

@@ -16,8 +16,8 @@ struct Axes {
   Vector3 origin{0, 0, 0};
 };
 
-// Scaled by a power of two, so that squares neither vanish nor overflow; no formula of a standard library. Infinite or
-// NaN where a component is.
+// The length of a vector. It is scaled by a power of two, so that squares neither vanish nor overflow, and no formula
+// of a standard library is used. Infinite or NaN where a component is.
 double length_of(const Vector3& v);
 
 // Splits steps into spacing (their lengths) and unit directions. Throws BadInput naming `path` when a number is not
@@ -28,7 +28,7 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
 Vector3 normal_of(const Vector3& a, const Vector3& b);
 
 // Throws std::invalid_argument, naming the path, unless steps are usable, the other numbers are finite, and samples
-// have a slope. What was opened from a file is; a caller's own source may not be.
+// have a slope. A volume opened from a file is usable; a caller's own source may not be.
 void require_usable(const VolumeInfo& volume);
 
 // Cube root by Newton's method: additions, multiplications and divisions only, so equal on every machine.

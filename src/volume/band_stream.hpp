@@ -1,5 +1,5 @@
-// Samples that are stored in blocks several slices deep: a band of slices, as deep as a block, is held at a time, so
-// that every block is decoded once.
+// Streams of samples that are stored in blocks several slices deep. A band of slices, as deep as a block, is held at a
+// time, so that every block is decoded once.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class BandStream : public ByteStream {
   // `depth`: slices of a band, at least 1; bands begin at its multiples.
   BandStream(std::int64_t slices, std::size_t slice_bytes, std::int64_t depth);
 
-  // Makes slices [first, first + count), one band or the last piece of one.
+  // Fills a band, or the last piece of one, with slices [first, first + count).
   virtual void fill(std::int64_t first, std::int64_t count, std::span<std::byte> band) = 0;
 
  private:

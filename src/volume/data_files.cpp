@@ -37,7 +37,7 @@ std::uint64_t bytes_behind(std::int64_t byte_skip) { return static_cast<std::uin
 
 std::unique_ptr<ByteStream> open_plain(const FilePtr& file, std::uint64_t begin, std::int64_t byte_skip,
                                        std::uint64_t bytes) {
-  // Differences, not sums: the numbers come from a header and may be as large as they like.
+  // Takes differences, not sums: the numbers come from a header and may be of any size.
   const std::uint64_t size = byte_skip >= 0 ? file->size() : file->exact_size();
   const std::uint64_t available = size - std::min(begin, size);
   const std::uint64_t aside = byte_skip >= 0 ? static_cast<std::uint64_t>(byte_skip) : bytes_behind(byte_skip);
@@ -55,7 +55,7 @@ std::unique_ptr<ByteStream> open_compressed(const FilePtr& file, std::uint64_t b
   check_plausible(file->path(), bytes, file->size() - std::min(begin, file->size()), kDeflateRatio);
   std::uint64_t skip = static_cast<std::uint64_t>(std::max<std::int64_t>(byte_skip, 0));
   if (byte_skip < 0) {
-    // Only inflating everything tells where the end is.
+    // The end of a packed file is known only when everything has been inflated.
     const std::uint64_t total = inflated(file, begin)->skip(std::numeric_limits<std::uint64_t>::max());
     const std::uint64_t aside = bytes_behind(byte_skip);
     if (aside > total || bytes > total - aside) {

@@ -39,8 +39,8 @@ DataFiles numbered_files(const std::string& header_path, const std::string& patt
 std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begin, const DataLayout& layout,
                                          std::uint64_t bytes);
 
-// The same for the only file of a volume. What lies behind the samples, as where a header is wrong in its sizes, is
-// noted unless only reading would tell.
+// Opens the samples in the only file of a volume. Bytes behind the samples, as where a header's sizes are wrong, are
+// noted unless only reading would find them.
 std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
                                            const DataLayout& layout, std::uint64_t bytes);
 

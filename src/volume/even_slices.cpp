@@ -73,7 +73,7 @@ class EvenSliceStream final : public ByteStream {
     slice_ = {};
   }
 
-  // A slice of the input, read unless it is held; empty when the input ends before it.
+  // A slice of the input, which is read unless it is held. Empty when the input ends before it.
   std::span<const std::byte> original(std::int64_t number) {
     Held& held = held_[static_cast<std::size_t>(number % 2)];
     if (held.number == number) return held.samples;

@@ -1,4 +1,4 @@
-// Slices that do not lie at an even distance: what is said of them, and a stream of slices that do, made on the way.
+// Slices at uneven distances: what is reported about them, and a stream that resamples them at an even distance.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace isoweave {
 
-// Where slices lie along the normal of their planes, ascending.
+// The places of slices along the normal of their planes, ascending.
 struct SlicePlaces {
   std::string path;  // of all of them, for messages
   std::vector<double> depths;
@@ -22,7 +22,8 @@ struct SlicePlaces {
   std::string unit = " mm";                      // of the depths, behind lengths in messages
 };
 
-// Slices at an even distance, the first and the last of them in the places of the first and the last that there are.
+// A grid of slices at an even distance. Its first and last slice lie where the first and the last slice of the input
+// do.
 struct EvenGrid {
   struct Place {
     std::int64_t lower = 0;
@@ -38,13 +39,13 @@ struct EvenGrid {
   Place place(std::int64_t slice) const;
 };
 
-// The grid that slices are read on, and notes about slices that seem to be missing or do not lie on it. Throws BadInput
-// when two slices lie in one place; when they are uneven and to be refused; and when a gap is much too wide to be
-// filled.
+// The grid that slices are read on. Adds notes about slices that seem to be missing or do not lie on the grid. Throws
+// BadInput when two slices lie in one place, when slices are uneven and uneven ones are refused, and when a gap is much
+// too wide to be filled.
 EvenGrid even_grid(const SlicePlaces& places, UnevenSlices uneven, std::vector<std::string>& notes);
 
-// The slices of a grid, linear between the two nearest ones of `slices`; integers are rounded to the nearest, halves
-// upwards. Holds two slices and the one between them that is handed out.
+// The slices of a grid, each linear between the two nearest slices of `slices`. Integers are rounded to the nearest,
+// halves upwards. Holds two slices and the one between them that is handed out.
 std::unique_ptr<ByteStream> even_slices(std::unique_ptr<ByteStream> slices, const EvenGrid& grid, SampleType type,
                                         std::size_t slice_bytes);
 

@@ -39,7 +39,7 @@ Mapping mapping_of(const FieldKind& kind, SampleType type) {
   Mapping mapping;
   mapping.scale = 255 / (kind.high - kind.low);
   mapping.shift = -kind.low * mapping.scale;
-  // The same 256 steps, where they fit.
+  // The type holds the same 256 steps, where they fit.
   mapping.base = type == SampleType::kInt8 ? -128 : 0;
   return mapping;
 }

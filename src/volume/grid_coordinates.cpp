@@ -17,7 +17,7 @@
 namespace isoweave {
 namespace {
 
-// Samples in the machine's byte order. It is read by whole ones.
+// Samples in the machine's byte order. Callers read whole samples.
 class SwappedStream final : public ByteStream {
  public:
   SwappedStream(std::unique_ptr<ByteStream> samples, std::size_t bytes_each)
@@ -36,7 +36,7 @@ class SwappedStream final : public ByteStream {
   std::size_t bytes_each_;
 };
 
-// The middles between points; a single point is its own.
+// The middles between points. A single point is its own middle.
 std::vector<double> middles(const std::vector<double>& points) {
   if (points.size() < 2) return points;
   std::vector<double> places;

@@ -17,7 +17,7 @@ using GridCoordinates = std::array<std::vector<double>, 3>;  // of the points al
 // More along an axis are refused.
 inline constexpr std::uint64_t kMostCoordinates = std::uint64_t{1} << 24;
 
-// So many coordinates, stored as samples of a type.
+// Reads so many coordinates, stored as samples of a type.
 std::vector<double> read_coordinates(ByteStream& stream, SampleType type, bool swap_bytes, std::uint64_t count,
                                      const std::string& path);
 

@@ -30,7 +30,7 @@ class HalfStream final : public ByteStream {
   std::size_t read(std::span<std::byte> out) override {
     std::size_t done = hand_out(out);
     done += read_whole(out.subspan(done));
-    // Less than one is asked for: it is kept.
+    // The caller asks for less than one float: the rest of it is kept.
     std::array<std::byte, kHalfBytes> half{};
     if (done == out.size() || halves_->read(half) < kHalfBytes) return done;
     convert(half.data(), rest_.data(), swap_);
@@ -94,7 +94,7 @@ float float_of_half(std::uint16_t half) {
   const std::uint32_t sign = static_cast<std::uint32_t>(half >> 15U) << 31U;
   const std::uint32_t exponent = half >> 10U & kExponent;
   const std::uint32_t mantissa = half & kMantissa;
-  // Below the least exponent: a multiple of 2^-24.
+  // Exponents below the least one: a multiple of 2^-24.
   if (exponent == 0) return std::copysign(static_cast<float>(mantissa) * 0x1p-24F, sign == 0 ? 1.0F : -1.0F);
   const std::uint32_t wide = exponent == kExponent ? 0xff : exponent + kBias;
   return std::bit_cast<float>(sign | wide << 23U | mantissa << kShift);
@@ -107,7 +107,7 @@ std::optional<std::uint16_t> half_of(float value) {
   const float size = std::abs(value);
   if (std::isnan(value)) return kNan;
   if (std::isfinite(value) && size > float_of_half(kLargest)) return std::nullopt;
-  // Their bits ascend as they do.
+  // The bits of halves ascend with their values.
   std::uint16_t below = 0;
   for (std::uint16_t bit = kHighestBit; bit > 0; bit = static_cast<std::uint16_t>(bit >> 1U)) {
     const auto tried = static_cast<std::uint16_t>(below | bit);

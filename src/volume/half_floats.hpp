@@ -26,10 +26,10 @@ std::string_view stored_type_name(const StoredType& type);
 
 float float_of_half(std::uint16_t half);
 
-// The nearest one, the even one of two; nothing for finite numbers beyond the largest.
+// The half nearest to a value, the even one of two. Nothing for finite numbers beyond the largest half.
 std::optional<std::uint16_t> half_of(float value);
 
-// Makes a volume of uint16, the bits of halves as they are stored, one of float32.
+// Turns a volume of uint16, the bits of halves as they are stored, into one of float32.
 void read_halves(OpenedVolume& volume);
 
 }  // namespace isoweave

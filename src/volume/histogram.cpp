@@ -34,10 +34,10 @@ bool is_nan(T value) {
   return false;
 }
 
-// Which bin of width 2^exponent holds a value; exact, as the width is a power of two.
+// The number of the bin of width 2^exponent that holds a value. It is exact, as the width is a power of two.
 double bin_of(double value, int exponent) { return std::floor(std::ldexp(value, -exponent)); }
 
-// Bins of this width cover [low, high], and their numbers are exact in a double.
+// Whether bins of this width cover [low, high] with numbers that are exact in a double.
 bool fits(double low, double high, int exponent) {
   const double largest = std::max(std::abs(low), std::abs(high));
   return std::ldexp(largest, -exponent) < std::ldexp(1.0, kMantissaBits) &&
@@ -100,7 +100,7 @@ void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
   }
 }
 
-// Makes [low, high] and all that was counted before fit into the bins.
+// Widens and moves the bins until [low, high] and all values counted before fit into them.
 void HistogramCounter::make_room(double low, double high) {
   const bool is_first = min_ > max_;
   if (!is_first && low >= min_ && high <= max_) return;
@@ -154,7 +154,7 @@ Histogram HistogramCounter::histogram(double slope, double intercept) const {
     const std::uint64_t samples = counts_[static_cast<std::size_t>(n)];
     if (samples == 0) continue;
     const double stored = std::ldexp(static_cast<double>(first_ + n) + inside, exponent_);
-    // Halves, so that the width of the whole range of doubles is still a number.
+    // Takes halves, so that the width of the whole range of doubles is still a number.
     const double width = max_ / 2 - min_ / 2;
     const double part = width > 0 ? (stored / 2 - min_ / 2) / width : 0;
     const double place = std::clamp(std::floor((slope < 0 ? 1 - part : part) * kBins), 0.0, kBins - 1);

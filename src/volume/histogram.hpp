@@ -11,7 +11,8 @@
 
 namespace isoweave {
 
-// In values: slope and intercept of the volume are applied. Infinities are counted, but lie outside the range.
+// The distribution in values: slope and intercept of the volume are applied. Infinities are counted, but lie outside
+// the range.
 struct Histogram {
   static constexpr std::size_t kBins = 256;
 
@@ -35,7 +36,7 @@ class HistogramCounter {
   // Samples in the machine's byte order.
   void add(const std::byte* samples, std::int64_t count);
 
-  // The same sample so many times.
+  // Counts the same sample so many times.
   void add_equal(const std::byte* sample, std::uint64_t count);
 
   // The histogram of slope * sample + intercept.
@@ -56,7 +57,7 @@ class HistogramCounter {
   std::vector<std::uint64_t> counts_;
 };
 
-// Reads the whole volume once, some rows at a time, or not at all where all samples are known to be one. Throws
+// Reads the whole volume once, some rows at a time. Nothing is read where all samples are known to be one value. Throws
 // Interrupted when `stop` is set, and what the source throws.
 Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop = nullptr);
 

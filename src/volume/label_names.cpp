@@ -180,7 +180,7 @@ bool is_safe(std::string_view character) {
   return character < "\xc2\x80" || character >= "\xc2\xa0";  // those between are control characters
 }
 
-// A name without what means something in a path, no longer than a file's name may be beside other parts of it.
+// A name without characters that mean something in a path, and short enough for a file name with other parts beside it.
 std::string safe_name(std::string_view name) {
   constexpr std::size_t kLongest = 100;
   std::string safe;

@@ -50,7 +50,7 @@ class LabelVolume final : public SliceSource {
   std::vector<std::byte> slice_;  // of the map
 };
 
-// Finds extents, run by run of equal samples. Labels of one map are told apart by their bits.
+// Finds extents, run by run of equal samples. Labels of one map differ in their bits.
 class ExtentFinder {
  public:
   ExtentFinder(const VolumeInfo& volume, std::span<const Label> wanted) : volume_(volume), all_(wanted.empty()) {
@@ -104,7 +104,7 @@ class ExtentFinder {
     ++extent->runs;
   }
 
-  // That of a label, or none where it is not asked for.
+  // The extent of a label, or null where the label is not asked for.
   LabelExtent* find(Label label) {
     if (all_ && label == 0) return nullptr;
     const auto found = extents_.find(label.bits());
@@ -118,7 +118,7 @@ class ExtentFinder {
   std::unordered_map<std::uint64_t, LabelExtent> extents_;
 };
 
-// The samples of a grey value are a sheet of one or two samples that winds through all of the image.
+// Whether a label looks like a grey value: a sheet of one or two samples that winds through all of the image.
 bool is_scattered(const LabelExtent& label) {
   constexpr double kThin = 3;       // samples of a run, on average
   constexpr double kSparse = 0.02;  // of the box

@@ -10,12 +10,12 @@
 
 namespace isoweave {
 
-// The values of a label map as integers without a scaling. A map that has them gives its samples as they are; floats
-// and scaled integers become int64, and each is looked at on the way: one that is no whole number, or that a float
+// The values of a label map as integers without a scaling. A map of such integers gives its samples as they are. Floats
+// and scaled integers become int64, and each of them is checked: a value that is no whole number, or that a float
 // cannot tell from its neighbours, is BadInput with its place.
 class LabelNumbers final : public SliceSource {
  public:
-  // The volume must outlive it. Throws BadInput where slope or intercept are not whole numbers.
+  // The volume must outlive the source. Throws BadInput where slope or intercept are not whole numbers.
   explicit LabelNumbers(SliceSource& volume);
 
   const VolumeInfo& info() const override { return info_; }
@@ -31,7 +31,7 @@ class LabelNumbers final : public SliceSource {
   std::vector<std::byte> slice_;  // as stored, where it is to become integers
 };
 
-// 1 where a sample of a row is the label, else 0. Samples are integers.
+// Sets `mask` to 1 where a sample of a row is the label, and to 0 elsewhere. Samples are integers.
 void mask_row(const std::byte* samples, SampleType type, std::int64_t count, Label label, std::uint8_t* mask);
 
 }  // namespace isoweave

@@ -33,7 +33,7 @@ bool is_mrc_name(std::string_view name) {
   return std::any_of(kEndings.begin(), kEndings.end(), [&](std::string_view end) { return name.ends_with(end); });
 }
 
-// The format that a name stands for, for the message when the content is not of it.
+// The format that a name stands for. A message names it when the content is of another format.
 std::string_view format_of_name(std::string_view name) {
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return "the magic NRRD0001 to NRRD0005";
   if (name.ends_with(".nii") || name.ends_with(".nii.gz") || name.ends_with(".hdr")) return "a NIfTI header";
@@ -65,7 +65,7 @@ std::string header_of_image(const std::string& path) {
   return stem + (capitals ? ".HDR" : ".hdr");
 }
 
-// What has no magic, or one that other data may begin with by chance.
+// Opens formats without a magic, or with one that other data may begin with by chance.
 OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const OpenOptions& options) {
   const std::string& path = file->path();
   if (const std::optional<RawLayout> layout = raw_layout_from_name(path)) return open_raw(file, *layout);
@@ -110,7 +110,8 @@ OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   return open_by_name(file, head, options);
 }
 
-// A DICOM file that is a file, not what comes out of a pipe or a packed one, stands for the files beside it.
+// Opens a DICOM series. A DICOM file on disk stands for the files beside it; the content of a pipe or a packed file
+// does not.
 OpenedVolume open_dicom(const FilePtr& file, const OpenOptions& options) {
   if (!file->jumps() || file->system_path() != file->path()) {
     bad_input(file->path(), "DICOM as a plain file or a folder of them", "DICOM in a pipe or in gzip");
@@ -125,7 +126,7 @@ OpenedVolume open_dicom(const FilePtr& file, const OpenOptions& options) {
   return open_dicom_file(path, options);
 }
 
-// What the file holds. Samples without a header may begin as gzip does by chance: then their number is right.
+// The content of a file. Samples without a header may begin as gzip does by chance; then their number is right.
 FilePtr content_of(const FilePtr& stored, const OpenOptions& options) {
   const std::optional<RawLayout> layout = options.raw ? options.raw : raw_layout_from_name(stored->path());
   return layout && fits_raw(*stored, *layout) ? stored : unpacked(stored);
@@ -139,7 +140,8 @@ bool is_one_of(std::string_view format, std::initializer_list<std::string_view> 
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-// Options that choose among what other formats do not have. Readers that have it refuse what is not in the file.
+// Refuses options that choose among parts which the format does not have. Readers of formats that have such parts
+// refuse a part that is not in the file.
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
   // The files of VTK and NumPy have arrays with names, and no levels.

@@ -87,7 +87,7 @@ std::size_t PackedFile::read_at(std::uint64_t offset, std::span<std::byte> out) 
 }
 
 void PackedFile::check_end(std::uint64_t offset) const {
-  // Much may follow what is wanted of a file, such as further volumes. They are not inflated for the sake of a sum.
+  // Much may follow the wanted part of a file, such as further volumes. It is not inflated for the sake of a sum.
   std::array<std::byte, 64 * 1024> behind;
   if (!ended_ && offset >= position_) read_at(offset, behind);
 }

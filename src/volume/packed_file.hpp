@@ -13,8 +13,8 @@ namespace isoweave {
 
 bool is_gzip(std::string_view head);
 
-// Inflates as it is read, in bounded memory: the first bytes are kept, the others are read in their order. Reading
-// before the place that was reached begins again from the start.
+// A file that is inflated while it is read, in bounded memory. The first bytes are kept, and the others are read in
+// their order. Reading at an earlier place inflates again from the start.
 class PackedFile final : public InputFile {
  public:
   using Opener = std::function<std::unique_ptr<ByteStream>()>;
@@ -22,7 +22,7 @@ class PackedFile final : public InputFile {
   // A file in gzip. Throws BadInput when the first bytes cannot be inflated, or there are none.
   explicit PackedFile(const FilePtr& stored, std::string_view wanted = kVolumeFile);
 
-  // The bytes that a stream gives; their number is told before.
+  // A file of the bytes that a stream gives, whose number is known before.
   PackedFile(const std::string& path, std::uint64_t bytes, Opener open);
 
   std::uint64_t exact_size() const override;
@@ -46,7 +46,7 @@ class PackedFile final : public InputFile {
   mutable std::uint64_t position_ = 0;  // of the stream
 };
 
-// What a file holds that may be in gzip.
+// The content of a file, which may be in gzip.
 FilePtr unpacked(const FilePtr& file, std::string_view wanted = kVolumeFile);
 
 }  // namespace isoweave

@@ -17,7 +17,7 @@
 namespace isoweave {
 namespace {
 
-// Moves the origin to where sample `at`, or a place between samples, has been.
+// Moves the origin to the place of sample `at`, or to a place between samples.
 void move_origin(Geometry& geometry, const std::array<double, 3>& at) {
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ class CroppedVolume final : public RowSource {
     }
   }
 
-  // Some rows of the whole at a time.
+  // Reads some rows of the whole at a time.
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const std::size_t sample = sample_bytes(info_.type);
     const std::size_t row = static_cast<std::size_t>(info_.dims[0]) * sample;
@@ -147,7 +147,8 @@ class SmallerVolume final : public SliceSource {
     }
   }
 
-  // A sum of float64 may be beyond the largest number where the mean is not: a small part of it is summed up as well.
+  // A sum of float64 may be beyond the largest number where the mean is not. So a small part of each sample is summed
+  // up as well.
   template <class T>
   void add_value(std::size_t block, double value) {
     sums_[block] += value;

@@ -12,7 +12,7 @@
 
 namespace isoweave {
 
-// Of every `count` blocks of `block` bytes that a stream holds, the one numbered `index`.
+// A stream of one block, numbered `index`, out of every `count` blocks of `block` bytes of another stream.
 class PickedStream final : public ByteStream {
  public:
   struct Pattern {
@@ -39,9 +39,9 @@ class PickedStream final : public ByteStream {
   std::vector<std::byte> buffer_;
 };
 
-// The samples along axes i, j and k of `choice`, at its index along all others. `axes` from the slowest to the fastest,
-// as the samples are stored; their product is known to fit. Throws BadInput naming `path` where k, j and i do not come
-// in this order, since slices would not lie behind one another.
+// The samples along axes i, j and k of `choice`, at its index along all other axes. `axes` are given from the slowest
+// to the fastest, as the samples are stored; their product is known to fit. Throws BadInput naming `path` where k, j
+// and i do not come in this order, since slices would not lie behind one another.
 std::unique_ptr<ByteStream> pick_volume(std::unique_ptr<ByteStream> all, const std::vector<ArrayAxis>& axes,
                                         const AxisChoice& choice, std::size_t sample_bytes, std::string_view path);
 

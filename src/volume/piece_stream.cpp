@@ -25,7 +25,7 @@ std::string text_of(const Region& box) {
   return text;
 }
 
-// Adds what is left of `from` without `taken` to `left`, in boxes; says whether anything was taken.
+// Adds the part of `from` outside `taken` to `left`, in boxes. Returns whether `taken` took anything.
 bool subtract(Region from, const Region& taken, std::vector<Region>& left) {
   Region common;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -36,7 +36,8 @@ bool subtract(Region from, const Region& taken, std::vector<Region>& left) {
     left.push_back(from);
     return false;
   }
-  // What lies below and above along one axis after the other; what is between goes on to the next.
+  // Cuts off the parts below and above `taken`, one axis after the other. The part between them goes on to the next
+  // axis.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Region below = from;
     Region above = from;

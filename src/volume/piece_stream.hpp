@@ -24,13 +24,13 @@ struct VolumePiece {
   std::function<PieceSamples()> open{};  // called when the first of its slices is reached
 };
 
-// Those of the pieces that hold samples which none before them holds. Throws BadInput naming `path` when a piece
-// reaches out of the volume, or when all of them leave samples out.
+// The pieces that hold samples which no piece before them holds. Throws BadInput naming `path` when a piece reaches out
+// of the volume, or when all pieces together leave samples out.
 std::vector<VolumePiece> filling_pieces(std::vector<VolumePiece> pieces, const std::array<std::int64_t, 3>& dims,
                                         const std::string& path);
 
-// The samples of all pieces in the order of the volume and in the machine's byte order. Holds one slice, and streams of
-// those pieces that are in it.
+// A stream of the samples of all pieces in the order of the volume and in the machine's byte order. Holds one slice,
+// and the streams of the pieces that are in it.
 class PieceStream final : public ByteStream {
  public:
   // `pieces` fill the volume.

@@ -37,7 +37,7 @@ decltype(auto) visit_sample_type(SampleType type, Visitor&& visit) {
   return visit.template operator()<double>();
 }
 
-// Samples as stored; NaN counts nowhere but in `nan`. min > max when there is no number at all.
+// The range of samples as stored. NaN counts in `nan` only. min > max when there is no number at all.
 struct SampleRange {
   double min = 1;
   double max = 0;

@@ -40,7 +40,7 @@ void ScaledStream::convert() {
   }
 }
 
-// Converts the slice that is read from; false where the stored samples end.
+// Converts the slice that is read from. Returns false where the stored samples end.
 bool ScaledStream::at_slice() {
   if (slice_ == dims_[2]) return false;
   if (converted_) return true;

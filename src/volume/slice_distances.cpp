@@ -12,7 +12,7 @@
 namespace isoweave {
 namespace {
 
-// Of a distance: as far as slices may lie from even places and still count as even.
+// How far slices may lie from even places and still count as even, in parts of the distance.
 constexpr double kEven = 1e-2;
 // A gap from here on may hold a slice.
 constexpr double kWide = 1.5;
@@ -60,7 +60,7 @@ void refuse_coinciding(const SlicePlaces& places, const Gaps& gaps) {
   }
 }
 
-// How many slices a gap has lost; none unless it is nearly a multiple of the usual one.
+// The number of slices that a gap has lost; 0 unless the gap is nearly a multiple of the usual one.
 std::int64_t lost_in(double gap, double usual) {
   constexpr double kMost = 1e6;
   constexpr double kNearly = 0.2;
@@ -69,7 +69,7 @@ std::int64_t lost_in(double gap, double usual) {
   return std::llround(times) - 1;
 }
 
-// Whether a wide gap is one of three or more in a row: that is another distance, not a loss.
+// Whether a wide gap is one of three or more in a row. Then the distance has changed, and no slice is lost.
 bool is_another_distance(const Gaps& gaps, std::size_t gap) {
   const auto is_wide = [&](std::size_t n) { return n < gaps.lengths.size() && gaps.lengths[n] > kWide * gaps.usual; };
   const std::size_t below = gap == 0 || !is_wide(gap - 1) ? 0 : gap == 1 || !is_wide(gap - 2) ? 1 : 2;
@@ -95,7 +95,7 @@ void note_missing(const SlicePlaces& places, const Gaps& gaps, std::vector<std::
                   where + "; slices are usually " + length_text(gaps.usual) + places.unit + " apart");
 }
 
-// How far a slice lies at most from where an even distance between the first and the last would put it.
+// The farthest that a slice lies from its place at an even distance between the first and the last slice.
 double farthest_from_even(const std::vector<double>& depths) {
   const double mean = (depths.back() - depths.front()) / static_cast<double>(depths.size() - 1);
   double farthest = 0;
@@ -105,8 +105,7 @@ double farthest_from_even(const std::vector<double>& depths) {
   return farthest;
 }
 
-// The finest distance that is no exception: the mean of the narrowest gaps that are either not far from the usual one
-// or many.
+// The finest distance that is no exception: the mean of the narrowest gaps, if these are near the usual gap or many.
 double finest_distance(const Gaps& gaps) {
   constexpr double kFar = 1.0 / 8;
   constexpr double kAlike = 1.1;
@@ -126,8 +125,8 @@ double finest_distance(const Gaps& gaps) {
   }
 }
 
-// What a slice may lie beside its place: a hundredth of the distance, or as much as positions are rounded by where that
-// is little.
+// How far a slice may lie beside its place: a hundredth of the distance, or the rounding of positions where that is
+// little.
 double slack_at(const SlicePlaces& places, double distance) {
   constexpr double kLittle = 0.05;
   const double rounding = places.rounding <= kLittle * distance ? places.rounding : 0;
@@ -140,7 +139,7 @@ EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
   constexpr double kRounding = 0.05;  // of a slice
   EvenGrid grid{places.depths, 0, 0, true};
   const double finest = finest_distance(gaps);
-  // What lies so far apart are several volumes, and nothing can be said of what is between them.
+  // Slices so far apart belong to several volumes, and nothing can be said about the space between them.
   if (!(gaps.lengths[gaps.widest] <= kWidest * finest)) {
     bad_input(places.path, "slices that lie together, with no gap of more than 32 of them",
               length_text(gaps.lengths[gaps.widest]) + places.unit + " " + between_names(places, gaps.widest) +

@@ -10,7 +10,7 @@
 namespace isoweave {
 namespace {
 
-// The reader looks up after so many bytes: nobody waits longer than that for it to end.
+// The reader looks up after so many bytes, so nobody waits longer for it to end.
 constexpr std::size_t kRunBytes = std::size_t{8} << 20;
 
 }  // namespace
@@ -47,7 +47,7 @@ std::int64_t SliceWindow::advance(std::int64_t first, std::int64_t end, std::int
   return count;
 }
 
-// Has slices below `end` read, and those up to `last` behind them.
+// Asks the reader for the slices below `end`, and for those up to `last` after them, and waits for the former.
 void SliceWindow::wait_for(std::int64_t end, std::int64_t last, std::unique_lock<std::mutex>& lock) {
   if (last - first_ > room_ || buffer_.empty()) make_room(std::max<std::int64_t>(last - first_, 1), lock);
   needed_ = end;
@@ -59,8 +59,8 @@ void SliceWindow::wait_for(std::int64_t end, std::int64_t last, std::unique_lock
   if (filled_ < end) std::rethrow_exception(failure_);
 }
 
-// Enlarges the ring in place: two of them would be the peak of a run. What had gone on at its beginning goes on behind
-// the rest, as far as there is room now.
+// Enlarges the ring in place, as two rings at a time would be the peak of a run. Slices that had wrapped around to the
+// beginning of the ring move behind the others, as far as there is room now.
 void SliceWindow::make_room(std::int64_t slices, std::unique_lock<std::mutex>& lock) {
   growing_ = true;
   changed_.wait(lock, [&] { return !reading_; });
@@ -90,8 +90,8 @@ void SliceWindow::read_on() {
   }
 }
 
-// Reads the next slices as far as they lie side by side in the ring; those that somebody waits for by themselves, so
-// that nothing behind them can keep them back.
+// Reads the next slices, as far as they lie side by side in the ring. Slices that the caller waits for are read on
+// their own, so that later slices cannot delay them.
 void SliceWindow::read_run(std::unique_lock<std::mutex>& lock) {
   const auto most = std::max<std::int64_t>(static_cast<std::int64_t>(kRunBytes / slice_bytes_), 1);
   const std::int64_t wanted = filled_ < needed_ ? needed_ : wanted_;

@@ -1,4 +1,4 @@
-// The run of consecutive slices that a slab needs, read forward from a source by a thread of its own.
+// The window: the consecutive slices that a slab needs, read forward from a source by a thread of its own.
 #pragma once
 
 #include <condition_variable>
@@ -14,16 +14,16 @@
 
 namespace isoweave {
 
-// Holds slices [first, end) in the file's own sample type, and has some more read behind them meanwhile. Slices lie in
-// a ring, or where the source holds them: then nothing is read. Memory: bytes().
+// Holds slices [first, end) in the file's own sample type, while some more behind them are read. Slices lie in a ring.
+// If the source holds all slices in memory, they are used there and nothing is read. Memory: bytes().
 class SliceWindow {
  public:
   enum class Reading : std::uint8_t { kAhead, kInPlace };  // by a thread of its own; by advance(), and nothing ahead
 
-  // The one for whoever has so many threads: with one, nothing starts another.
+  // The way to read for a caller with so many threads: a caller with one thread starts no other.
   static Reading reading_with(int threads) { return threads > 1 ? Reading::kAhead : Reading::kInPlace; }
 
-  // The source is read from slice `first` on; in a build without threads it is read in place.
+  // Reads the source from slice `first` on. In a build without threads the source is read in place.
   explicit SliceWindow(SliceSource& source, std::int64_t first = 0, Reading reading = Reading::kAhead);
   ~SliceWindow();
   SliceWindow(const SliceWindow&) = delete;
@@ -34,10 +34,10 @@ class SliceWindow {
   std::uint64_t bytes() const { return buffer_.capacity(); }
   std::int64_t room() const { return held_.empty() ? room_ : 0; }  // slices in the ring
 
-  // Drops slices before `first` and waits for those up to `end`, both clipped to the volume; after that `ahead` slices
+  // Drops slices before `first` and waits for those up to `end`, both clipped to the volume. Afterwards `ahead` slices
   // more are read while the caller works. Windows only move forward. Returns the number of slices that are new in the
-  // window; they are the last ones held. Throws what the source threw, once slices that it concerns are asked for; then
-  // only the new ones are missing.
+  // window; they are the last ones held. Throws what the source threw when the slices concerned are asked for. Only the
+  // new slices are missing then.
   std::int64_t advance(std::int64_t first, std::int64_t end, std::int64_t ahead = 0);
 
   // Samples of slice k, which must be held.
@@ -64,8 +64,8 @@ class SliceWindow {
   // Changed under the mutex; buffer and room only while the reader does not read.
   Array<std::byte> buffer_;
   std::int64_t room_ = 1;    // slices in the ring
-  std::int64_t base_;        // a slice that lies at its beginning
-  std::int64_t first_;       // held
+  std::int64_t base_;        // a slice that lies at the ring's beginning
+  std::int64_t first_;       // the first slice held
   std::int64_t end_;         // of the window
   std::int64_t filled_;      // slices below are in the ring
   std::int64_t needed_ = 0;  // slices below are waited for

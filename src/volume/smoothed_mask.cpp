@@ -14,7 +14,7 @@
 namespace isoweave {
 namespace {
 
-constexpr float kNearest = 1.0F / 256;  // to 0 that a sample may come: its sign is its side
+constexpr float kNearest = 1.0F / 256;  // the nearest that a sample may come to 0: its sign is its side
 constexpr std::int64_t kRowsPerBlock = 8;
 
 // Weights 1-2-1 along two axes.
@@ -23,7 +23,7 @@ void add_rows(const std::array<const float*, 9>& rows, std::size_t size, float* 
   for (std::size_t i = 0; i < size; ++i) sums[i] = (along_z(0, i) + along_z(2, i)) + 2 * along_z(1, i);
 }
 
-// And along the third one. finish(i, mean) takes the weighted mean of the 27 samples around sample i.
+// Adds the weights along the third axis. finish(i, mean) takes the weighted mean of the 27 samples around sample i.
 template <class Finish>
 void add_along(const float* sums, std::size_t size, const Finish& finish) {
   constexpr float kScale = 1.0F / 64;
@@ -35,7 +35,7 @@ void add_along(const float* sums, std::size_t size, const Finish& finish) {
   if (size > 1) finish(size - 1, mean(size - 2, size - 1, size - 1));
 }
 
-// Keeps what it stands on.
+// A smoothed mask that owns its source.
 class OwningSmoothedMask final : public SliceSource {
  public:
   OwningSmoothedMask(std::unique_ptr<SliceSource> source, const SmoothedMaskOptions& options, int threads)
@@ -92,8 +92,8 @@ void SmoothedMask::read(std::int64_t first, std::int64_t count, std::span<std::b
   }
 }
 
-// Makes slice `first` the next one that comes out, or one before it. What lies more than the reach of all passes below
-// it need not be read.
+// Makes slice `first`, or one before it, the next one that comes out. Slices farther below than the reach of all passes
+// need not be read.
 void SmoothedMask::start_at(std::int64_t first) {
   const auto nx = static_cast<std::size_t>(info_.dims[0]);
   if (stored_.empty()) {
@@ -119,7 +119,7 @@ void SmoothedMask::start_at(std::int64_t first) {
   next_ = begin;
 }
 
-// The next slice of the field after so many passes.
+// Makes the next slice of the field after so many passes.
 void SmoothedMask::next_slice(std::size_t passes, Slice& out) {
   if (passes == 0) return read_mask(out);
   Pass& pass = passes_[passes - 1];
@@ -159,7 +159,7 @@ void SmoothedMask::read_row(std::int64_t j, Slice& out) const {
   for (std::int64_t i = 0; i < nx; ++i) to[i] = is_inside(samples[i]) ? 1.0F : -1.0F;
 }
 
-// One slice more of pass n's blurred field.
+// Makes one more slice of pass n's blurred field.
 void SmoothedMask::blur_next(std::size_t n) {
   Pass& pass = passes_[n - 1];
   const std::int64_t k = pass.blurred.end;
@@ -173,7 +173,7 @@ void SmoothedMask::blur_next(std::size_t n) {
   ++pass.blurred.end;
 }
 
-// The slice that comes out of a pass: twice the blurred field less the one blurred twice, on the side that it was on.
+// Makes a slice of a pass: twice the blurred field less the field blurred twice, kept on its side of 0.
 void SmoothedMask::clamp_next(Pass& pass, Slice& out) {
   const std::int64_t k = pass.next++;
   const Slice& field = pass.field[k];
@@ -204,8 +204,8 @@ SmoothedMask::Rows SmoothedMask::rows_around(Ring& ring, std::int64_t k, std::in
   return rows;
 }
 
-// Weighted means of the 3 x 3 x 3 samples around each of slice k, weights 1-2-1 along each axis. finisher(j)(i, mean)
-// makes of one what is stored.
+// Takes weighted means of the 3 x 3 x 3 samples around each sample of slice k, with weights 1-2-1 along each axis.
+// finisher(j)(i, mean) turns a mean into what is stored.
 template <class Finisher>
 void SmoothedMask::blur(Ring& ring, std::int64_t k, Slice& out, const Finisher& finisher) {
   const auto nx = static_cast<std::size_t>(info_.dims[0]);

@@ -21,19 +21,19 @@ struct SmoothedMaskOptions {
   bool measure = false;  // find the range of the stored samples of each slice
 };
 
-// See smooth_mask. The passes follow each other like the stages of a pipeline: each holds the three slices of its input
-// and of its blurred input that the next slice is made of. Rows around which all samples are on one side are told by a
-// mark, take no time and touch no memory, so that small objects in large volumes cost little.
+// See smooth_mask. The passes follow each other like the stages of a pipeline: each holds the three slices of its
+// input, and of its blurred input, that its next slice needs. A mark tells the rows around which all samples are on one
+// side. Such rows take no time and touch no memory, so that small objects in large volumes cost little.
 class SmoothedMask final : public SliceSource {
  public:
-  // The source and the executor are used as long as this is.
+  // The source and the executor must outlive this source.
   SmoothedMask(SliceSource& source, const SmoothedMaskOptions& options, const Executor& executor);
 
   const VolumeInfo& info() const override { return info_; }
   bool skips() const override { return source_.skips(); }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
 
-  // Of the stored samples of slice k, once that slice has come out; nothing if they are not measured.
+  // The range of the stored samples of slice k, once that slice has come out. Nothing if ranges are not measured.
   const SampleRange* range(std::int64_t k) const {
     return ranges_.empty() ? nullptr : &ranges_[static_cast<std::size_t>(k)];
   }
@@ -41,7 +41,7 @@ class SmoothedMask final : public SliceSource {
   // Slices on either side that a sample depends on.
   std::int64_t reach() const { return kReach * options_.passes; }
 
-  // What one holds, at most, and what it says of itself.
+  // The most bytes that a smoothed mask holds, and the description that it will have.
   static std::uint64_t memory(const VolumeInfo& volume, int passes);
   static VolumeInfo info_of(const VolumeInfo& volume);
 

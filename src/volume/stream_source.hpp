@@ -15,7 +15,7 @@
 
 namespace isoweave {
 
-// What the reader of a format finds: the header's facts, and the samples as they are stored.
+// The result of a format's reader: the facts of the header, and the samples as they are stored.
 struct OpenedVolume {
   VolumeInfo info;
   std::unique_ptr<ByteStream> samples;

@@ -17,7 +17,7 @@ struct Threshold {
 // The whole number that is next to `bound`, a whole number as well.
 template <class T>
 T nearest_integer(double bound) {
-  // Of 64 bits the largest one is not a double; the smallest one always is.
+  // The largest integer of 64 bits is not a double; the smallest one always is.
   if (bound >= static_cast<double>(std::numeric_limits<T>::max())) return std::numeric_limits<T>::max();
   return static_cast<T>(std::max(bound, static_cast<double>(std::numeric_limits<T>::lowest())));
 }

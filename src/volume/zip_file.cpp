@@ -54,7 +54,7 @@ class ZipBytes {
   std::vector<std::byte> bytes_;
 };
 
-// Where the last record begins, which a comment of up to 65,535 bytes may follow.
+// Finds the beginning of the last record, which a comment of up to 65,535 bytes may follow.
 std::uint64_t end_record(const InputFile& file) {
   const std::uint64_t count = std::min(file.size(), kEndBytes + kMost16);
   const ZipBytes tail(file, file.size() - count, count);

@@ -81,7 +81,7 @@ GltfValue parse(const MeshInput& input, const std::string& text) {
 GltfFile::GltfFile(MeshInput& input) : input_(input), size_(input.size()) {
   const bool binary = input.head(4) == "glTF";
   std::string text = binary ? read_binary() : read_text();
-  // Some programs fill up with zeros.
+  // Some programs fill a string up with zeros.
   text.resize(text.find_last_not_of('\0') + 1);
   scene_ = parse(input, text);
   const GltfValue asset = scene_.value("asset", GltfValue::object());

@@ -18,8 +18,7 @@ using GltfValue = nlohmann::json;
 
 class GltfFile {
  public:
-  // Fails when the file is not complete or no glTF 2, and when it needs a file that is not there or that it may not
-  // name.
+  // Fails when the file is not complete or no glTF 2, and when it names a file that is missing or must not be named.
   explicit GltfFile(MeshInput& input);
 
   // Bytes of the file and of those that it names.
@@ -27,18 +26,18 @@ class GltfFile {
 
   const GltfValue& scene() const { return scene_; }
 
-  // An element of one of the lists of the file ("meshes", "nodes", ...), by a number that stands somewhere else.
+  // An element of one of the lists of the file ("meshes", "nodes", ...), by a number found elsewhere in the file.
   const GltfValue& element(const char* list, const GltfValue& number) const;
 
   // A whole number that is not negative.
   std::uint64_t whole(const GltfValue& value, std::string_view what) const;
 
-  // Three numbers each, of 8, 16 or 32 bits.
+  // Vectors of three numbers, each of 8, 16 or 32 bits.
   std::vector<WidePoint> vectors(const GltfValue& accessor);
   std::vector<std::uint32_t> indices(const GltfValue& accessor);
 
  private:
-  // Numbers as stored, tightly or with others between.
+  // Numbers as stored, tightly or with other data between them.
   struct Stored {
     std::vector<std::byte> bytes;
     std::uint64_t count = 0, stride = 0;
@@ -55,7 +54,7 @@ class GltfFile {
 
   MeshInput& input_;
   GltfValue scene_;
-  // A buffer: bytes out of the scene's text, or a file's from a place on.
+  // A buffer: bytes out of the scene's text, or of a file from a place on.
   struct Buffer {
     std::vector<std::byte> bytes;
     FilePtr file;

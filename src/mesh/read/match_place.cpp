@@ -1,4 +1,4 @@
-// A mesh in the unit, the space and relative to the offset of another one.
+// Brings a mesh into the unit, the space and the offset of another one.
 #include <stdexcept>
 
 #include "files/length_units.hpp"

@@ -36,7 +36,7 @@ void MeshInput::fail(const std::string& what) const {
   throw BadInput(printable(path_) + ": " + printable(what.substr(0, kLongestMessage)));
 }
 
-// Adds what comes next to what is left in the buffer.
+// Reads more of the file behind the rest of the buffer.
 bool MeshInput::refill() {
   const std::size_t left = filled_ - next_;
   const std::uint64_t from = position_ + left;

@@ -22,8 +22,8 @@ namespace isoweave::mesh_io {
 // Every failure is BadInput with one line that begins with the path.
 class MeshInput {
  public:
-  // A regular file, or what comes out of a pipe. What is in gzip is inflated into a file without a name, as readers go
-  // back and ask how much is left. Throws CannotWrite where there is no room for that.
+  // Opens a regular file, or the content of a pipe. A file in gzip is inflated into a file without a name, as readers
+  // go back and ask how much is left. Throws CannotWrite where there is no room for that.
   explicit MeshInput(const std::string& path, const ReadMeshOptions& options = {});
   MeshInput(const MeshInput&) = delete;
   MeshInput& operator=(const MeshInput&) = delete;
@@ -46,8 +46,9 @@ class MeshInput {
   void read(std::span<std::byte> out);
   void skip(std::uint64_t bytes);
 
-  // Records of `bytes` bytes each, at most `most` of them: take(const std::byte*) sees one after the other until it
-  // answers false. That one, and what the file ends in before it is whole, has not been read then. Tells how many have.
+  // Reads records of `bytes` bytes each, at most `most` of them: take(const std::byte*) sees one after the other until
+  // it answers false. The record that it refuses, and a part of a record at the end of the file, count as not read.
+  // Returns the number of records read.
   template <class Take>
   std::uint64_t read_records(std::uint64_t most, std::size_t bytes, const Take& take) {
     std::uint64_t taken = 0;
@@ -63,11 +64,13 @@ class MeshInput {
     return taken;
   }
 
-  // Goes on from this byte, wherever it was. Fails when the file is not so long.
+  // Continues at this byte, wherever the file stood. Fails when the file is not so long.
   void move_to(std::uint64_t position);
 
-  // What ends a line: any of "\n", "\r\n" and "\r"; "\n", with a "\r" before it or not; or "\r" alone. With the last
-  // two, what follows a line may be binary data.
+  // The end of a line: any of "
+  // ", "\r
+  // " and "\r"; "
+  // ", with a "\r" before it or not; or "\r" alone. After the last two, binary data may follow a line.
   enum class LineEnd { kAny, kNewline, kReturn };
 
   // The next line without its end; false at the end of the file.
@@ -90,7 +93,7 @@ class MeshInput {
   // The next byte without taking it, or -1 at the end.
   int peek() { return next_ == filled_ && !refill() ? -1 : std::to_integer<int>(buffer_[next_]); }
 
-  // How many of the next bytes the buffer holds: all that are wanted, if it and the file have so many.
+  // The number of the next bytes that the buffer holds: all that are wanted, if the buffer and the file have so many.
   std::size_t buffered(std::size_t wanted);
 
   std::string path_;
@@ -113,7 +116,7 @@ inline constexpr char kEndOfText = 0x1a;  // stands behind texts that come from 
 
 inline bool is_blank(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-// Passes over the three bytes by which some programs say that what follows is UTF-8.
+// Passes over the three bytes by which some programs mark UTF-8.
 void skip_byte_order_mark(MeshInput& input);
 
 // Takes the first word off `rest`; empty when there is none.
@@ -146,7 +149,7 @@ std::optional<Real> parse_real(std::string_view text) {
   return std::nullopt;
 }
 
-// Adds the fan over a polygon's corners as they come.
+// Adds the fan over a polygon, corner by corner.
 class PolygonFan {
  public:
   explicit PolygonFan(std::vector<std::array<std::uint32_t, 3>>& triangles) : triangles_(triangles) {}
@@ -172,7 +175,7 @@ inline constexpr std::uint64_t kMostVertices = std::numeric_limits<std::uint32_t
 void check_indices(const MeshInput& input, std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::size_t vertices);
 
-// The same, and when a coordinate is not finite.
+// Fails when an index is out of range or a coordinate is not finite.
 void check_mesh_numbers(const MeshInput& input, const TriangleMesh& mesh);
 
 TriangleMesh read_ply(MeshInput& input);

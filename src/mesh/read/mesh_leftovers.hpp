@@ -1,4 +1,4 @@
-// What a mesh file has and a TriangleMesh does not keep.
+// The parts of a mesh file that a TriangleMesh does not keep.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class MeshLeftovers {
   // Elements, counted: "3 lines".
   void left_out(std::uint64_t count, std::string_view what);
 
-  // Adds what there is to the notes, one line for each of the two.
+  // Adds the leftovers to the notes: one line for properties, and one for elements.
   void note(TriangleMesh& mesh) const;
 
  private:

@@ -30,7 +30,7 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// The name that a mesh has for a space or unit that programs write in several ways; empty: it has none.
+// The name that a mesh has for a space or unit, which programs write in several ways. Empty where it has none.
 std::string known_space(std::string_view value) {
   const std::string name = lower_case(value);
   if (name == "lps" || name == "left-posterior-superior") return "LPS";
@@ -38,13 +38,13 @@ std::string known_space(std::string_view value) {
   return name == "index" ? name : "";
 }
 
-// Numbers are kept as they are: a unit that they would be converted from is not taken.
+// The unit of a mesh, as numbers are kept as they are. A unit that they would have to be converted from is not taken.
 std::string known_unit(std::string_view value) {
   const std::optional<LengthUnit> unit = find_length_unit(value);
   return unit && unit->scale == 1 ? std::string(unit->name) : "";
 }
 
-// The farthest that rounding to 32 bits moves a coordinate; infinite where the float is.
+// The farthest that rounding to 32 bits moves a coordinate. Infinite where the float is.
 double move_of(const WidePoint& point, const WidePoint& offset) {
   double farthest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ struct Moves {
   double sum = 0, farthest = 0;
 };
 
-// Of the corners of all triangles. Vertices that no triangle names may lie anywhere.
+// The moves of the corners of all triangles. Vertices that no triangle names may lie anywhere.
 Moves moves_of(std::span<const WidePoint> points, std::span<const Triangle> triangles, const WidePoint& offset) {
   Moves moves;
   for (const Triangle& triangle : triangles) {
@@ -80,8 +80,8 @@ double size_of(std::span<const WidePoint> points, std::span<const Triangle> tria
   return std::sqrt(2 * area / static_cast<double>(triangles.size()));
 }
 
-// Near the middle of the box: a multiple of a power of two which is at least an eighth of the longest side, so that it
-// has few digits, and that coordinates are subtracted from it without rounding.
+// An offset near the middle of the box: a multiple of a power of two which is at least an eighth of the longest side.
+// So it has few digits, and coordinates are subtracted from it without rounding.
 WidePoint rounded_middle(std::span<const WidePoint> points, std::span<const Triangle> triangles) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   WidePoint low{kInfinity, kInfinity, kInfinity};
@@ -158,8 +158,8 @@ std::optional<WidePoint> parse_offset(std::string_view text) {
 }
 
 // Rounding twice is rounding once unless the double lies in the middle between two floats, which 29 bits tell. Then the
-// float that is nearest to the text says to which side of the middle it belongs. Where floats are not normal, and
-// beyond the largest one, that float is taken as it is.
+// float nearest to the text says on which side of the middle the text lies. Where floats are not normal, and beyond the
+// largest one, that float is taken as it is.
 std::optional<double> parse_wide(std::string_view text) {
   const std::optional<double> value = parse_real<double>(text);
   if (!value || !std::isfinite(*value)) return std::nullopt;
@@ -191,7 +191,7 @@ WidePoint offset_for(std::span<const WidePoint> points, std::span<const std::arr
   return helps ? middle : none;
 }
 
-// What comes back from a file of 64-bit coordinates whose offset is known. Let o be the offset, c a coordinate that was
+// Coordinates of 64 bits come back from a file whose offset is known. Let o be the offset, c a coordinate that was
 // written as d, the sum o + c rounded to 64 bits, and u the last place of d. From 2^25 u on c comes back: d - o is off
 // from it by less than a quarter of its last place. A smaller c may come back as another number, but as one whose sum
 // with o is d again. There o and d are so close that d - o is exact (Sterbenz 1974), a multiple of u / 2. Below 2^23 u

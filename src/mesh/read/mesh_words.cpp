@@ -76,7 +76,7 @@ void MeshWords::fail(const std::string& expected, std::string_view word) const {
   fail(expected + ", found '" + std::string(word.substr(0, 40)) + "'");
 }
 
-// The line before its comment, which begins a word: what Windows writes for infinity, 1.#INF, has none.
+// The part of a line before its comment, which begins a word. The infinity of Windows, 1.#INF, begins no comment.
 std::string_view MeshWords::without_comment(std::string_view line) {
   for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
     if (at > 0 && !is_blank(line[at - 1])) continue;
@@ -86,7 +86,7 @@ std::string_view MeshWords::without_comment(std::string_view line) {
   return line;
 }
 
-// Ends of lines and comments are cut off.
+// Reads a line, without its end and its comment.
 bool MeshWords::read_line() {
   if (!input_.read_line(line_)) {
     rest_ = {};

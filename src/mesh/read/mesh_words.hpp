@@ -1,4 +1,4 @@
-// Mesh files of text, word by word: what STL, OBJ and OFF have in common.
+// Mesh files of text, word by word: the common part of the readers of STL, OBJ and OFF.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace isoweave::mesh_io {
 
 bool is_tiny_number(std::string_view word);
 
-// What stands for `expected` in messages about a word that is no number.
+// The text after `expected` in messages about a word that is no number.
 const char* expected_number(std::string_view found);
 
-// The whole of a word as a number, in the ways of all programs: with a D before its exponent, as Fortran writes
-// doubles, or as 1.#INF and 1.#QNAN, as Windows once wrote what is not finite.
+// The whole of a word as a number, in the spellings of all programs: with a D before its exponent, as Fortran writes
+// doubles, or as 1.#INF and 1.#QNAN, as Windows once wrote numbers that are not finite.
 template <class Real>
 std::optional<Real> parse_number(std::string_view word) {
   if (const std::optional<Real> value = parse_real<Real>(word)) return value;
@@ -29,7 +29,7 @@ std::optional<Real> parse_number(std::string_view word) {
   return parse_real<Real>(text);
 }
 
-// The same as parse_wide reads it, where it is finite in 32 bits.
+// The number that parse_wide reads, where it is finite in 32 bits.
 std::optional<double> parse_wide_number(std::string_view word);
 
 // A byte order mark at the beginning of the file is passed over. Lines end as MeshInput::read_line says; a '#' that
@@ -52,17 +52,17 @@ class MeshWords {
   double next_coordinate() { return coordinate(next()); }
   WidePoint next_point() { return {next_coordinate(), next_coordinate(), next_coordinate()}; }
 
-  // What a word says as a number that is finite in 32 bits.
+  // A word as a number that is finite in 32 bits.
   double coordinate(std::string_view word) const;
 
-  // What comments say of the place of the mesh, as far as they have been read.
+  // The place of the mesh according to the comments read so far.
   const MeshPlace& place() const { return place_; }
 
-  // The same for a component of a normal, which need not be finite.
+  // A word as a component of a normal, which need not be finite.
   float component(std::string_view word) const;
   Point next_normal() { return {component(next()), component(next()), component(next())}; }
 
-  // What is left of the line, and where in it to go on.
+  // The unread part of the line.
   std::string_view rest() const { return rest_; }
   void go_on_at(std::string_view rest) { rest_ = rest; }
   void skip_line() { rest_ = {}; }

@@ -45,7 +45,7 @@ class ModelReader {
   }
 
  private:
-  // What stands between the next '<' and '>', and the text before it; false at the end.
+  // Finds the next tag, and the text before it. Returns false at the end.
   bool next_tag() {
     before_.clear();
     for (int c = text_.get(); c != '<'; c = text_.get()) {
@@ -65,7 +65,7 @@ class ModelReader {
     return false;
   }
 
-  // A comment ends with "--", and text that is taken as it is with "]]".
+  // Whether a tag is whole. A comment ends with "--", and a section of plain text with "]]".
   bool is_whole() const {
     constexpr std::size_t kShortest = 5;
     if (tag_.starts_with("!--")) return tag_.size() >= kShortest && tag_.ends_with("--");

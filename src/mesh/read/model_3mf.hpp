@@ -1,4 +1,4 @@
-// A part of a 3MF package with a model: objects, and what is to be built of them.
+// The part of a 3MF package that has a model: objects, and the items that are to be built from them.
 #pragma once
 
 #include <array>
@@ -37,8 +37,7 @@ struct Model {
   std::vector<PlacedObject> items;
 };
 
-// Fails on everything that is not as the core specification has it, and on extensions that are required and change the
-// shape.
+// Fails on everything that differs from the core specification, and on required extensions that change the shape.
 Model read_model(MeshInput& input, const ZipRecord& record);
 
 }  // namespace isoweave::mesh_io

@@ -40,7 +40,7 @@ Placement both(const Placement& first, const Placement& second) {
   return placement;
 }
 
-// By the matrix of cofactors, which is the inverse transposed times the determinant.
+// Turns a normal by the matrix of cofactors, which is the inverse transposed times the determinant.
 WidePoint turned_normal(const Placement& placement, const WidePoint& normal) {
   const auto& a = placement.linear;
   const Placement cofactors{{a[4] * a[8] - a[5] * a[7], a[5] * a[6] - a[3] * a[8], a[3] * a[7] - a[4] * a[6],

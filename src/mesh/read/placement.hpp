@@ -12,7 +12,8 @@
 
 namespace isoweave::mesh_io {
 
-// Vertices and corners of copies for each byte of a file: more are no scene, but a way to fill memory.
+// The most vertices and corners of copies for each byte of a file. A file with more is no scene, but a way to fill
+// memory.
 inline constexpr std::uint64_t kMostCopies = 64;
 
 // p -> linear * p + shift.
@@ -29,10 +30,10 @@ struct Placement {
   bool is_regular() const;
 };
 
-// `first`, and then `second`.
+// The map that applies `first` and then `second`.
 Placement both(const Placement& first, const Placement& second);
 
-// How a direction that is orthogonal to a surface is turned; not of unit length.
+// The image of a direction that is orthogonal to a surface; not of unit length.
 WidePoint turned_normal(const Placement& placement, const WidePoint& normal);
 
 // Parts of a mesh, one after another.
@@ -43,8 +44,8 @@ class PlacedMesh {
   // Adds vertices at their place and gives the number of the first.
   std::uint32_t add_vertices(std::vector<WidePoint> vertices, const Placement& placement);
 
-  // Adds triangles over the vertices from `first` on, of which there are `count`. Mirrored ones are turned over, so
-  // that their outside stays outside.
+  // Adds triangles over the `count` vertices from `first` on. A mirroring placement turns triangles over, so that their
+  // outside stays outside.
   void add_triangles(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::uint32_t first,
                      std::uint64_t count, bool mirrored);
 

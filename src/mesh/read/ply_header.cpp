@@ -9,7 +9,7 @@
 namespace isoweave::mesh_io {
 namespace {
 
-// No real header comes near these; without them a hostile one could ask for hours of comparing names.
+// The limits of a header. No real header comes near them, and a hostile one could ask for hours of comparing names.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 constexpr std::size_t kMostElements = 256;
 constexpr std::size_t kMostProperties = 1024;
@@ -49,7 +49,7 @@ bool is_real(const PlyProperty& property) {
   return property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
 }
 
-// Places, directions and looks: numbers of a vertex that say nothing when they are taken alone.
+// Whether a property is a part of a place, direction or colour: such a number says nothing on its own.
 bool is_part_of_more(std::string_view name) {
   for (const char* known :
        {"x", "y", "z", "nx",  "ny",    "nz",   "r",     "g",         "b",         "a",      "u",
@@ -62,8 +62,8 @@ bool is_part_of_more(std::string_view name) {
   return false;
 }
 
-// The name of the vertices' value: one of those that programs give it, or else the only real number that is no part of
-// anything else. Whole numbers of another name may be labels, which have nothing between them.
+// The name of the vertices' value: one of the names that programs give it, or else the only real number that is no part
+// of anything else. Whole numbers of another name may be labels, which cannot be interpolated.
 std::string choose_values(const PlyElement& element) {
   for (const std::string_view known : {"quality", "scalar", "value", "intensity", "scalar_"}) {
     for (const PlyProperty& property : element.properties) {
@@ -96,7 +96,7 @@ class HeaderReader {
   }
 
  private:
-  // Its end is that of all lines; a byte order mark and empty lines before it are passed over.
+  // Reads the first line, whose end is that of all lines. A byte order mark and empty lines before it are passed over.
   void read_first_line() {
     skip_byte_order_mark(input_);
     std::string_view rest;
@@ -116,7 +116,7 @@ class HeaderReader {
     while (!line_.empty() && is_blank(line_.back())) line_.pop_back();
   }
 
-  // False at the last one.
+  // Reads a statement. Returns false at the last one.
   bool read_statement() {
     std::string_view rest = line_;
     const std::string keyword = lower_case(take_word(rest));

@@ -24,7 +24,7 @@ Vec3 area_of(const TriangleMesh& mesh, const Triangle& t) {
   return cross(position(mesh, t[1]) - a, position(mesh, t[2]) - a);
 }
 
-// Whether no triangle of a fan looks the other way than the polygon as a whole does, but for rounding.
+// Whether every triangle of a fan faces the same way as the polygon as a whole, but for rounding.
 bool lies_flat(const TriangleMesh& mesh, std::span<const Triangle> fan, const Vec3& area) {
   constexpr double kRounding = 1e-6;
   const double least = -kRounding * dot(area, area);
@@ -39,7 +39,7 @@ struct Corner {
 
 bool same_place(const Corner& a, const Corner& b) { return a.x == b.x && a.y == b.y; }
 
-// Twice the area, above 0 where the three go round to the left.
+// Twice the area of a triangle; above 0 where its corners go round to the left.
 double turn(const Corner& a, const Corner& b, const Corner& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -76,13 +76,13 @@ class EarCutter {
   }
 
  private:
-  // Bounds the time that a polygon takes: for a thousand corners, about as many looks as there are pairs of them.
+  // A bound on the time that a polygon takes: for a thousand corners, about as many looks as there are pairs of them.
   static constexpr std::size_t kLooks = 1000;
 
   const Corner& before(std::size_t at) const { return ring_[at == 0 ? ring_.size() - 1 : at - 1]; }
   const Corner& after(std::size_t at) const { return ring_[at + 1 == ring_.size() ? 0 : at + 1]; }
 
-  // Moves on to the next ear. One without area, between corners on a line, is taken where there is no other.
+  // Moves on to the next ear. An ear without area, between corners on a line, is taken where there is no other.
   bool find_ear(std::size_t& at) {
     for (const bool flat : {false, true}) {
       for (std::size_t n = 0; n < ring_.size(); ++n) {
@@ -94,7 +94,8 @@ class EarCutter {
     return false;
   }
 
-  // Whether no other corner lies in the ear or on its border, but in the place of one of its own corners.
+  // Whether no other corner lies in the ear or on its border. Corners at the places of the ear's own corners do not
+  // count.
   bool is_empty(std::size_t at) {
     const Corner &a = before(at), &b = ring_[at], &c = after(at);
     if (looks_ < ring_.size()) return false;

@@ -9,7 +9,7 @@
 
 namespace isoweave::mesh_io {
 
-// Sees to it that fans over polygons are no worse than the polygons: over one that is not convex a fan may turn
+// Makes the triangles over polygons no worse than the polygons. Over a polygon that is not convex, a fan may turn
 // triangles over. Such polygons are cut anew, by ears; others keep their fan.
 class Polygons {
  public:

@@ -1,5 +1,5 @@
-// 3MF: all that is to be built, each object at its place, as one mesh. Objects may be made of others, and lie in other
-// parts of the package.
+// 3MF: all items that are to be built, each object at its place, as one mesh. Objects may be made of others, and may
+// lie in other parts of the package.
 #include <algorithm>
 #include <set>
 
@@ -120,7 +120,7 @@ class PackageReader {
     return placement;
   }
 
-  // Those that are no part of another one.
+  // The objects that are no part of another one.
   std::vector<PlacedObject> all_objects(const Model& model) {
     std::set<std::uint32_t> used;
     for (const auto& [id, object] : model.objects) {

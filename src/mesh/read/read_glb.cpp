@@ -1,5 +1,5 @@
-// GLB and glTF. Of isoweave's own files the mesh is taken as stored, since they say in their extras what the nodes do
-// to it; of others all meshes of the scene where its nodes place them.
+// GLB and glTF. The mesh of isoweave's own files is taken as stored, since their extras tell what the nodes do to it.
+// Of other files, all meshes of the scene are taken where its nodes place them.
 #include <cmath>
 #include <limits>
 #include <set>
@@ -15,7 +15,7 @@ namespace {
 
 enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
 
-// Extensions that leave the shape as it is, or that are read.
+// Whether an extension leaves the shape as it is, or is read here.
 bool is_known_extension(const std::string& name) {
   for (const char* known : {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
                             "MSFT_lod", "MSFT_packing_", "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_"}) {
@@ -219,7 +219,7 @@ class SceneReader {
     mesh_.add_triangles(triangles_of(mode, corners), first, count, placement.determinant() < 0);
   }
 
-  // The number of the first vertex, and how many there are.
+  // Adds vertices. Returns the number of the first one, and how many there are.
   std::pair<std::uint32_t, std::uint64_t> add_vertices(const GltfValue& attributes, const Placement& placement,
                                                        Shared* shared) {
     const bool has_normals = attributes.contains("NORMAL");

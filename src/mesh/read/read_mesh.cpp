@@ -19,7 +19,7 @@ using mesh_io::MeshInput;
 constexpr std::size_t kHeadBytes = 4096;
 constexpr std::size_t kLongestKeyword = 40;
 
-// Whatever the case, and before ".gz".
+// Whether a path has an ending, in any case, perhaps before ".gz".
 bool has_ending(const std::string& path, std::string_view ending) {
   constexpr std::string_view kPacked = ".gz";
   const std::string name = lower_case(path);
@@ -71,7 +71,7 @@ bool is_stl_text(const std::string& head) {
   return text.find("facet") != std::string::npos && text.find("vertex") != std::string::npos;
 }
 
-// The formats that tell themselves, whatever the name says; nothing for others.
+// Reads a format that its content tells, whatever the name says. Nothing for other formats.
 std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string& head, bool named_obj) {
   if (head.starts_with("glTF")) return mesh_io::read_glb(input);
   if (head.starts_with("PK\3\4")) return mesh_io::read_3mf(input);
@@ -106,8 +106,8 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
 }
 
-// Programs write 'nan' as the normal of a vertex that has none. Such normals are of no use, and others are made from
-// the triangles where there are none.
+// Drops the normals of a mesh where one is not a number: programs write 'nan' as the normal of a vertex that has none.
+// Normals are made from the triangles where a mesh has none.
 void drop_bad_normals(TriangleMesh& mesh) {
   const auto bad = std::count_if(mesh.normals.begin(), mesh.normals.end(), [](const Point& normal) {
     return !(std::isfinite(normal[0]) && std::isfinite(normal[1]) && std::isfinite(normal[2]));
@@ -117,7 +117,7 @@ void drop_bad_normals(TriangleMesh& mesh) {
   mesh.notes.push_back("not kept: normals, of which " + std::to_string(bad) + " are not finite");
 }
 
-// A mesh of nothing at all is what an empty surface is written as.
+// Notes that a mesh has no triangles. An empty surface is written as a mesh of nothing at all.
 void note_missing_triangles(TriangleMesh& mesh) {
   if (!mesh.triangles.empty() || mesh.vertices.empty()) return;
   mesh.notes.push_back("has no triangles, but " + std::to_string(mesh.vertices.size()) +

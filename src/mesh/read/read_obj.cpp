@@ -10,7 +10,7 @@
 namespace isoweave::mesh_io {
 namespace {
 
-// What becomes of a statement that is skipped.
+// The three ways to treat a statement that is not read.
 enum class Fate { kIgnored, kNotKept, kLeftOut };
 
 struct Statement {
@@ -123,7 +123,8 @@ class ObjReader {
     return normal;
   }
 
-  // Of the numbers behind the coordinates one is a weight, which counts for free-form surfaces, three are a colour.
+  // Reads a vertex. Of the numbers behind its coordinates, one is a weight, which counts for free-form surfaces, and
+  // three are a colour.
   void read_vertex() {
     if (points_.size() == kMostVertices) words_.fail("more than 4294967295 vertices");
     points_.push_back(read_point());
@@ -169,8 +170,8 @@ class ObjReader {
     return field;
   }
 
-  // Counts from 1, or backwards from the last one read. Forward references are legal, so the upper end is checked
-  // when the file has been read.
+  // Reads an index, which counts from 1, or backwards from the last element read. Forward references are legal, so the
+  // upper end is checked when the file has been read.
   std::uint32_t read_index(std::string_view text, std::size_t count) {
     const std::optional<std::int64_t> value = parse_integer<std::int64_t>(text);
     const std::int64_t index = !value ? -1 : *value > 0 ? *value - 1 : static_cast<std::int64_t>(count) + *value;
@@ -190,7 +191,7 @@ class ObjReader {
     }
   }
 
-  // One normal per vertex is what a TriangleMesh holds; normals numbered otherwise have no place in it.
+  // Keeps the normals if each vertex has one. A TriangleMesh has no place for normals numbered otherwise.
   void keep_normals() {
     if (normals_.empty()) return;
     if (normals_follow_vertices_ && normals_.size() == mesh_.vertices.size()) {

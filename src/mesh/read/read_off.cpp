@@ -1,5 +1,5 @@
-// OFF in text with its variants: counts, vertices, polygons. Of what may follow coordinates, normals are read; colours
-// and texture coordinates are not. Nor is the colour behind the corners of a face.
+// OFF in text with its variants: counts, vertices, polygons. Normals behind the coordinates are read; colours and
+// texture coordinates are not. Nor is the colour behind the corners of a face.
 #include "mesh/read/mesh_leftovers.hpp"
 #include "mesh/read/mesh_words.hpp"
 #include "mesh/read/polygons.hpp"
@@ -7,7 +7,7 @@
 namespace isoweave::mesh_io {
 namespace {
 
-// What the letters before 'OFF' say.
+// The facts that the letters before 'OFF' give.
 struct OffKind {
   bool texture = false, colours = false, normals = false;
   bool other_space = false;  // four coordinates, or as many as the file says
@@ -68,7 +68,7 @@ class OffReader {
     if (!words_.next_line()) input_.fail(std::string("truncated: expected ") + what + ", found the end of the file");
   }
 
-  // The keyword may be missing.
+  // Reads the header, of which the keyword may be missing.
   void read_header() {
     expect_line("'OFF'");
     std::string_view look = words_.rest();

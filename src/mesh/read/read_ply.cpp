@@ -102,7 +102,8 @@ class PlyReader {
     return number_from_bits(load_bits(used, header_.encoding == PlyEncoding::kBigEndian), type);
   }
 
-  // A float may have more digits than it holds, which are the only ones for a place far from the origin.
+  // Reads a number in text. A float may have more digits than it holds; for a place far from the origin these digits
+  // matter.
   double next_in_text(PlyType type) {
     const std::string_view token = input_.read_token();
     if (token.empty()) input_.fail("truncated: expected a number, found the end of the file");
@@ -184,8 +185,8 @@ class PlyReader {
     });
   }
 
-  // Those before the first that is not finite, where a vertex is x y z in little-endian float32 and no more. They are
-  // what almost every file has, and this is ten times as fast. Tells how many there are.
+  // Reads the vertices before the first one that is not finite, where a vertex is x y z in little-endian float32 and no
+  // more. Almost every file is of this kind, and this way is ten times as fast. Returns the number of vertices read.
   std::uint64_t read_plain_vertices(const PlyElement& element) {
     constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
     const auto is_plain = [](const PlyProperty& property, std::string_view name) {
@@ -204,7 +205,7 @@ class PlyReader {
     });
   }
 
-  // Where each property belongs among x y z nx ny nz, or that it is the value; -1 for all others.
+  // The slot of each property among x y z nx ny nz and the value; -1 for all others.
   std::vector<int> coordinate_slots(const PlyElement& element) const {
     constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
     std::vector<int> slots;
@@ -247,7 +248,7 @@ class PlyReader {
     }
   }
 
-  // The same for faces: those before the first that is no triangle, or refers to a vertex that is not there.
+  // Reads the faces before the first one that is no triangle, or that refers to a vertex that does not exist.
   std::uint64_t read_plain_triangles(const PlyElement& element, std::uint64_t most) {
     const PlyProperty& corners = element.properties.front();
     const bool is_plain = element.properties.size() == 1 && is_corner_list(corners) &&
@@ -292,8 +293,8 @@ class PlyReader {
     }
   }
 
-  // Every second triangle is turned over. A corner of -1 begins another strip; triangles that repeat a corner only lead
-  // from one part of a strip to the next.
+  // Reads a strip. Every second triangle is turned over. A corner of -1 begins another strip. Triangles that repeat a
+  // corner only lead from one part of a strip to the next.
   void read_strip(const PlyProperty& property, std::uint64_t strip) {
     const std::uint64_t length = next_list_length(property);
     std::array<std::uint32_t, 3> last{};
@@ -335,7 +336,7 @@ class PlyReader {
     }
   }
 
-  // More data than the header says means that one of them is wrong.
+  // Refuses more data than the header declares: one of the two is wrong.
   void check_end() {
     for (int c = input_.get(); c >= 0; c = input_.get()) {
       if (!is_blank(c) && c != kEndOfText) {

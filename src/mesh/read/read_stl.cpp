@@ -43,7 +43,7 @@ Point load_point(const std::byte* in) {
           std::bit_cast<float>(load_u32(in + 8))};
 }
 
-// The text of a header ends at the first 0, or is as long as there is room.
+// Reads the place from the text of a header, which ends at the first 0, or is as long as there is room.
 void take_place(std::span<const std::byte> header, TriangleMesh& mesh) {
   std::string text;
   for (const std::byte c : header.first(kCountAt)) text.push_back(static_cast<char>(c));
@@ -52,8 +52,8 @@ void take_place(std::span<const std::byte> header, TriangleMesh& mesh) {
   place.put_into(mesh);
 }
 
-// The triangles to read, after the header was read. Some programs never fill in the count, and some add data of their
-// own behind the triangles.
+// The number of triangles to read, after the header has been read. Some programs never fill in the count, and some add
+// data of their own behind the triangles.
 std::uint64_t read_count(MeshInput& input, TriangleMesh& mesh) {
   std::array<std::byte, kHeaderBytes> header{};
   input.read(header);
@@ -77,7 +77,7 @@ std::uint64_t read_count(MeshInput& input, TriangleMesh& mesh) {
   return said;
 }
 
-// Of each triangle two bytes have no meaning in STL itself; VisCAM and Magics keep a colour there.
+// Notes colours. Two bytes of each triangle have no meaning in STL itself; VisCAM and Magics keep a colour there.
 void note_attributes(std::uint64_t triangles, TriangleMesh& mesh) {
   MeshLeftovers leftovers;
   leftovers.left_out(triangles, "attributes of triangles, which may be colours");

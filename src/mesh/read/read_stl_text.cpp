@@ -1,5 +1,5 @@
-// STL in text. Words may stand on any lines, keywords are in any case; what follows 'facet' up to 'outer', a normal, is
-// not looked at.
+// STL in text. Words may stand on any lines, and keywords are in any case. The words between 'facet' and 'outer', a
+// normal, are skipped.
 #include "mesh/read/mesh_words.hpp"
 #include "mesh/read/welder.hpp"
 
@@ -59,7 +59,7 @@ class StlText {
     skip_name();
     for (;;) {
       const std::string keyword = next_keyword();
-      // Some leave out the blank before the name.
+      // Some programs leave out the blank before the name.
       if (keyword.starts_with("endsolid")) break;
       if (keyword != "facet") check(keyword, keyword.empty() ? "endsolid" : "facet");
       read_facet();
@@ -67,7 +67,7 @@ class StlText {
     words_.skip_line();
   }
 
-  // Its numbers may be missing, or be none.
+  // Skips a normal, whose numbers may be missing, or be none.
   void skip_normal() {
     std::string keyword = next_keyword();
     while (!keyword.empty() && !is_keyword(keyword)) keyword = next_keyword();
@@ -95,7 +95,7 @@ class StlText {
     mesh_.triangles.push_back({first, first + 1, first + 2});
   }
 
-  // Equal are those that are when they have been rounded.
+  // Joins corners whose coordinates are equal after rounding.
   void weld_corners() {
     mesh_.offset = offset_for(corners_, mesh_.triangles, place_.offset(), mesh_.notes);
     Welder welder(mesh_.vertices);

@@ -7,7 +7,7 @@
 namespace isoweave::mesh_io {
 namespace {
 
-// Cells one after another: where each ends among the corners.
+// Cells one after another: the ends of the cells among the corners.
 struct Cells {
   std::vector<std::uint64_t> ends, corners;
 
@@ -69,7 +69,7 @@ class VtkReader {
     file_.skip(array);
   }
 
-  // Its numbers, of which the file was found long enough to hold them.
+  // Opens the numbers of an array, after a check that the file is long enough to hold them.
   VtkNumbers open(const LegacyArray& array) {
     const std::optional<VtkNumberType> type = vtk_xml_number(array.type);
     const std::uint64_t size = file_.file()->size();
@@ -92,8 +92,8 @@ class VtkReader {
     return all;
   }
 
-  // Since version 5 offsets and then corners, one offset more than there are cells; before it the number of corners in
-  // front of those of each cell.
+  // Reads cells. Since version 5 there are offsets and then corners, with one offset more than there are cells. Before
+  // that, the number of corners stands in front of the corners of each cell.
   Cells read_cells(const std::vector<std::string>& words) {
     const std::uint64_t cells = file_.count_of(words, 1);
     const std::uint64_t numbers = file_.count_of(words, 2);

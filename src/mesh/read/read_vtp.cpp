@@ -112,14 +112,14 @@ class VtpReader {
     pieces_.back().scalars = xml_attribute(tag, "Scalars");
   }
 
-  // With several times an array has a tag for each; the first one counts.
+  // Takes an array. A file with several times has a tag for each of them; the first one counts.
   void take_array(std::string_view tag) {
     Arrays& arrays = pieces_.back().arrays[section_];
     const VtkArray array = vtk_array(tag, tags_.position(), input_.path());
     if (find(arrays, array.name) == nullptr) arrays.push_back(array);
   }
 
-  // A string of the field data. As text it is the numbers of its characters; it ends with a 0.
+  // A string of the field data. In text encoding it is a list of character numbers; it ends with a 0.
   std::string text_of(const VtkArray& array) {
     constexpr std::uint64_t kLongest = 1024;
     if (array.is_text()) {
@@ -139,7 +139,7 @@ class VtpReader {
     return text.substr(0, text.find('\0'));
   }
 
-  // `count` numbers, which the file is compared with before anybody makes room for them.
+  // Opens `count` numbers, after a check that the file is long enough to hold them.
   VtkNumbers open(const VtkArray& array, std::uint64_t count) {
     const std::optional<VtkNumberType> type = vtk_xml_number(array.type);
     if (!type) input_.fail("expected an array of numbers, found '" + array.name + "' of type '" + array.type + "'");
@@ -182,7 +182,7 @@ class VtpReader {
       mesh_.leftovers.not_kept("cell array '" + array.name + "'");
   }
 
-  // Of the cells of an unstructured grid.
+  // The kinds of the cells of an unstructured grid.
   std::vector<std::uint64_t> kinds_of(const VtpPiece& piece) {
     if (piece.cells == 0) return {};
     const VtkArray* const types = find(arrays_of(piece, "Cells"), "types");
@@ -193,7 +193,7 @@ class VtpReader {
     return kinds;
   }
 
-  // Where each cell ends among the corners, then the corners. add(n, corners) takes each cell.
+  // Reads the ends of the cells among the corners, then the corners. add(n, corners) takes each cell.
   template <class Add>
   void read_cells(const VtpPiece& piece, const char* section, std::uint64_t count, const Add& add) {
     if (count == 0) return;

@@ -23,7 +23,8 @@ class VtkMesh {
  public:
   explicit VtkMesh(const MeshInput& input) : input_(input) {}
 
-  // Points of a further piece; indices that follow count from its first one. `narrow`: they are floats of 32 bits.
+  // Adds the points of a further piece; later indices count from its first point. `narrow`: the points are floats of 32
+  // bits.
   void add_points(VtkNumbers& numbers, std::uint64_t count, bool narrow);
 
   // A number or a direction for each point of the piece.
@@ -34,10 +35,10 @@ class VtkMesh {
   void add_polygon(std::span<const std::uint64_t> corners);
   void add_strip(std::span<const std::uint64_t> corners);
 
-  // A cell of one of VTK's kinds, by its number. Fails for those that are no surface.
+  // Adds a cell of one of VTK's kinds, by its number. Fails for kinds that are no surface.
   void add_cell(std::uint64_t kind, std::span<const std::uint64_t> corners);
 
-  // Of this piece.
+  // The number of points of this piece.
   std::uint64_t points() const { return points_; }
 
   TriangleMesh finish(const MeshPlace& place);

@@ -16,8 +16,8 @@ class Welder {
   // points: where they are kept; empty, and changed by no one else.
   explicit Welder(std::vector<Point>& points);
 
-  // The number of this point, which is added if it is a new one. Where there are kMostPoints already, that is the
-  // number of a new one, and it is not added.
+  // The number of this point, which is added if it is new. Where there are kMostPoints already, a new point is not
+  // added and gets kMostPoints as its number.
   std::uint32_t number(const Point& point);
 
  private:

@@ -21,8 +21,8 @@ struct Counts {
 // Numbers of a viewed float are those of the float: its double has the same value.
 std::array<double, 3> as_doubles(const Point& point) { return {point[0], point[1], point[2]}; }
 
-// Adds a mesh of so many vertices and triangles, whose data begin at byte `end` of the BIN chunk; moves that behind
-// them.
+// Adds a mesh of so many vertices and triangles, whose data begin at byte `end` of the BIN chunk, and moves `end`
+// behind them.
 void add_mesh(GltfJson& json, bool normals, const Counts& counts, const Bounds& bounds, std::uint64_t& end) {
   const auto add = [&](std::uint64_t bytes, int target, GltfJson accessor) {
     json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", end}, {"byteLength", bytes}, {"target", target}});
@@ -63,7 +63,7 @@ std::string scene_text(const MeshFileOptions& options, const Counts& counts, con
   return gltf_text(json);
 }
 
-// Bytes to keep for the scene: as many as the longest numbers take, in a multiple of four.
+// The bytes to keep for the scene: as many as the longest numbers take, in a multiple of four.
 std::uint64_t reserved_bytes(const MeshFileOptions& options) {
   constexpr float kLong = -1.17549435e-38F;
   constexpr std::uint64_t kMany = std::uint64_t{1} << 60;

@@ -60,11 +60,11 @@ PackedView pack_indices(const std::vector<std::uint32_t>& indices, std::size_t v
   return view;
 }
 
-// The arrays and meshes of a scene. Data come at multiples of four in the BIN chunk, which is buffer 0; buffer 1 is
-// what they would be without packing.
+// The arrays and meshes of a scene. Data come at multiples of four in the BIN chunk, which is buffer 0. Buffer 1 stands
+// for the data without packing.
 class PackedScene {
  public:
-  // Positions, normals if there are any, indices. Returns the number of the mesh.
+  // Adds positions, normals if there are any, and indices. Returns the number of the mesh.
   std::size_t add(TriangleMesh mesh, const Grid16& grid) {
     std::vector<std::uint32_t> indices(mesh.triangles.size() * 3);
     meshopt_optimizeVertexCache(indices.data(), mesh.triangles.front().data(), indices.size(), mesh.vertices.size());
@@ -128,7 +128,7 @@ class PackedScene {
   }
 
  private:
-  // Returns the number of its accessor.
+  // Adds an array. Returns the number of its accessor.
   std::size_t add_array(const PackedView& view, GltfJson accessor) {
     const std::size_t bytes = view.count * view.stride;
     GltfJson entry{{"buffer", 1}, {"byteOffset", plain_}, {"byteLength", bytes}, {"target", view.target}};
@@ -154,14 +154,14 @@ class PackedScene {
   std::size_t plain_ = 0;
 };
 
-// Where a mesh in whole steps lies.
+// A node that places a mesh in whole steps.
 GltfJson placed_node(std::size_t mesh, const Grid16& grid, const std::array<double, 3>& offset) {
   std::array<double, 3> place = grid.origin;
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += offset[axis];
   return {{"mesh", mesh}, {"translation", place}, {"scale", {grid.step, grid.step, grid.step}}};
 }
 
-// What a viewer has to know to read it.
+// Adds the extensions that a viewer needs to read the file.
 void add_requirements(GltfJson& json, double rounding_error) {
   json["asset"]["extras"]["rounding_error"] = rounding_error;
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {

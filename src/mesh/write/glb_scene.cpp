@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
 
-// As a quaternion. RAS: half a turn about the middle of y and z, (x, y, z) -> (-x, z, y). Others: a quarter turn about
-// x, (x, y, z) -> (x, z, -y).
+// The turn to y up as a quaternion. RAS: half a turn about the middle of y and z, (x, y, z) -> (-x, z, y). Others: a
+// quarter turn about x, (x, y, z) -> (x, z, -y).
 std::array<double, 4> turn_to_y_up(const std::string& space) {
   const double half = std::sqrt(0.5);
   if (space == "RAS") return {0, half, half, 0};

@@ -36,7 +36,7 @@ struct Bounds {
 
   void add(std::span<const Point> points);
 
-  // As numbers of a mark, six of them.
+  // The bounds as six numbers of a mark.
   std::vector<std::uint64_t> state() const;
   void load(const std::vector<std::uint64_t>& state);
 };
@@ -44,18 +44,18 @@ struct Bounds {
 // glTF has no normals without a direction.
 inline Point gltf_normal(const Point& normal) { return normal == Point{0, 0, 0} ? Point{0, 0, 1} : normal; }
 
-// "asset", "scene", "scenes" and the root node, which holds mesh 0 or, if `placed` says where it lies, a node that
-// does.
+// The "asset", "scene" and "scenes" of a file, and its root node. The root holds mesh 0, or the node `placed` that
+// holds it, if that is given.
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
 
-// The same for several levels of detail (MSFT_lod), finest first: `levels` says what their nodes hold. The finest is
-// the only one that a viewer sees which does not know the extension.
+// The scene of several levels of detail (MSFT_lod), finest first: `levels` are the contents of their nodes. A viewer
+// that does not know the extension shows the finest level only.
 GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels);
 
 // The scene of a mesh without triangles: glTF has no empty meshes, nor scenes with an empty list of nodes.
 GltfJson gltf_empty_scene(const MeshFileOptions& options);
 
-// As text; whatever bytes comments have.
+// The scene as text, whatever bytes its comments have.
 std::string gltf_text(const GltfJson& scene);
 
 // The file header and the JSON chunk, filled up with blanks to `json_bytes`. `total`: bytes of the file.

@@ -118,7 +118,7 @@ std::vector<std::uint64_t> MeshFileSink::saved_state(std::size_t count) {
   return numbers;
 }
 
-// Of a mesh that goes on, with the next two numbers of its mark.
+// A part file of a mesh that is continued, with the next two numbers of its mark.
 PartFile MeshFileSink::part(const std::string& name) {
   PartFile file{part_path(name), std::nullopt};
   if (!continued()) return file;

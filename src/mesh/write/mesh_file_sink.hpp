@@ -1,4 +1,5 @@
-// What the mesh writers share: checked arguments, counts, the files behind a sink, and the order append... finish.
+// The common part of the mesh writers: checked arguments, counts, the files behind a sink, and the order append...
+// finish.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace isoweave {
 
 using Triangle64 = std::array<std::uint64_t, 3>;
 
-// What a finished mesh becomes.
+// The target of a finished mesh.
 struct MeshTarget {
   enum class Kind { kFile, kFolder, kStream, kLevel };  // kLevel: a part of a file that others write as well
 
@@ -31,7 +32,7 @@ struct MeshTarget {
 // Whether coordinates come relative to an offset. The format holds their sums in 64 bits then, if it can.
 inline bool has_offset(const MeshFileOptions& options) { return options.offset != std::array<double, 3>{0, 0, 0}; }
 
-// Where a vertex lies.
+// The place of a vertex.
 inline std::array<double, 3> placed(const Point& point, const std::array<double, 3>& offset) {
   return {offset[0] + double{point[0]}, offset[1] + double{point[1]}, offset[2] + double{point[2]}};
 }
@@ -39,19 +40,19 @@ inline std::array<double, 3> placed(const Point& point, const std::array<double,
 // "x,y,z", with the fewest digits that read back as the same numbers.
 std::string offset_text(const std::array<double, 3>& offset);
 
-// Coordinates with their offset in 32 bits, for formats that have no more; and how far that moves them.
+// Coordinates plus offset, rounded to 32 bits, for formats that have no more, and how far rounding moves them.
 class RoundedPlaces {
  public:
   // scale: of the numbers in the file.
   RoundedPlaces(std::string path, const MeshFileOptions& options, double scale = 1);
 
-  // Throws CannotWrite where 32 bits hold no such number.
+  // Throws CannotWrite where a coordinate does not fit in 32 bits.
   Point point(const Point& relative);
 
   // One line about how far vertices were moved, or none.
   std::vector<std::string> notes() const;
 
-  // As a number of a mark.
+  // The state as a number of a mark.
   std::vector<std::uint64_t> state() const { return {std::bit_cast<std::uint64_t>(farthest_)}; }
   void load(const std::vector<std::uint64_t>& state) { farthest_ = std::bit_cast<double>(state.front()); }
 
@@ -81,11 +82,12 @@ class MeshFileSink : public MeshSink {
   // The file that becomes the mesh. A folder has none.
   OutputDescriptor& file() { return atomic_ ? atomic_->descriptor() : *stream_; }
 
-  // A further file that pieces are written to: beside the mesh's own part, or, where no parts are kept, without a name.
-  // To be opened by the constructor, always in the same order, or never.
+  // Opens a further file that pieces are written to: beside the mesh's own part, or, where no parts are kept, without a
+  // name. The constructor must open it, always in the same order.
   OutputDescriptor& open_side(const std::string& name);
 
-  // What else a format must know to go on, as numbers; and those of the mark, to be taken once all sides are open.
+  // The further numbers that a format needs to continue; and the numbers of the mark, to be taken once all sides are
+  // open.
   virtual std::vector<std::uint64_t> state() const { return {}; }
   std::vector<std::uint64_t> saved_state(std::size_t count);
 
@@ -93,10 +95,10 @@ class MeshFileSink : public MeshSink {
   // still count what came before it.
   virtual void write_piece(const MeshPiece& piece) = 0;
 
-  // Writes what pieces have left in buffers of the format's own.
+  // Writes the bytes that pieces have left in the format's own buffers.
   virtual void write_held_back() {}
 
-  // Writes what can only be written at the end, and checks the file against the counts.
+  // Writes the parts that are known only at the end, and checks the file against the counts.
   virtual void complete() = 0;
 
   // Throws CannotWrite when the file is not as long as its counts say, or does not begin with `header`.
@@ -106,7 +108,7 @@ class MeshFileSink : public MeshSink {
   const MeshFileOptions& options() const { return options_; }
   bool has_offset() const { return isoweave::has_offset(options_); }
 
-  // Where a vertex lies, with its offset.
+  // The place of a vertex, with its offset.
   std::array<double, 3> placed(const Point& point) const { return isoweave::placed(point, options_.offset); }
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t triangles() const { return triangles_; }
@@ -137,8 +139,8 @@ class MeshFileSink : public MeshSink {
 // Options as they are for a format without a place for normals.
 MeshFileOptions without_normals(MeshFileOptions options);
 
-// The comments, and one each for the space and the unit in the way that 3D Slicer reads: "SPACE=LPS", "UNIT=mm"; and
-// for the offset, if there is one.
+// The comments, then one each for the space and the unit in the form that 3D Slicer reads ("SPACE=LPS", "UNIT=mm"), and
+// one for the offset, if there is one.
 std::vector<std::string> comment_lines(const MeshFileOptions& options);
 
 // The text of a comment as one line: control characters, line ends above all, become blanks.

@@ -34,7 +34,7 @@ std::string lower_case_ending(const std::string& path) {
 
 bool packs(MeshFormat format) { return format == MeshFormat::kGlb || format == MeshFormat::kPrecomputed; }
 
-// What the options ask for and the format cannot do.
+// Refuses options that the format has no place for.
 void check_options(const std::string& path, MeshFormat format, const MeshFileOptions& options) {
   if (options.compress && !packs(format)) {
     throw CannotWrite(path + ": expected a name that ends in .glb or .precomputed for a compressed mesh");
@@ -48,7 +48,7 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
   if (options.segment == 0) throw CannotWrite(path + ": expected a number of 1 or more for the object, found 0");
 }
 
-// What packing leaves, as measured on scans.
+// The size of a packed file, as measured on scans.
 std::uint64_t packed_bytes(const std::string& path, MeshFormat format, std::uint64_t vertices, std::uint64_t triangles,
                            bool normals) {
   check_count_fits(path, "triangles", 0, triangles, kMostPackedTriangles);

@@ -10,10 +10,10 @@ namespace isoweave {
 
 enum class MeshFormat { kPly, kStl, kObj, kOff, kGlb, kVtp, k3mf, kPrecomputed };
 
-// By the ending, whatever its case. Throws CannotWrite when it is none that is known.
+// The format of a path, by its ending in any case. Throws CannotWrite when the ending is unknown.
 MeshFormat mesh_format(const std::string& path);
 
-// The same; throws as well for options that the format does not have.
+// The format of a path. Throws as well for options that the format does not have.
 MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options);
 
 // Whether the format has a place for numbers at the vertices.

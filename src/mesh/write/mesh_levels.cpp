@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kRecordBytes = 12;  // of a position, a normal, a face
 
-// A level as its sink. The file goes on as long as one of them is there.
+// The sink of one level. The file stays open as long as one of its levels does.
 class LevelSink final : public MeshSink {
  public:
   LevelSink(std::shared_ptr<LevelFile> file, std::size_t level) : file_(std::move(file)), level_(level) {}

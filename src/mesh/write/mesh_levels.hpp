@@ -1,4 +1,4 @@
-// Several levels of detail that become one file: each waits in files of its own until all are there.
+// Several levels of detail that become one file. Each level waits in files of its own until all are there.
 #pragma once
 
 #include <atomic>
@@ -16,12 +16,12 @@ namespace isoweave {
 
 class LevelFile;
 
-// What one level has: positions, normals and faces as GLB and 3 x 32 bits store them.
+// The data of one level: positions, normals and faces as GLB and 3 x 32 bits store them.
 class LevelParts final : public MeshFileSink {
  public:
   LevelParts(LevelFile& file, const std::string& path, const MeshFileOptions& options);
 
-  // Appends all of it to a file: positions, normals, faces.
+  // Appends the level to a file: positions, normals, faces.
   void append_to(AtomicFile& target);
 
   // The level in memory.
@@ -45,7 +45,7 @@ class LevelParts final : public MeshFileSink {
   std::vector<std::byte> records_;
 };
 
-// The file. Levels are appended to by several threads at the same time, each by one.
+// The file of all levels. Several threads append to the levels at the same time, each to one.
 class LevelFile {
  public:
   // levels: options of each, finest first.

@@ -54,7 +54,7 @@ class ObjSink final : public MeshFileSink {
     text_.clear();
   }
 
-  // There are no counts in the file; its length is checked against the text made.
+  // Writes the rest. The file has no counts, so its length is checked against the text made.
   void complete() override {
     drain();
     check_written(text_bytes_, {});

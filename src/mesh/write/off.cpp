@@ -5,7 +5,8 @@
 namespace isoweave {
 namespace {
 
-// The counts are known last: a comment takes the digits that they do not need, so that the header keeps its length.
+// The header. The counts are known last: a comment takes the digits that they do not need, so that the header keeps its
+// length.
 std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t faces) {
   constexpr std::size_t kDigits = 40;
   const std::string counts = std::to_string(vertices) + " " + std::to_string(faces);

@@ -141,7 +141,7 @@ class PackedPrecomputedLevels final : public LevelFile {
   }
 
  private:
-  // Around all levels.
+  // A grid around all levels.
   Grid16 grid() {
     std::vector<Point> corners;
     for (const LevelParts& level : levels()) {
@@ -176,8 +176,8 @@ class PackedPrecomputedLevels final : public LevelFile {
     write_folder(path(), options(), finest, packed);
   }
 
-  // Of triangles with equal sides that have the area of the mesh: neuroglancer draws the coarsest level in which it
-  // spans few pixels.
+  // The length of an edge if all triangles were equilateral and had the area of the mesh. neuroglancer draws the
+  // coarsest level in which that length spans few pixels.
   static double mean_edge(const TriangleMesh& mesh) {
     double area = 0;
     for (const auto& t : mesh.triangles) {

@@ -32,7 +32,7 @@ std::vector<std::byte> header_bytes(const MeshFileOptions& options, std::uint32_
   return header;
 }
 
-// Of unit length, by the right-hand rule; zero for a triangle without area, as is the custom.
+// The unit normal of a facet, by the right-hand rule; zero for a triangle without area, as is the custom.
 Point facet_normal(const Point& a, const Point& b, const Point& c) {
   std::array<double, 3> u{};
   std::array<double, 3> v{};
@@ -47,7 +47,7 @@ Point facet_normal(const Point& a, const Point& b, const Point& c) {
   return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
-// Positions by number. They never move: an array that grows would hold itself twice while it does.
+// Positions by number. They never move, as a growing array would need twice its memory for a moment.
 class Positions {
  public:
   std::uint64_t size() const { return size_; }

@@ -25,7 +25,7 @@ std::string data_array(const std::string& type_and_name, int components, std::ui
          "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
 }
 
-// Of a vertex: with an offset in 64 bits.
+// The bytes of a vertex. With an offset its coordinates have 64 bits.
 std::uint64_t vertex_bytes(const MeshFileOptions& options) {
   return has_offset(options) ? kWidePointBytes : kPointBytes;
 }
@@ -128,7 +128,7 @@ class VtpSink final : public MeshFileSink {
     file().append(array);
   }
 
-  // Where each triangle ends among the corners: 3, 6, 9...
+  // Writes the end of each triangle among the corners: 3, 6, 9...
   void write_offsets() {
     constexpr std::uint64_t kAtOnce = 8192;
     write_word(triangles() * kWord);

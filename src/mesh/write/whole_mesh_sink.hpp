@@ -30,7 +30,7 @@ class WholeMeshSink : public MeshFileSink {
   std::vector<std::string> notes_;
 };
 
-// All of a file of items in memory.
+// Reads a whole file of items into memory.
 template <class Item>
 std::vector<Item> read_all(OutputDescriptor& file, std::uint64_t count) {
   std::vector<Item> items(to_size(count));

@@ -43,7 +43,7 @@ inline constexpr std::size_t kMrcHeadBytes = 1024;
 bool is_npy(std::string_view head);
 OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options);
 
-// Of an archive: by the first name in it, or by its own.
+// Whether an archive is NPZ, by the first name in it, or by its own name.
 bool is_npz(std::string_view head, std::string_view path);
 // The dataset of the options is the name of an array.
 OpenedVolume open_npz(const FilePtr& file, const OpenOptions& options);
@@ -88,7 +88,7 @@ bool has_dicom_magic(std::string_view head);
 inline constexpr std::size_t kDicomHeadBytes = 1024;
 inline constexpr std::size_t kDicomMagicEnd = 132;
 
-// Its magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
+// Whether a file is HDF5. The magic may lie behind a block of the user's, of 512 bytes or a larger power of 2.
 bool is_hdf5(const InputFile& file);
 OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options);
 

@@ -22,7 +22,7 @@ bool is_png(std::string_view head) { return head.starts_with("\x89PNG\r\n\x1a\n"
 
 bool is_dicom(std::string_view head) { return has_dicom_magic(head) || is_bare_dicom(head); }
 
-// Behind a preamble of 128 bytes of anything.
+// Whether the magic of DICOM stands behind a preamble of 128 bytes of anything.
 bool has_dicom_magic(std::string_view head) {
   constexpr std::string_view kMagic = "DICM";
   return head.size() >= kDicomMagicEnd && head.substr(kDicomMagicEnd - kMagic.size(), kMagic.size()) == kMagic;
@@ -31,7 +31,7 @@ bool has_dicom_magic(std::string_view head) {
 bool is_hdf5(const InputFile& file) {
   constexpr std::string_view kMagic = "\x89HDF\r\n\x1a\n";
   constexpr std::uint64_t kFirstBlock = 512;
-  // Of a file that is inflated as it is read, only what is at hand.
+  // In a file that is inflated while it is read, looks only at the bytes at hand.
   const std::uint64_t end = file.jumps() ? file.size() : std::min<std::uint64_t>(file.size(), kLargestHeader);
   for (std::uint64_t at = 0; at < end; at = at == 0 ? kFirstBlock : 2 * at) {
     std::array<char, kMagic.size()> head{};

@@ -102,8 +102,8 @@ AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& o
   return choice;
 }
 
-// Lets the axis of slices and the one that holds them change their names. Returns the place of the former, which says
-// how far slices are apart; kNoAxis where nothing changes.
+// Swaps the names of the axis of slices and of the axis that the options take slices from. Returns the place of the
+// former, which says how far slices are apart; kNoAxis where nothing changes.
 std::size_t take_slices_from(std::vector<ArrayAxis>& axes, SliceAxis from, std::string_view path) {
   if (from == SliceAxis::kSlices) return kNoAxis;
   const bool channels = from == SliceAxis::kChannels;
@@ -124,7 +124,7 @@ std::size_t take_slices_from(std::vector<ArrayAxis>& axes, SliceAxis from, std::
   return static_cast<std::size_t>(slices - axes.begin());
 }
 
-// Without names: which axes are left out for others to be k, j, i.
+// Chooses axes without names: the ones that are left out, so that the others are k, j, i.
 AxisChoice choose_unnamed(const std::vector<ArrayAxis>& axes, const OpenOptions& options, std::string_view path) {
   AxisChoice choice;
   choice.at.assign(axes.size(), 0);

@@ -33,7 +33,8 @@ std::vector<std::byte> decode_chunk(std::vector<std::byte> stored, std::span<con
 // CRC-32C (Castagnoli).
 std::uint32_t crc32c(std::span<const std::byte> bytes);
 
-// Each gives what `stored` decodes to, at most `most` bytes, or throws BadInput naming `path`.
+// The decoders of single codecs. Each returns the decoded bytes of `stored`, at most `most`, or throws BadInput naming
+// `path`.
 std::vector<std::byte> decode_zstd(std::span<const std::byte> stored, std::size_t most, const std::string& path);
 std::vector<std::byte> decode_blosc(std::span<const std::byte> stored, std::size_t most, const std::string& path);
 std::vector<std::byte> decode_lz4(std::span<const std::byte> stored, std::size_t most, const std::string& path);

@@ -160,7 +160,7 @@ bool has_chunks(const ChunkedArray& array) {
   return false;
 }
 
-// Of one chunk, decoded.
+// The bytes of one decoded chunk.
 std::uint64_t chunk_bytes(const ChunkedArray& array) {
   std::uint64_t bytes = sample_bytes(array.type);
   for (const std::int64_t size : array.chunk) bytes *= static_cast<std::uint64_t>(size);

@@ -1,5 +1,4 @@
-// An array that is kept as a folder of files, one per chunk or shard: what its metadata say, whichever format they are
-// of.
+// An array that is kept as a folder of files, one per chunk or shard: the facts of its metadata, in any format.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace isoweave {
 
-// Where a file holds several chunks: a grid of `chunks` per axis behind an index of their places.
+// The layout of a file that holds several chunks: a grid of `chunks` per axis behind an index of their places.
 struct Shards {
   std::vector<std::int64_t> chunks;
   bool index_at_end = true;

@@ -134,7 +134,7 @@ const Json* factors_of(const Json& attributes, std::int64_t level) {
   return nullptr;
 }
 
-// What is said of all levels holds for one that says nothing of its own.
+// Takes the attributes of all levels for a level that has none of its own.
 void take_group_attributes(FoundArray& found, const ZarrNode& group, std::int64_t level) {
   Json& own = found.node.attributes;
   if (!group.attributes.is_object() || !own.is_object()) return;
@@ -169,7 +169,7 @@ std::optional<std::int64_t> n5_level(const std::string& name) {
   return parse_integer(std::string_view(name).substr(1));
 }
 
-// What the group says of an array at `name` in it; nothing where it says nothing.
+// The description that a group gives of an array at `name` in it; nothing where there is none.
 std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& array, const std::string& name) {
   FoundArray found{array, {}, {}, {}, {}};
   std::string level = name;

@@ -21,10 +21,11 @@ struct ZarrNode {
   Json attributes;     // what users and conventions add
 };
 
-// Nothing for a folder without metadata of these formats. Throws BadInput for metadata that cannot be read.
+// Opens a folder. Nothing for a folder without metadata of these formats. Throws BadInput for metadata that cannot be
+// read.
 std::optional<ZarrNode> open_node(const std::string& folder);
 
-// What the metadata of an array say. Throws BadInput for what is wrong or not supported, by its name.
+// The array that the metadata describe. Throws BadInput, by name, for metadata that are wrong or not supported.
 ChunkedArray array_of(const ZarrNode& node);
 ChunkedArray zarr2_array(const ZarrNode& node);
 ChunkedArray zarr3_array(const ZarrNode& node);

@@ -68,7 +68,8 @@ class InflatedBytes final : public DicomBytes {
                           out.first(static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), begin_ - offset))));
   }
 
-  // From the block that holds the inflated byte `at`. The one before is kept: elements are looked back at.
+  // Reads from the block that holds the inflated byte `at`. The block before it is kept, as readers look back at
+  // elements.
   std::size_t read_block(std::uint64_t at, std::span<std::byte> out) {
     const std::uint64_t number = at / kBlock;
     if (blocks_[0].number != number && blocks_[1].number != number) {

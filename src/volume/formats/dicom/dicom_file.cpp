@@ -149,7 +149,7 @@ void clean(std::span<std::byte> samples, const DicomSlice& slice) {
   for (std::size_t at = 0; at < samples.size(); at += sizeof(Word)) {
     Word word;
     std::memcpy(&word, samples.data() + at, sizeof(Word));
-    // To the top, then down with the sign of the type.
+    // Shifts the bits to the top, then down with the sign of the type.
     const auto top = static_cast<Sample>(static_cast<Word>(word << above));
     const auto value = static_cast<Sample>(top >> below);
     std::memcpy(samples.data() + at, &value, sizeof(Word));

@@ -46,8 +46,8 @@ struct DicomSlice {
   bool has_unit = true;   // whether the pixel spacing is in mm; else it is not said
   std::string placed_by;  // where a frame's place is not its own: what it is taken from, for a note
 
-  // Where the samples lie: one range of the file, or, where they are packed, one for each fragment. A file that is
-  // deflated counts as inflated.
+  // The places of the samples: one range of the file, or, where samples are packed, one range for each fragment. Places
+  // in a deflated file are counted as inflated.
   std::vector<DicomRange> pixels;
   bool packed = false;
   std::uint64_t data_set = 0;         // its first byte

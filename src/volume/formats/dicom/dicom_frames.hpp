@@ -17,7 +17,7 @@ class DicomFrames {
   // Every element of the data set, in order.
   void take(const DicomElementWalk& walk, const DicomElement& element);
 
-  // Where the samples are: `plain`, or the fragments of packed ones.
+  // Sets the places of the samples: `plain`, or the fragments of packed ones.
   void set_samples(bool packed, DicomFragments fragments, DicomRange plain);
 
   // One slice for each frame, with what `common` says of all of them. Throws BadInput when there are no samples, when
@@ -25,7 +25,7 @@ class DicomFrames {
   std::vector<DicomSlice> slices(const DicomSlice& common) const;
 
  private:
-  // What the groups say; empty where they do not.
+  // The place according to the groups; empty where they do not give it.
   struct Place {
     std::string position, orientation, pixel_spacing, slice_spacing, thickness, slope, intercept, image_type;
   };

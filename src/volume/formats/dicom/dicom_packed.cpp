@@ -59,7 +59,7 @@ std::optional<FrameHeader> jpeg2000_header(Packed packed) {
 }
 
 bool starts_frame(std::uint32_t marker) {
-  // Not the tables among them (C4, C8, CC); F7 is that of JPEG-LS.
+  // The markers of frames. C4, C8 and CC among them are tables; F7 is the marker of JPEG-LS.
   return marker == 0xf7 || (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc);
 }
 

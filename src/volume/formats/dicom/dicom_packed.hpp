@@ -1,4 +1,4 @@
-// What is known of packed DICOM samples without a decoder: run lengths, and the frame headers of the JPEG family.
+// The facts about packed DICOM samples that need no decoder: run lengths, and the frame headers of the JPEG family.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Where the slices of a DICOM series lie: parallel planes of one kind, in order along their normal.
+// The places of the slices of a DICOM series: parallel planes of one kind, in order along their normal.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace isoweave {
 
-// What must be the same on all slices of a series.
+// The facts that must be the same on all slices of a series.
 struct SliceKindFacts {
   std::int64_t columns = 0;
   std::int64_t rows = 0;

@@ -43,7 +43,7 @@ bool is_same(const Look& a, const Look& b) {
          are_close(a.orientation, b.orientation) && are_close(a.pixel_spacing, b.pixel_spacing);
 }
 
-// What sets an image apart from the slices.
+// The reason why an image is no slice of the series.
 std::string reason(const Look& scout, const Look& usual) {
   if (scout.is_localizer && !usual.is_localizer) return "a localizer";
   if (scout.samples != usual.samples) return "in colour";

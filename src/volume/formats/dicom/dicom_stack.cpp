@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kSliceVector = 0x00540080;
 constexpr std::uint32_t kGridOffsets = 0x3004000c;
 constexpr std::uint32_t kSliceLocations = 0x00182005;
-// No offsets of frames are longer than this: 2^17 of them, of 16 letters and a backslash.
+// The longest list of frame offsets: 2^17 of them, of 16 letters and a backslash.
 constexpr std::size_t kLongestOffsets = std::size_t{17} << 17;
 
 std::vector<std::uint32_t> words_at(const DicomElementWalk& walk, const DicomElement& element) {
@@ -59,7 +59,7 @@ std::vector<double> offsets_of(const std::string& text, std::string_view what, c
 
 void note(std::string& notes, const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; }
 
-// What a tag that frames are told apart by stands for, where that is not a place.
+// The name of a tag that frames are told apart by, where the tag is not a place.
 std::string_view moment_of(std::uint32_t tag) {
   struct Known {
     std::uint32_t tag;

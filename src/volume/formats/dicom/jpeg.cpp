@@ -178,7 +178,8 @@ class JpegReader {
     return decode_blocks(size_, {dc, ac, *quantization_[table_], used_, restart_}, bits, samples);
   }
 
-  // Before anything is made as large as a frame says that it is: no code is shorter than a bit.
+  // Fails unless the stream has so many bits. Called before anything is made as large as a frame declares: no code is
+  // shorter than a bit.
   void expect_bits(std::size_t least) const {
     if (8 * (stream_.size() - at_) < least) damaged(std::to_string(stream_.size() - at_) + " bytes for all of them");
   }

@@ -97,7 +97,7 @@ void put_block(const JpegSize& size, int used, const Block& block, std::int64_t 
   }
 }
 
-// What is expected of a sample from three before it (T.81, H.1.2.1).
+// The prediction of a sample from three before it (T.81, H.1.2.1).
 int predicted(int predictor, int left, int above, int corner) {
   switch (predictor) {
     case 1:

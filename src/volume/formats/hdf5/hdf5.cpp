@@ -297,7 +297,8 @@ AxisScaling scaling_of(const Hdf5Place& place, const std::vector<ArrayAxis>& axe
   return scaling;
 }
 
-// A scaling that all samples share stays with the volume; with one that changes they are read as values.
+// Scales the samples. A scaling that all samples share stays with the volume; with one that changes, samples are read
+// as values.
 void scale_samples(OpenedVolume& volume, AxisScaling scaling) {
   VolumeInfo& info = volume.info;
   const auto varies = [](const std::vector<double>& list) {

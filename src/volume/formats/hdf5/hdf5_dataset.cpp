@@ -51,7 +51,7 @@ std::string name_of(const Number& number) {
   return (number.kind == H5T_FLOAT ? "float" : number.is_signed ? "int" : "uint") + std::to_string(8 * number.bytes);
 }
 
-// What a type is called in messages, where it is no number that machines have.
+// The name of a type in messages, where it is no number that machines have.
 std::string text_of_class(const Hdf5Functions& h5, hid_t type) {
   const std::string bits = std::to_string(8 * h5.tget_size(type));
   switch (h5.tget_class(type)) {

@@ -22,7 +22,7 @@ struct Hdf5Dataset {
 // All datasets of numbers and of 2 axes or more that hard links lead to, a bounded number of them.
 std::vector<Hdf5Dataset> find_datasets(const Hdf5Session& session, hid_t file);
 
-// What an open dataset is. Throws BadInput naming `path` where it is not an array.
+// The description of an open dataset. Throws BadInput naming `path` where the dataset is not an array.
 Hdf5Dataset describe_dataset(const Hdf5Session& session, hid_t dataset, const std::string& name);
 
 // Attributes of an object, as long as the session lasts.

@@ -20,7 +20,7 @@ std::vector<double> numbers_of(const Hdf5File& file, const std::string& name, st
   return std::move(*numbers);
 }
 
-// From the slowest axis of the samples to the fastest; the parts of a sample lie together.
+// The names of the axes, from the slowest axis of the samples to the fastest. The parts of a sample lie together.
 std::vector<std::string> names_of(std::size_t dimensions, std::size_t rank) {
   std::vector<std::string> names{"x", "y", "z", "time"};
   names.resize(dimensions, "");

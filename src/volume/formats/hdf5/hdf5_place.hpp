@@ -20,7 +20,7 @@ struct Hdf5File {
   std::string path;  // for messages
 };
 
-// What a format says of one dataset.
+// The description that a format gives of one dataset.
 struct Hdf5Place {
   std::string format;                   // for notes
   std::string dataset;                  // its path in the file
@@ -38,9 +38,10 @@ struct Hdf5Place {
   std::vector<std::string> notes;
 };
 
-// Each of these gives nothing where the file is not of its format. `named`: the dataset that the caller names, with a
-// slash in front; where empty, the one that the format has for volumes and that `options` choose. Throw BadInput for
-// what such a file must not say, and for choices outside it.
+// The places of datasets in files of each format; nothing where the file is not of that format. `named`: the dataset
+// that the caller names, with a slash in front. Where it is empty, the dataset is the one that the format has for
+// volumes and that `options` choose. Throw BadInput where such a file contradicts its format, and for choices outside
+// it.
 std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& named, const OpenOptions& options);
 std::optional<Hdf5Place> itk_place(const Hdf5File& file, const std::string& named);
 std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& named);

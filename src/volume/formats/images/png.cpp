@@ -43,7 +43,7 @@ class PngFile {
   int bits() const { return png_get_bit_depth(png_, info_); }
   int colour() const { return png_get_color_type(png_, info_); }
 
-  // To be called before anything is asked for.
+  // Reads the header. Must be called before any other member.
   bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_read_info(png_, info_);
@@ -57,7 +57,7 @@ class PngFile {
     png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     png_read_image(png_, rows);
-    // Its end makes the sum of the data count.
+    // The end of the file makes the sum of the data count.
     png_read_end(png_, nullptr);
     return true;
   }

@@ -43,8 +43,8 @@ SliceKind kind_of_name(const std::string& path) {
   return SliceKind::kOther;
 }
 
-// What a file holds; an empty file is a slice that was lost only if its name is that of a slice. Where only DICOM is
-// looked for, pictures are other files.
+// The kind of a file. An empty file is a lost slice only if its name is that of a slice. Where only DICOM is looked
+// for, pictures are other files.
 SliceKind kind_of(const std::string& path, bool only_dicom) {
   const SliceKind named = kind_of_name(path);
   if (only_dicom && (named == SliceKind::kTiff || named == SliceKind::kPng)) return SliceKind::kOther;
@@ -94,7 +94,7 @@ struct Entries {
   std::vector<std::string> files, folders;
 };
 
-// What a folder holds but for hidden files and folders. Links count as what they lead to.
+// The entries of a folder, without hidden files and folders. A link counts as the file that it leads to.
 Entries entries_of(const std::string& folder) {
   Entries entries;
   std::error_code error;
@@ -237,7 +237,7 @@ std::vector<std::string> dicom_files_beside(const std::string& path) {
     const bool empty = fs::file_size(name, error) == 0;
     if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);
   }
-  // One that is hidden is not listed.
+  // Whether the file is listed: hidden ones are not.
   const bool is_listed =
       std::any_of(files.begin(), files.end(), [&](const std::string& name) { return is_same_file(name, path); });
   if (!is_listed) files.push_back(path);

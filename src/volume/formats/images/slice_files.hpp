@@ -21,7 +21,7 @@ std::vector<std::string> files_of_folder(const std::string& folder);
 // The files that a pattern names, in natural order. Throws BadInput when there is none.
 std::vector<std::string> files_of_pattern(const std::string& pattern);
 
-// What one file of a series holds, told by its first bytes.
+// The kind of one file of a series, told by its first bytes.
 enum class SliceKind { kOther, kTiff, kPng, kDicom };
 
 struct SliceFiles {

@@ -25,7 +25,7 @@ std::int64_t count_of(std::string_view text, std::string_view what, std::string_
   return *count;
 }
 
-// A length that can be one; programs write 0, negative steps and NaN where they know none.
+// A number as a length. Nothing where it cannot be one: programs write 0, negative steps and NaN where they know none.
 std::optional<double> length_of(std::string_view text) {
   const auto value = parse_double(trimmed(text));
   if (!value || !std::isfinite(*value) || *value == 0) return std::nullopt;
@@ -172,7 +172,7 @@ std::string shape_letters(std::string_view text, std::size_t axes) {
   return std::string(axes - known.size(), '?') + std::string(known);
 }
 
-// What tifffile writes of an array that it is given: {"shape": [2, 20, 24, 28], "axes": "CZYX"}.
+// The description that tifffile writes of an array: {"shape": [2, 20, 24, 28], "axes": "CZYX"}.
 StackDescription parse_tifffile(std::string_view text, std::string_view path) {
   StackDescription stack;
   const auto shape = json_numbers(text, "shape");
@@ -186,7 +186,7 @@ StackDescription parse_tifffile(std::string_view text, std::string_view path) {
     ArrayAxis axis{(*shape)[n], std::string(1, letters[n])};
     if (letters[n] == 'C') axis.name = "channel";
     if (letters[n] == 'T') axis.name = "time";
-    // Of an axis that is only called a sequence the images are slices.
+    // The images along an axis that is only called a sequence are slices.
     if (letters[n] == 'Z' || (!has_z && (letters[n] == 'I' || letters[n] == 'Q'))) axis.name = "z";
     stack.images = product(stack.images, axis.size, path);
     stack.axes.push_back(std::move(axis));

@@ -1,4 +1,4 @@
-// What the programs that write stacks of pages say about them in the image description of the first page.
+// The descriptions of stacks that programs write into the image description of the first page.
 #pragma once
 
 #include <array>

@@ -27,7 +27,7 @@ TiffFile::TiffFile(FilePtr file) : file_(std::move(file)) {
   if (options == nullptr) throw std::bad_alloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, this);
   TIFFOpenOptionsSetWarningHandlerExtR(options, drop_message, this);
-  // What libtiff keeps is no larger than what is stored, but for the state of the decoders.
+  // libtiff keeps no more than the stored bytes, and the state of the decoders.
   constexpr std::uint64_t kDecoders = 64 << 20;
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, static_cast<tmsize_t>(file_->size() + kDecoders));
   tiff_ = TIFFClientOpenExt(file_->path().c_str(), "rm", this, read, write, seek, close, size, map, unmap, options);

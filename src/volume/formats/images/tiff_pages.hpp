@@ -10,7 +10,7 @@
 
 namespace isoweave {
 
-// What must be the same on all pages.
+// The facts that must be the same on all pages.
 struct TiffPageKind {
   std::int64_t width = 0;
   std::int64_t height = 0;

@@ -21,7 +21,7 @@ class TiffPageStream final : public ByteStream {
   std::size_t read(std::span<std::byte> out) override;
   std::uint64_t skip(std::uint64_t count) override;
 
-  // What a band of the first page takes to be decoded: its rows, a tile, and what is stored of either.
+  // The bytes that decoding a band of the first page takes: its rows, a tile, and the stored bytes of either.
   std::uint64_t held_bytes();
 
  private:

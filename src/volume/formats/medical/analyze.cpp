@@ -89,7 +89,7 @@ std::int64_t set_dims(const AnalyzeHeader& header, VolumeInfo& info) {
   return volumes;
 }
 
-// Where the samples lie but for what the format does not say: which side is left, and where the origin is.
+// Sets the axes. The format does not say which side is left, nor where the origin is.
 void set_axes(const AnalyzeHeader& header, VolumeInfo& info) {
   Axes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -137,7 +137,7 @@ std::int64_t channels_of(const MetaFields& fields, const OpenOptions& options, s
   return channels;
 }
 
-// From the slowest axis to the fastest: the fourth one is time, further ones have one sample.
+// The axes from the slowest to the fastest: the fourth one is time, and further ones have one sample.
 std::vector<ArrayAxis> axes_of(const MetaFields& fields, const OpenOptions& options, std::string_view path) {
   const std::vector<std::string_view> words = words_of(fields.get({"dimsize"}));
   const std::int64_t axes = integer_of(fields, {"ndims"}, path).value_or(0);
@@ -183,7 +183,7 @@ void set_axes(OpenedVolume& volume, const MetaFields& fields, std::size_t axes) 
   const auto matrix = numbers_of(fields, {"transformmatrix", "rotation", "orientation"}, axes * axes, info.path);
   const auto origin = numbers_of(fields, {"offset", "position", "origin"}, axes, info.path);
   const std::vector<double> spacing = spacing_of(info, fields, axes);
-  // What MetaIO writes where it knows none.
+  // The text that MetaIO writes where it knows no value.
   constexpr std::string_view kUnknown = "?";
   const std::string_view given = fields.get({"distanceunits"});
   const std::string text(given == kUnknown ? std::string_view() : given);
@@ -213,8 +213,8 @@ std::uint64_t compressed_begin(const FilePtr& file, const MetaFields& fields, st
   return file->exact_size() - static_cast<std::uint64_t>(*stored);
 }
 
-// What is stored behind the header, or in the one other file, is as long as the header says. Nobody needs the number:
-// the stream ends by itself.
+// Notes it where the packed samples, behind the header or in the one other file, are not as long as the header says.
+// The number is not needed: the stream ends by itself.
 void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaFields& fields) {
   const std::string value = lower_case(fields.get({kDataFile}));
   const auto said = integer_of(fields, {"compresseddatasize"}, info.path);

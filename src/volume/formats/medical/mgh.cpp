@@ -55,7 +55,7 @@ std::optional<SampleType> type_of(std::int32_t code) {
   }
 }
 
-// What FreeSurfer takes for a volume that does not say where it is: coronal slices of 1 mm around the origin.
+// Places a volume that does not say where it is, as FreeSurfer does: coronal slices of 1 mm around the origin.
 void place_by_default(MghHeader& header, VolumeInfo& info) {
   if (header.placed) return;
   header.spacing = {1, 1, 1};

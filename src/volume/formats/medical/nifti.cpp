@@ -84,7 +84,7 @@ NiftiHeader parse_version2(const HeaderFields& field) {
   return header;
 }
 
-// Nothing unless both the size field and the magic are those of a NIfTI header.
+// The header, or nothing unless both the size field and the magic are those of NIfTI.
 std::optional<NiftiHeader> parse_header(std::string_view bytes) {
   for (const bool swapped : {false, true}) {
     const HeaderFields field(bytes, swapped);
@@ -147,7 +147,7 @@ SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
   bad_input(path, "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
 }
 
-// From the slowest axis to the fastest: channels (dimensions 5 to 7 as one), time, z, y, x.
+// The axes from the slowest to the fastest: channels (dimensions 5 to 7 as one), time, z, y, x.
 std::vector<ArrayAxis> axes_of(const NiftiHeader& header, std::string_view path) {
   const std::int64_t rank = header.dim[0];
   if (rank < 1 || rank > 7) bad_input(path, "1 to 7 dimensions", std::to_string(rank));
@@ -239,7 +239,8 @@ double shortest_step(const Axes& axes) {
   return shortest;
 }
 
-// Both forms are kept as floats, the one as a rotation, so that they differ by rounding; more is told.
+// Notes where the two forms of the axes differ by more than rounding. Both are kept as floats, and one as a rotation,
+// so they differ by rounding.
 void note_other_form(VolumeInfo& info, const NiftiHeader& header, const Axes& taken) {
   constexpr double kRounding = 1e-2;  // of a step between samples
   VolumeInfo ignored;
@@ -291,7 +292,7 @@ void set_scaling(VolumeInfo& info, const NiftiHeader& header) {
   info.intercept = std::isfinite(header.intercept) ? header.intercept : 0;
 }
 
-// What the header says of its samples besides their type.
+// Notes what the header says of its samples besides their type.
 void note_samples(VolumeInfo& info, const NiftiHeader& header, std::int64_t channels) {
   const auto bits = static_cast<std::int64_t>(8 * sample_bytes(info.type));
   if (header.bits != 0 && header.bits != bits) {

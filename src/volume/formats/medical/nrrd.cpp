@@ -53,7 +53,7 @@ bool is_spatial(const NrrdAxis& axis, bool oriented) {
          axis.kind == "none";
 }
 
-// Which axes are those of space; of more than three, those of one sample are none, and then the last one is time.
+// Finds the spatial axes. Of more than three axes, those of one sample are left out; then the last one is time.
 std::vector<bool> find_spatial(std::vector<NrrdAxis>& axes, std::string_view path) {
   const bool oriented = std::any_of(axes.begin(), axes.end(), [](const NrrdAxis& axis) { return axis.step; });
   std::vector<bool> spatial;

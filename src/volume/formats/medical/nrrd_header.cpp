@@ -24,7 +24,7 @@ void read_list(NrrdFields& fields, LineReader& lines) {
   }
 }
 
-// One word per axis where the field is there.
+// The words of a field, one per axis, where the field is there.
 std::vector<std::string_view> axis_words(const NrrdFields& fields, const std::string& name, std::size_t axes,
                                          std::string_view path) {
   std::vector<std::string_view> words = words_of(fields.get(name));

@@ -53,7 +53,8 @@ bool is_nrrd_list(std::string_view value);
 std::int64_t nrrd_integer(const NrrdFields& fields, const std::string& name, std::int64_t missing,
                           std::string_view path);
 
-// From the fastest axis to the slowest. An axis that lies in time, as a vector of four numbers may say, gets that kind.
+// The axes from the fastest to the slowest. An axis that lies in time, as a vector of four numbers may say, gets that
+// kind.
 std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::string& path);
 
 // "(1,0,0) none (0,1,0)"; a vector of NaN says none, too.

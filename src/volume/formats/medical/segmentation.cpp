@@ -31,7 +31,8 @@ std::map<std::int64_t, Fields> grouped(const std::map<std::string, std::string>&
   return segments;
 }
 
-// Without the escapes of NRRD: "\n" and "\\".
+// Undoes the escapes of NRRD: "
+// " and "\\".
 std::string unescaped(std::string_view text) {
   std::string result;
   for (std::size_t n = 0; n < text.size(); ++n) {

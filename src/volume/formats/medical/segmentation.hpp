@@ -1,4 +1,4 @@
-// What 3D Slicer writes of segments into the header of NRRD (.seg.nrrd).
+// The segments that 3D Slicer describes in the header of NRRD (.seg.nrrd).
 #pragma once
 
 #include <cstdint>

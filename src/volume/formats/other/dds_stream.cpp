@@ -60,7 +60,7 @@ bool DdsCursor::begin_run() {
 std::uint8_t DdsCursor::next_byte() {
   if (run_left_ == 0 && !begin_run()) bad_input(path_, "more bytes in the DDS stream", "its end");
   --run_left_;
-  // All of this is arithmetic modulo 256.
+  // All this arithmetic is modulo 256.
   const unsigned difference = bits_.read(run_bits_) - ((1u << run_bits_) >> 1);
   unsigned predicted = recent_[newest_];
   const std::size_t oldest = newest_ == strip_ ? 0 : newest_ + 1;

@@ -78,8 +78,8 @@ bool is_plausible(const MrcHeader& header) {
 
 std::int32_t longest_side(const MrcHeader& header) { return *std::max_element(header.dims.begin(), header.dims.end()); }
 
-// In the byte order in which the header makes sense, or more sense. The machine stamp is not looked at: files in use
-// have wrong ones.
+// The header in the byte order in which it makes sense, or more sense. The machine stamp is not used: files in use have
+// wrong ones.
 std::optional<MrcHeader> find_header(std::string_view bytes) {
   if (bytes.size() < kMrcHeadBytes) return std::nullopt;
   const MrcHeader header = parse_header(bytes, false);

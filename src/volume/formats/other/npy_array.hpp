@@ -22,7 +22,7 @@ struct NpyHeader {
 // Throws BadInput for what is no header, and for arrays of structures.
 NpyHeader read_npy_header(const FilePtr& file);
 
-// Nothing for types that are not read.
+// The type of an array; nothing for types that are not read.
 std::optional<StoredType> npy_type(const NpyHeader& header);
 
 OpenedVolume open_npy_array(const FilePtr& file, const NpyHeader& header, const OpenOptions& options);

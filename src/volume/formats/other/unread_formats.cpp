@@ -86,7 +86,7 @@ std::string sentence(std::string_view what, std::string_view way) {
   return std::string(what) + (way.empty() ? "" : ": ") + std::string(way);
 }
 
-// By the name of the first file in it.
+// The kind of a zip archive, by the name of the first file in it.
 std::string what_zip(std::string_view head) {
   const std::string_view name = first_zip_name(head);
   if (name == "[Content_Types].xml" || name.starts_with("3D/")) return sentence("a zip archive, as 3MF is", kMesh);

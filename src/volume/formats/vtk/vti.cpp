@@ -142,7 +142,7 @@ class HeaderReader {
   // More tags would mean to read through the samples behind the one that is wanted.
   bool add_array(std::string_view tag) {
     const VtkArray array = vtk_array(tag, tags_.position(), header_.path);
-    // With several times an array has a tag for each; the first one counts.
+    // A file with several times has a tag for each array and time; the first one counts.
     const bool again = std::any_of(arrays_->all.begin(), arrays_->all.end(),
                                    [&](const VtkArray& other) { return other.name == array.name; });
     if (again) return true;
@@ -331,7 +331,7 @@ void take_coordinates(const ImageHeader& header, const ImagePiece& piece, const 
   }
 }
 
-// Of all points; what no piece gives stays no number.
+// The coordinates of all points. A coordinate that no piece gives stays NaN.
 GridCoordinates coordinates_of(const Headers& headers, const Extent& whole, const std::string& path) {
   GridCoordinates points;
   const Region box = box_of(whole, whole, false);
@@ -365,7 +365,7 @@ void open_pieces(OpenedVolume& volume, std::vector<VolumePiece> pieces) {
 
 bool is_vti(std::string_view head) {
   const std::size_t tag = head.find("<VTKFile");
-  // Behind nothing but the XML declaration and comments.
+  // Whether the tag stands behind nothing but the XML declaration and comments.
   return tag != std::string_view::npos && trimmed(head).starts_with('<');
 }
 

@@ -1,4 +1,4 @@
-// Which of the arrays of a VTK file is the volume, and the types of samples by VTK's names.
+// The choice of the array of a VTK file that is the volume, and the types of samples by VTK's names.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ bool would_choose(const VtkArrayNames& names, const VtkArrayName& array, std::st
 VtkChoice choose_vtk_array(const VtkArrayNames& points, const VtkArrayNames& cells, std::string_view wanted,
                            const std::string& path);
 
-// Tells what the choice leaves out.
+// Notes the arrays that the choice leaves out.
 void note_vtk_choice(VolumeInfo& info, const VtkArrayNames& points, const VtkArrayNames& cells,
                      const VtkChoice& choice);
 

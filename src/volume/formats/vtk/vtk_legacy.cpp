@@ -120,7 +120,7 @@ std::unique_ptr<ByteStream> open_samples(const LegacyFile& file, const LegacyArr
   return std::make_unique<BitStream>(std::move(stored), samples);
 }
 
-// Of the points along each axis.
+// The coordinates of the points along each axis.
 GridCoordinates coordinates_of(const LegacyFile& file, const LegacyHeader& header, const VolumeInfo& info) {
   GridCoordinates points;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -180,7 +180,8 @@ void LegacyFile::skip_words(std::uint64_t count) {
   if (c == '\n') --position_;
 }
 
-// In text each is a line. In binary its length stands before it, in 1, 2, 4 or 8 bytes as two bits of the first say.
+// Skips strings. In text each is a line. In binary the length of each stands before it, in 1, 2, 4 or 8 bytes as two
+// bits of the first one say.
 void LegacyFile::skip_strings(std::uint64_t count) {
   std::string line;
   for (std::uint64_t n = 0; n < count; ++n) {
@@ -220,7 +221,7 @@ void LegacyFile::skip_metadata() {
   }
 }
 
-// What comes behind it is found when it is asked for: nobody may want to know.
+// Takes an array. The bytes behind it are looked at only when they are asked for, as nobody may need them.
 void LegacyFile::take_array(LegacyArray array) {
   if (section_ != nullptr) section_->all.push_back(array);
   pending_ = std::move(array);

@@ -59,11 +59,11 @@ enum class BlockForm { kZlib, kLz4, kLzma };
 std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream> input, std::uint64_t stored, std::uint64_t bytes,
                                            const std::string& path);
 
-// The same for a block in LZMA.
+// Opens a block in LZMA likewise.
 std::unique_ptr<ByteStream> open_lzma_block(std::unique_ptr<ByteStream> input, std::uint64_t stored,
                                             std::uint64_t bytes, const std::string& path);
 
-// Of a long run of one byte LZMA keeps about a bit per 900 bytes.
+// LZMA keeps about a bit per 900 bytes of a long run of one byte.
 inline constexpr std::uint64_t kLzmaRatio = 8192;
 
 // Compressed blocks one after another.

@@ -41,7 +41,7 @@ class VtkTags {
 // "DataArray", "/Piece", ...
 std::string_view vtk_tag_name(std::string_view tag);
 
-// What the tag VTKFile says of all arrays.
+// The facts about all arrays in the tag VTKFile.
 struct VtkXmlForm {
   std::string type;  // "ImageData", "PolyData", ...
   bool big_endian = false;
@@ -51,7 +51,7 @@ struct VtkXmlForm {
 
 VtkXmlForm vtk_xml_form(std::string_view tag, const std::string& path);
 
-// What the tag of an array says.
+// The facts in the tag of an array.
 struct VtkArray {
   enum class Format { kText, kInline, kAppended };
 
@@ -75,7 +75,7 @@ struct VtkAppended {
 
 VtkAppended vtk_appended(std::string_view tag, std::uint64_t behind, const InputFile& file);
 
-// Where the text or the bytes of an array begin.
+// The place where the text or the bytes of an array begin.
 std::uint64_t vtk_array_begin(const InputFile& file, const VtkArray& array, const VtkAppended& appended);
 
 // The numbers of an array that is not text, as stored: `bytes` of them, which is compared with the file and with what
