@@ -1,4 +1,5 @@
-// What is final leaves the zone, pass by pass: what Simplifier and FinalOutput do, with one thread for every item.
+// How final triangles leave the zone on a device: the passes of Simplifier and FinalOutput, with one thread for every
+// item.
 #pragma once
 
 #include "parallel/atomics.hpp"
@@ -44,7 +45,7 @@ struct FinalPasses {
   std::uint64_t first_output = 0;
   Index first_component = 0;
 
-  // Vertices all of whose edges are retired are final.
+  // Makes a vertex final when all its edges are retired.
   ISOWEAVE_HD void name_vertex(std::int64_t n) {
     const auto v = static_cast<Index>(n);
     VertexState& state = zone.states[v];
@@ -55,7 +56,7 @@ struct FinalPasses {
     corners[v] = new_place[v] = old_place[v] = 0;
   }
 
-  // A triangle is final when its vertices are.
+  // Finds the final triangles: those whose vertices are all final.
   ISOWEAVE_HD void name_triangle(std::int64_t t) {
     const Triangle& triangle = zone.triangles[static_cast<std::size_t>(t)];
     triangle_place[t] = 0;
@@ -74,7 +75,7 @@ struct FinalPasses {
     }
   }
 
-  // The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must
+  // Inspects a vertex. The faces that name it must be the one fan that a walk around it finds, and its neighbours must
   // differ.
   ISOWEAVE_HD void inspect(std::int64_t n, FinalTotals& totals) {
     const auto v = static_cast<Index>(n);
@@ -97,7 +98,7 @@ struct FinalPasses {
     });
   }
 
-  // Places come from scans: what is listed is where they grow.
+  // Lists the final triangles. Their places come from scans: an item is listed where the place grows.
   ISOWEAVE_HD void list_triangle(std::int64_t t) {
     if (triangle_place[t + 1] != triangle_place[t]) final_triangles[triangle_place[t]] = static_cast<Index>(t);
   }
@@ -106,7 +107,7 @@ struct FinalPasses {
     if (old_place[v + 1] != old_place[v]) final_vertices[new_vertices + old_place[v]] = static_cast<Index>(v);
   }
 
-  // What the host writes. Vertices that are new get their numbers.
+  // Fills in a vertex for the host to write. A new vertex gets its number.
   ISOWEAVE_HD void write_vertex(std::int64_t n) {
     const Index v = final_vertices[n];
     Vertex& vertex = zone.vertices[v];
@@ -117,7 +118,7 @@ struct FinalPasses {
     vertex.component = first_component + static_cast<Index>(n);
   }
 
-  // To be called before vertices get their numbers.
+  // Fills in a triangle for the host to write. Must be called before vertices get their numbers.
   ISOWEAVE_HD void write_triangle(std::int64_t n) {
     const Triangle& triangle = zone.triangles[final_triangles[n]];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -126,7 +127,7 @@ struct FinalPasses {
     }
   }
 
-  // Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
+  // Tells the triangles beside this one that it is gone. Neighbours may leave at the same time.
   ISOWEAVE_HD void close_sides(std::int64_t n, FinalTotals& totals) {
     for (HalfEdge& side : zone.triangles[final_triangles[n]].sides) {
       const Index twin = load_relaxed(side.twin);

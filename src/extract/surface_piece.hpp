@@ -1,4 +1,4 @@
-// What an extractor hands over: a part of a surface. Nothing downstream knows how it was made.
+// A piece: the part of a surface that an extractor hands over. No later part of the loop knows how it was made.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace isoweave {
 
-// Vertices 0...inherited-1 are the previous piece's `incomplete`, in its order; new vertices follow. Triangles come in
-// the order in which quadrics are summed. Indices are 32 bit: a piece holds fewer than 2^32 vertices.
+// Vertices 0...inherited-1 are the previous piece's `incomplete`, in its order. New vertices follow. Triangles come in
+// the order in which quadrics are summed. Indices have 32 bits: a piece holds fewer than 2^32 vertices.
 struct SurfacePiece {
   std::uint32_t inherited = 0;
   Array<Vec3> positions;                                            // of new vertices, physical lengths

@@ -40,7 +40,7 @@ struct OverwrittenBytes {
   std::span<const std::byte> bytes;
 };
 
-// The records of the file `name`: offset, count, bytes.
+// The records for the file `name`: offset, count, bytes.
 std::vector<OverwrittenBytes> overwritten_in(std::span<const std::byte> saved, const std::string& name) {
   std::vector<OverwrittenBytes> records;
   while (!saved.empty()) {
@@ -57,7 +57,7 @@ std::vector<OverwrittenBytes> overwritten_in(std::span<const std::byte> saved, c
   return records;
 }
 
-// Of all that was written to it.
+// The CRC of everything written to a file.
 std::uint32_t crc_of_file(OutputDescriptor& file) {
   std::vector<std::byte> block(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, file.size())));
   std::uint32_t crc = 0;
@@ -71,10 +71,11 @@ std::uint32_t crc_of_file(OutputDescriptor& file) {
 
 std::string overwritten_name(const std::string& part) { return part + ".before"; }
 
-// Of what is written to take the place of a file.
+// The name of a file that is to take the place of another one.
 std::string new_name(const std::string& path) { return path + ".new"; }
 
-// A part that has become the mesh already, under a second name, must not be written to: it goes on as a copy.
+// Replaces a part by a copy of itself. A part that has become the mesh already, under a second name, must not be
+// written to.
 void own_part(const std::string& path, std::uint64_t size) {
   const int from = system::open_descriptor(path, Opening::kWrite);
   if (from < 0) cannot_write(path, "cannot be opened", errno);
@@ -101,7 +102,7 @@ std::string name_of(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-// Refuses what a rename would destroy or fail on, and returns the name to rename to.
+// Refuses targets that a rename would destroy or fail on, and returns the name to rename to.
 std::string checked_target(const std::string& path) {
   if (path.empty()) throw CannotWrite("the name of the output file is empty");
   const std::string name = name_of(path);
@@ -243,7 +244,8 @@ void OutputDescriptor::append(OutputDescriptor& source) {
   size_ += source.size_;
 }
 
-// The copy has the bytes that were written to the source, or the file is found out when it is verified.
+// Adds the checksum of bytes copied from `source`. If the copy differs from what was written to the source, verify()
+// finds out.
 void OutputDescriptor::add_to_checksum(const OutputDescriptor& source) {
   if (!source.checksum_) throw std::logic_error(path_ + ": a file with a checksum takes files with one only");
   checksum_ = join_crcs(*checksum_, *source.checksum_, source.size_);

@@ -17,7 +17,7 @@ namespace isoweave {
 // An open file descriptor with a write buffer; closes it when destroyed.
 class OutputDescriptor {
  public:
-  // `path` is the name used in messages. Writes on from byte `size`, where the file must end and stand.
+  // `path` is the name used in messages. Writing continues at byte `size`, where the file must end and stand.
   OutputDescriptor(int fd, std::string path, std::uint64_t size = 0);
   ~OutputDescriptor();
   OutputDescriptor(const OutputDescriptor&) = delete;
@@ -27,49 +27,49 @@ class OutputDescriptor {
   void write(std::span<const std::byte> bytes);
   void flush();
 
-  // Both work on bytes written before.
+  // Both members work on bytes written before.
   void overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
   void read_back(std::uint64_t offset, std::span<std::byte> bytes);
 
-  // Appends all that was written to `source`.
+  // Appends everything written to `source`.
   void append(OutputDescriptor& source);
 
-  // Writes all of it to another descriptor, which stays open. `name` stands for that one in messages.
+  // Writes the whole file to another descriptor, which stays open. `name` stands for that descriptor in messages.
   void copy_to(int descriptor, const std::string& name);
 
-  // Makes what was written durable.
+  // Makes the bytes written so far durable.
   void sync();
 
-  // From now on keeps a CRC-32 of the whole file, which begins as that of the bytes that stand there.
+  // Keeps a CRC-32 of the whole file from now on. It begins as that of the bytes in the file.
   void keep_checksum(std::uint32_t so_far) { checksum_ = so_far; }
   std::optional<std::uint32_t> checksum() const { return checksum_; }
 
-  // From now on keeps what is overwritten in a file beside this one, so that open_part finds the bytes that a state was
+  // Keeps overwritten bytes from now on, in a file beside this one, so that open_part finds the bytes that a state was
   // saved with, however the process ends.
   void keep_overwritten() { keeps_overwritten_ = true; }
 
-  // Puts back what was overwritten, as far as the file goes; and forgets it.
+  // Puts overwritten bytes back, as far as the file goes, and forgets them.
   void restore_overwritten();
   void forget_overwritten() const;
 
-  // Reads the file from its beginning, where a checksum is kept. Throws CannotWrite when it holds other bytes than were
-  // written.
+  // Reads the file from its beginning, where a checksum is kept. Throws CannotWrite when the file holds other bytes
+  // than were written.
   void verify();
 
-  // Removes what the file holds behind size().
+  // Removes the bytes of the file behind size().
   void cut_off();
 
-  // As try_lock() below.
+  // Locks the file, as try_lock() below does.
   bool try_lock() const;
 
-  // Gives a file without a name this one. False, with errno set, when that cannot be done.
+  // Gives a name to a file without one. Returns false, with errno set, when that cannot be done.
   bool link_as(const std::string& name) const;
 
   // Flushes, makes the data durable, and compares the size on disk and the checksum, if one is kept, with what was
   // written.
   void check();
 
-  // Closes what is checked; checks it before, where it is not.
+  // Closes the file. Checks it first, unless that has been done.
   void close();
 
   std::uint64_t size() const { return size_; }
@@ -92,7 +92,7 @@ class OutputDescriptor {
   bool is_checked_ = false;             // nothing was written since
 };
 
-// How far a part file had come.
+// The mark of a part file: its size and checksum at a state.
 struct PartMark {
   std::uint64_t size = 0;
   std::uint32_t checksum = 0;  // of so many bytes
@@ -105,9 +105,9 @@ struct PartFile {
 };
 
 // A file that appears under its name only on commit(). Until then it lies in the same folder without a name, and is
-// gone when the process ends in whatever way; where the file system cannot do that it is `.NAME.XXXXXX.partial`, which
-// the destructor removes; or it is a part file, which stays. A file that had the name before stays untouched until
-// then. Opening fails at once when the name is empty, a folder or not a regular file, or when the folder is missing or
+// gone however the process ends. Where the file system cannot do that it is `.NAME.XXXXXX.partial`, which the
+// destructor removes. A part file stays instead. A file that had the name before stays untouched until commit().
+// Opening fails at once when the name is empty, a folder or not a regular file, or when the folder is missing or
 // read-only.
 class AtomicFile {
  public:
@@ -144,28 +144,29 @@ class AtomicFile {
   OutputDescriptor file_;
 };
 
-// Creates a part file, or opens one and cuts it off at its mark; it keeps a checksum. Throws CannotWrite when the first
-// is there already, or another process has the second one open; BadInput when the second is missing, shorter, or holds
-// other bytes.
+// Creates a part file, or opens one and cuts it off at its mark. It keeps a checksum. Throws CannotWrite when the part
+// to be created is there already, or another process has the part to be opened open; BadInput when that part is
+// missing, shorter, or holds other bytes.
 OutputDescriptor open_part(const PartFile& part);
 
-// Holds an open file against all others that do so, in this process, too. The system lets go of it when the descriptor
-// is closed, however the process ends. False when somebody else holds it; CannotWrite where there are no locks.
+// Locks an open file against all others that lock it, in this process, too. The system releases the lock when the
+// descriptor is closed, however the process ends. Returns false when another holder has the lock; throws CannotWrite
+// where there are no locks.
 bool try_lock(int fd, const std::string& path);
 
-// Removes a part file that is no longer needed, and what is kept beside it.
+// Removes a part file that is no longer needed, and the files kept beside it.
 void remove_part(const std::string& path);
 
 // Opens a scratch file beside `path`, already without a name: the system frees it however the process ends.
 int open_scratch(const std::string& path);
 
-// The same in a folder; `path` is the name used in messages.
+// Opens a scratch file in a folder; `path` is the name used in messages.
 int open_scratch_in(const std::string& folder, const std::string& path);
 
 // The folder that `path` lies in.
 std::string folder_of(const std::string& path);
 
-// A name beside `target` that says what it is, with letters by chance.
+// A name beside `target` that tells its purpose, with random letters.
 std::string temporary_name(const std::string& target);
 
 // Makes a rename to `target` durable; `path` is the name used in messages.

@@ -38,7 +38,7 @@ void FinalOutput::take(Simplifier& simplifier) {
   if (output_.components().labels() > zone.vertices.size()) forget_components(zone);
 }
 
-// Vertices that these triangles are the first to name, in memory order.
+// Numbers the vertices that these triangles are the first to name, in memory order.
 void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangles) {
   marks_.assign(zone.vertices.size(), 0);
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t n) {
@@ -68,7 +68,7 @@ void FinalOutput::number_vertices(Zone& zone, const std::vector<Index>& triangle
   });
 }
 
-// Triangles around locked vertices.
+// Keeps the triangles around locked vertices.
 void FinalOutput::keep_locked(Zone& zone, const std::vector<Index>& triangles) {
   for (const Index t : triangles) {
     std::array<std::uint64_t, 3> numbers{};
@@ -88,7 +88,7 @@ void FinalOutput::count_open(const Zone& zone, const HalfEdge& side, const HalfE
   if (!locked) open_edges_.fetch_add(1, std::memory_order_relaxed);
 }
 
-// The triangle stays for coarser levels.
+// Counts that a finer level has the triangle, which stays for the coarser levels.
 void FinalOutput::keep(Zone& zone, Index triangle) {
   ++zone.triangles[triangle].levels;
   const auto& sides = zone.triangles[triangle].sides;
@@ -97,7 +97,7 @@ void FinalOutput::keep(Zone& zone, Index triangle) {
   }
 }
 
-// Tells the triangles beside this one that it has gone. Neighbours may go at the same time.
+// Tells the triangles beside this one that it is gone. Neighbours may leave at the same time.
 void FinalOutput::close_sides(Zone& zone, Index triangle) {
   auto& sides = zone.triangles[triangle].sides;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -13,23 +13,23 @@ namespace isoweave {
 
 class FinalOutput {
  public:
-  // level: of the simplifier, by default the only one.
+  // level: the level of the simplifier; by default the only one.
   FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true, std::size_t level = 0,
               SweepObserver* observer = nullptr)
       : output_(world, sink, executor, measure, observer), executor_(executor), level_(level) {}
 
-  // Writes the triangles that have become final in the level, each vertex once. Those of the last level leave the
+  // Writes the triangles that have become final in the level, each vertex once. Triangles of the last level leave the
   // simplifier's zone, which is compacted.
   void take(Simplifier& simplifier);
 
-  // Fills in what has been written so far: counts, Euler number, components, digest. What there is around locked
-  // vertices is not in the counts of edges.
+  // Fills in the counts of what has been written so far, its Euler number, components and digest. The counts of edges
+  // leave out the edges with a locked end.
   void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
 
-  // Adds what has been written around locked vertices, to a report that has everything else.
+  // Adds the counts around locked vertices, to a report that has everything else.
   void report_locked(SurfaceReport& report) const { locked_part_.report(report); }
 
-  // Returns when the sink has everything. Throws what it threw.
+  // Returns when the sink has received everything. Throws what it threw.
   void wait() { output_.wait(); }
 
   template <class Archive>
@@ -41,7 +41,7 @@ class FinalOutput {
   }
 
  private:
-  // Where the zone keeps what this level's output has to know of a vertex.
+  // The place in the zone for the number of a vertex in this level's output.
   std::uint64_t& number(Zone& zone, Index v) const {
     return level_ < zone.levels.size() ? zone.levels[level_][v].output : zone.vertices[v].output;
   }

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kBlock = 4096;
 constexpr std::size_t kFew = 128;  // triangles that are looked at together
 
-// The least vertex that triangles name; the largest number where there are none.
+// The least vertex that triangles name; the largest number where there are no triangles.
 std::uint32_t least_corner(std::span<const std::array<std::uint32_t, 3>> triangles) {
   std::uint32_t least = ~std::uint32_t{0};
   for (const auto& triangle : triangles) {
@@ -27,7 +27,8 @@ void FullOutput::take(const SurfacePiece& piece) {
       [&](std::size_t n) { return piece.positions[n]; }, [&](std::size_t n) { return piece.normals[n]; },
       [&](std::size_t n) { return piece.values[n]; });
   const std::span<const Point> points = output_.added_points();
-  // Where some vertices are inherited, which cannot be predicted: no branch, as the first new one follows in the list.
+  // Appends the first new vertex as well, so that a number is looked up without a branch: which vertices are inherited
+  // cannot be predicted.
   front_.push_back({first_number, first_label, {}});
   const auto number = [&](std::uint32_t v) {
     const std::uint32_t n = std::min(v, piece.inherited);

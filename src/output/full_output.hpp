@@ -1,4 +1,4 @@
-// The surface as it is extracted on its way out: what there is to do when nothing is simplified.
+// The output of the extracted surface, for runs that simplify nothing.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class FullOutput {
 
   void report(SurfaceReport& report) const { output_.report(open_edges_, report); }
 
-  // Returns when the sink has everything. Throws what it threw.
+  // Returns when the sink has received everything. Throws what it threw.
   void wait() { output_.wait(); }
 
   template <class Archive>

@@ -1,4 +1,4 @@
-// What a written surface is where it is not a manifold.
+// The counts of a written surface where it is not a manifold.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace isoweave {
 
-// Keeps the triangles around locked vertices. Links do not tell how these meet: only all of them do.
+// Keeps the triangles around locked vertices. Links do not tell how these triangles meet; only all of them together do.
 class LockedPart {
  public:
-  // A triangle by its vertices' numbers in the output, and which of these are locked: one at least.
+  // Adds a triangle by its vertices' numbers in the output. At least one of these vertices is locked.
   void add(const std::array<std::uint64_t, 3>& numbers, const std::array<bool, 3>& locked);
 
-  // Adds locked vertices, and edges with a locked end, to a report that has the counts of the other ones.
+  // Adds locked vertices, and edges with a locked end, to a report that has all other counts.
   void report(SurfaceReport& report) const;
 
  private:

@@ -20,11 +20,11 @@ class OverlappedSink {
   OverlappedSink(const OverlappedSink&) = delete;
   OverlappedSink& operator=(const OverlappedSink&) = delete;
 
-  // Waits for the piece before this one, and returns while the sink takes this one: what the spans show must stay until
-  // the next call of append() or wait() has returned. Throws what the sink threw at the piece before.
+  // Waits for the piece before this one, and returns while the sink takes this one. The spans must stay valid until the
+  // next call of append() or wait() has returned. Throws what the sink threw at the piece before.
   void append(const MeshPiece& piece);
 
-  // Returns when the sink has everything. Throws what it threw.
+  // Returns when the sink has received everything. Throws what it threw.
   void wait();
 
  private:

@@ -27,8 +27,8 @@ struct OutputCorner {
 
 class SurfaceOutput {
  public:
-  // measure: digest and components. A sink that has room gets each piece as it is made; with several threads another
-  // one gets it while the next one is made. observer: sees all triangles, if it is not null.
+  // measure: find digest and components. A sink that has room gets each piece as it is made. With several threads, a
+  // sink without room gets a piece while the next one is made. observer: sees all triangles, unless it is null.
   SurfaceOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure,
                 SweepObserver* observer = nullptr)
       : world_(world),
@@ -40,17 +40,17 @@ class SurfaceOutput {
 
   std::uint64_t vertices() const { return vertices_; }
 
-  // Where a position comes to lie.
+  // The place of a position in the output.
   Point point(Vec3 position) const { return world_.point(position); }
 
   ComponentCounter& components() { return components_; }
 
-  // Of the next vertex that is added.
+  // The label of the next vertex that is added.
   std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
 
   // Begins a piece with its vertices, which get consecutive numbers from vertices() on and consecutive labels from the
-  // one returned. position(n), normal(n), value(n): of the n-th of them, called by any thread; the latter two where
-  // there are any.
+  // returned one. position(n), normal(n) and value(n) give the attributes of the n-th vertex, and are called by any
+  // thread; the latter two only where there are any.
   template <class Position, class Normal, class Value>
   std::uint32_t add_vertices(const MeshPieceSize& size, const Position& position, const Normal& normal,
                              const Value& value) {
@@ -67,12 +67,12 @@ class SurfaceOutput {
 
   bool measures() const { return measure_; }
 
-  // Of the vertices that were added last, until others are.
+  // The places of the vertices added last, until others are added.
   std::span<const Point> added_points() const { return room_.vertices; }
 
-  // Completes the piece with its triangles, as many as it was begun for, and hands it to the sink. number(first, out):
-  // writes the numbers in the output of the corners of consecutive triangles, in 32 or 64 bits; corner(n, c): all of
-  // corner c of the n-th. Called by any thread.
+  // Completes the piece with its triangles, as many as it was begun for, and hands it to the sink. number(first, out)
+  // writes the corners of consecutive triangles by their numbers in the output, in 32 or 64 bits. corner(n, c) gives
+  // corner c of the n-th triangle. Called by any thread.
   template <class Number, class CornerOf>
   void add_triangles(const Number& number, const CornerOf& corner) {
     if (sink_.has_room()) return write_triangles(room_.triangles, number, corner);
@@ -81,10 +81,10 @@ class SurfaceOutput {
     hand_over();
   }
 
-  // Returns when the sink has everything. Throws what it threw.
+  // Returns when the sink has received everything. Throws what it threw.
   void wait() { overlapped_.wait(); }
 
-  // Fills in counts, Euler number, components and digest of what has been written.
+  // Fills in the counts, Euler number, components and digest of what has been written.
   void report(std::uint64_t open_edges, SurfaceReport& report) const;
 
   template <class Archive>

@@ -16,7 +16,7 @@ namespace isoweave {
 
 inline constexpr std::size_t kViewBlock = 32768;  // triangles, 36 bytes each
 
-// Hands over `count` triangles. point(n, c): corner c of the n-th, called by any thread.
+// Hands over `count` triangles. point(n, c) gives corner c of the n-th triangle, and is called by any thread.
 template <class PointOf>
 void view_triangles(std::size_t count, const PointOf& point, const Executor& executor,
                     const SweepObserver::Visitor& visitor) {
@@ -31,7 +31,7 @@ void view_triangles(std::size_t count, const PointOf& point, const Executor& exe
   }
 }
 
-// Hands over what is in a zone.
+// Hands over the triangles that a zone holds.
 void view_zone(const Zone& zone, const World& world, const Executor& executor, const SweepObserver::Visitor& visitor);
 
 }  // namespace isoweave

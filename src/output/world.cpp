@@ -14,21 +14,21 @@ bool turns(const Geometry& geometry, OutputSpace space) {
          (space == OutputSpace::kRas && geometry.space == Space::kLps);
 }
 
-// Of the first sample, in the output.
+// The place of the first sample in the output.
 std::array<double, 3> origin_in(const Geometry& geometry, OutputSpace space) {
   const auto& o = geometry.origin;
   if (space == OutputSpace::kIndex) return {0, 0, 0};
   return turns(geometry, space) ? std::array{-o[0], -o[1], o[2]} : o;
 }
 
-// Half the last place of a number of this size, and no less than that of the largest one there is.
+// Half the last place of a number of this size. A size beyond half the largest number counts as that.
 template <class Real>
 double half_last_place(double size) {
   const auto number = static_cast<Real>(std::min(size, double{std::numeric_limits<Real>::max()} / 2));
   return (double{std::nextafter(number, std::numeric_limits<Real>::infinity())} - double{number}) / 2;
 }
 
-// The farthest coordinate of a corner of the volume from a place on the axes, where the first sample lies at `origin`.
+// The farthest coordinate of a corner of the volume from 0, on any axis, where the first sample lies at `origin`.
 double farthest_corner(const VolumeInfo& volume, const std::array<double, 3>& origin) {
   const Geometry& geometry = volume.geometry;
   double farthest = 0;
@@ -84,7 +84,7 @@ double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_6
   return to_64_bits ? half_last_place<double>(farthest) : half_last_place<float>(farthest);
 }
 
-// An offset is worth it where it takes most of the rounding away: else the volume is large, and not far away.
+// An offset is worth it where it removes most of the rounding. Else the volume is large, and not far away.
 std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space) {
   const StandardFloats floats;
   constexpr double kLeft = 1.0 / 16;

@@ -12,10 +12,10 @@ class World {
  public:
   World() = default;  // leaves positions as they are
 
-  // offset: that of the output, to which its coordinates are relative.
+  // offset: that of the output; coordinates are relative to it.
   World(const Geometry& geometry, OutputSpace space, const std::array<double, 3>& offset = {0, 0, 0});
 
-  // A mesh that stays where it is and gets another offset.
+  // The world of a mesh that stays at its place and gets another offset.
   World(const std::array<double, 3>& before, const std::array<double, 3>& offset)
       : origin_{before[0] - offset[0], before[1] - offset[1], before[2] - offset[2]}, offset_(offset) {}
 
@@ -26,7 +26,7 @@ class World {
             static_cast<float>(dot(rows_[2], p) + origin_.z)};
   }
 
-  // Turned over where the world mirrors.
+  // A triangle in the output, turned over where the world mirrors.
   std::array<Point, 3> triangle(const std::array<Vec3, 3>& p) const {
     return {point(p[0]), point(p[mirrors_ ? 2 : 1]), point(p[mirrors_ ? 1 : 2])};
   }
@@ -48,7 +48,7 @@ class World {
 // The most by which rounding should move a vertex.
 double most_rounding(const VolumeInfo& volume);
 
-// By how much it does at the farthest corner of the volume: to 64 bits or to 32.
+// How far rounding moves a vertex at the farthest corner of the volume, in 64 bits or in 32.
 double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_64_bits);
 
 }  // namespace isoweave

@@ -17,7 +17,7 @@ class BlockLoop {
 
   std::int64_t blocks() const { return (count_ + grain_ - 1) / grain_; }
 
-  // Runs one of them in the calling thread, with standard floating-point arithmetic.
+  // Runs one block in the calling thread, with standard floating-point arithmetic.
   void run(std::int64_t block) const;
 
  private:
@@ -34,14 +34,14 @@ class Arena {
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  // Runs every block, then returns. Once a block has thrown, none is begun any more, and the exception is rethrown when
-  // those underway have ended. May be called from a block, and from several threads.
+  // Runs every block, then returns. Once a block has thrown, no other is begun, and the exception is rethrown when the
+  // running blocks have ended. May be called from a block, and from several threads.
   virtual void run(const BlockLoop& loop) = 0;
 
-  // Of so many threads, more than one, the caller's among them.
+  // An arena of so many threads, more than one, the caller's among them.
   static std::shared_ptr<Arena> make(int threads);
 
-  // How many threads there are for somebody who wants so many; 0 wants one per processor.
+  // The number of threads for a caller who wants so many; 0 wants one per processor.
   static int threads_for(int wanted);
 };
 

@@ -25,7 +25,7 @@ ISOWEAVE_HD inline void store_relaxed(std::uint32_t& to, std::uint32_t value) {
 #endif
 }
 
-// Seen by everyone before anything that the same thread loads in that order afterwards.
+// Stores a value so that all threads see it before anything that this thread loads afterwards in that order.
 ISOWEAVE_HD inline void publish(std::uint64_t& to, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   to = value;  // passes on a device end in a barrier
@@ -34,7 +34,7 @@ ISOWEAVE_HD inline void publish(std::uint64_t& to, std::uint64_t value) {
 #endif
 }
 
-// These return what was there before.
+// The following functions return the value before the change.
 
 ISOWEAVE_HD inline std::uint32_t fetch_add(std::uint32_t& at, std::uint32_t value) {
 #ifdef __CUDA_ARCH__

@@ -11,7 +11,7 @@
 
 namespace isoweave {
 
-// Where the elements of an array go when those that are not kept are left out; the others keep their order.
+// The new places of the elements of an array when some are left out. The others keep their order.
 class Compaction {
  public:
   static constexpr std::uint32_t kDropped = 0xffffffffu;

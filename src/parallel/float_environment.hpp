@@ -11,8 +11,8 @@ static_assert(FLT_EVAL_METHOD == 0, "results depend on rounding to the type of e
 
 namespace isoweave {
 
-// Rounding to nearest and small numbers as they are, as long as it lives; then what the caller had. A host program may
-// have set another rounding, or that small numbers are taken for 0.
+// Sets rounding to nearest, and keeps small numbers as they are, for the lifetime of the object. Restores the caller's
+// state afterwards: a host program may have set another rounding, or that small numbers are taken for 0.
 class StandardFloats {
  public:
   StandardFloats() {

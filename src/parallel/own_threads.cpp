@@ -48,7 +48,7 @@ class RunningLoop {
 };
 
 // Helpers wait for a loop, take part in it and wait for the next one. A loop does not wait for helpers that have not
-// come yet: what is short is over before they wake up.
+// arrived: a short loop is over before they wake up.
 class OwnArena final : public Arena {
  public:
   explicit OwnArena(int threads) : most_helpers_(static_cast<std::size_t>(threads - 1)) {
@@ -91,7 +91,7 @@ class OwnArena final : public Arena {
     left_.wait(lock, [&] { return loop.helpers == 0; });
   }
 
-  // Where the system gives fewer, loops have fewer.
+  // Starts helpers. Where the system gives fewer threads, loops have fewer.
   void start_helpers(std::size_t wanted) {
     try {
       while (helpers_.size() < wanted) helpers_.emplace_back([this] { help(); });

@@ -14,8 +14,8 @@ class Executor {
  public:
   static constexpr int kMostThreads = 4096;
 
-  // 0: one per processor. 1: everything runs in the calling thread. Throws std::invalid_argument for others than 0 to
-  // kMostThreads. In a build without threads it is 1 for any number.
+  // threads: 0 for one per processor, 1 to run everything in the calling thread. Throws std::invalid_argument for
+  // numbers outside 0 to kMostThreads. In a build without threads any number stands for 1.
   explicit Executor(int threads = 0);
 
   int threads() const { return threads_; }

@@ -21,7 +21,7 @@ constexpr std::size_t to_size(Count count) {
   return static_cast<std::size_t>(count);
 }
 
-// So many elements of a size.
+// The size of so many elements.
 template <class Count>
 constexpr std::size_t to_size(Count count, std::size_t each) {
   const std::size_t elements = to_size(count);

@@ -25,7 +25,7 @@ inline std::uint32_t find_root(std::span<std::uint32_t> parents, std::uint32_t m
   return member;
 }
 
-// Makes one set of two; false when they are one already. The larger root comes under the smaller one, unless another
+// Joins two sets. Returns false when they are one already. The larger root comes under the smaller one, unless another
 // thread has just moved it.
 inline bool join_sets(std::span<std::uint32_t> parents, std::uint32_t a, std::uint32_t b) {
   while (true) {

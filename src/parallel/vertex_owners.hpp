@@ -38,7 +38,7 @@ class VertexOwners {
     }
   };
 
-  // Looks at all triangles once. They and the executor must outlive this.
+  // Looks at all triangles once. Triangles and executor must outlive this object.
   VertexOwners(const Executor& executor, Triangles triangles)
       : executor_(executor), triangles_(triangles), named_((triangles.size() + kBlock - 1) / kBlock) {
     executor.for_blocks(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t begin, std::int64_t end) {
@@ -50,7 +50,7 @@ class VertexOwners {
     });
   }
 
-  // The largest that a triangle names; 0 where there are no triangles.
+  // The largest vertex that a triangle names; 0 where there are no triangles.
   std::uint32_t largest_vertex() const {
     std::uint32_t largest = 0;
     for (const Range& named : named_) largest = std::max(largest, named.largest);
@@ -69,7 +69,7 @@ class VertexOwners {
  private:
   static constexpr std::size_t kBlock = 2048;
 
-  // Of the vertices that a block of triangles names: triangles that lie together name vertices that do.
+  // The range of the vertices that a block of triangles names. Triangles that lie together name vertices that do.
   struct Range {
     std::uint32_t least = 0xffffffffU;
     std::uint32_t largest = 0;

@@ -1,4 +1,4 @@
-// What is said of memory caps, in one unit.
+// Messages about memory caps, in one unit.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ inline constexpr double kRingPart = 0.05;    // of a cap, slices in the ring bey
 [[noreturn]] void refuse_cap(const std::string& where, std::uint64_t least, std::uint64_t cap,
                              const std::string& more = {});
 
-// A cap in the form in which one is asked for: the largest unit in which it is a whole number.
+// A cap as users write it: in the largest unit in which it is a whole number.
 std::string cap_text(std::uint64_t bytes);
 
-// The margin of the cap that a message names over a forecast. That cap has to do, while a forecast is a guess;
-// two processes differ by some megabytes, and the one that gets this cap looks again. Smaller ones are tried, down to
-// what is forecast.
+// The cap that a message names for a forecast. It is larger than the forecast, as that is a guess and the named cap
+// must do: two processes differ by some megabytes, and the process that gets this cap makes a forecast of its own.
+// Smaller caps are tried, down to the forecast.
 std::uint64_t with_slack(std::uint64_t least);
 std::uint64_t without_slack(std::uint64_t named);
 

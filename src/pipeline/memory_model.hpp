@@ -1,4 +1,4 @@
-// What a run holds, in bytes: the formula behind forecasts and the memory cap.
+// The bytes that a run holds: the formula behind forecasts and the memory cap.
 //
 // The figures per triangle are fits to runs (docs/memory.md has the runs). They hold within a tenth for zones of more
 // than some ten thousand triangles.
@@ -30,24 +30,24 @@ struct MemoryModel {
   bool bounded = false;      // distances: the extracted surface around the zone is held as well
   double heavier = 1;        // measured bytes of the zone over those of this formula
 
-  // What does not grow.
+  // The bytes that do not grow.
   double fixed() const { return static_cast<double>(resident) + kBuffers + 0.15e6 * threads; }
 
-  // A slab of `layers` layers with `triangles`, on `undecided` ones that were there before. The ring of slices has room
-  // for `ring` of them, and never shrinks.
+  // The bytes with a slab of `layers` layers and `triangles` triangles, beside `undecided` triangles held before. The
+  // ring has room for `ring` slices, and never shrinks.
   double peak(double layers, double ring, double triangles, double undecided) const {
     return fixed() + slices(layers, ring) + per_new() * triangles + per_held() * (triangles + undecided);
   }
 
-  // Triangles that fit into `bytes` with a slab of so many layers; may be negative.
+  // The triangles of a slab of so many layers that fit into `bytes`; may be negative.
   double triangles_within(double bytes, double layers, double ring, double undecided) const {
     return (bytes - peak(layers, ring, 0, undecided)) / (per_new() + per_held());
   }
 
-  // Slices in the ring for a slab and for those read ahead.
+  // The slices in the ring for a slab and for read-ahead.
   static double ring_for(double layers, double ahead, bool normals) { return layers + 1 + ahead + (normals ? 2 : 0); }
 
-  // Bytes of the zone with so many triangles.
+  // The bytes of a zone with so many triangles.
   double zone(double triangles) const { return per_held() * triangles; }
 
  private:
@@ -60,10 +60,10 @@ struct MemoryModel {
            (layers + 1) * kBits * static_cast<double>(slice_samples);
   }
 
-  // On the way from extraction to the zone, or straight to the file.
+  // The bytes per new triangle on the way from extraction to the zone, or straight to the file.
   double per_new() const { return (simplifies ? 85 : 115) + static_cast<double>(extras.extracted); }
 
-  // In the zone, with half a vertex each.
+  // The bytes per triangle in the zone, with half a vertex each.
   double per_held() const {
     if (!simplifies) return 0;
     const double extra = static_cast<double>(extras.held) / 2 + 10 * static_cast<double>(levels);

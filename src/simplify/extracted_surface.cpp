@@ -17,7 +17,7 @@ using measure::cross;
 using measure::dot;
 using measure::Vector;
 
-// Below this sine of an angle the normal of a triangle is rounding noise; its sides say where it is.
+// Below this sine of an angle the normal of a triangle is rounding noise. Its sides say where it is.
 constexpr double kLeastSine = 1e-12;
 constexpr std::size_t kMostCells = 256;  // of one grid that a triangle is listed in
 constexpr std::size_t kMixed = 16;       // triangles of a list: the order of more is mixed
@@ -30,7 +30,7 @@ constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all t
 
 Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-// Mesh files may be anywhere.
+// The number of a cell. It is clamped, as mesh files may lie anywhere.
 std::int64_t cell_number(double cells) { return static_cast<std::int64_t>(std::floor(std::clamp(cells, -1e15, 1e15))); }
 
 // Puts the longest side first.
@@ -73,19 +73,19 @@ bool is_within(double most, const Vector& p, const ExtractedSurface::Corners& tr
   return comes_within(most, {triangle[0] - p, triangle[1] - p, triangle[2] - p});
 }
 
-// A triangle, or what is left of it between planes.
+// A triangle, or the polygon that is left of it between planes.
 class CutPolygon {
  public:
   explicit CutPolygon(const ExtractedSurface::Corners& triangle) : count_(triangle.size()) {
     std::ranges::copy(triangle, corners_.begin());
   }
 
-  // What lies between two planes across an axis.
+  // The part of the polygon between two planes across an axis.
   CutPolygon between(std::size_t axis, double low, double high) const {
     return above(axis, 1, low).above(axis, -1, -high);
   }
 
-  // Nothing is from infinity to minus infinity.
+  // The range of the polygon along an axis; from infinity to minus infinity where nothing is left.
   std::pair<double, double> range(std::size_t axis) const {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -101,7 +101,7 @@ class CutPolygon {
 
   CutPolygon() = default;
 
-  // Where sign times the coordinate is `least` or more.
+  // The part of the polygon where sign times the coordinate is `least` or more.
   CutPolygon above(std::size_t axis, double sign, double least) const {
     CutPolygon cut;
     for (std::size_t n = 0; n < count_; ++n) {
@@ -115,7 +115,7 @@ class CutPolygon {
     return cut;
   }
 
-  // Rounding may find more corners than there are: the last one stands for them.
+  // Adds a corner. Rounding may find more corners than there are: the last place stands for all of them.
   void add(const Vector& corner) {
     if (count_ < kMostCorners) corners_[count_++] = corner;
   }
@@ -124,8 +124,9 @@ class CutPolygon {
   std::array<Vector, kMostCorners> corners_{};
 };
 
-// Neighbours in a list are neighbours in space, as a rule: those near a point are found sooner when steps through the
-// list are the golden section of it, as no stretch of it then waits longer than others of its length (Knuth, 1973).
+// Mixes a list. Neighbours in it are neighbours in space, as a rule. Steps through the list of the golden section of
+// its length find those near a point sooner, as no stretch of the list then waits longer than others of its length
+// (Knuth, 1973).
 template <class Item>
 void mix(std::span<Item> list) {
   if (list.size() <= kMixed) return;
@@ -139,7 +140,7 @@ void mix(std::span<Item> list) {
   }
 }
 
-// Calls visit(cell) for all cells of a box; ends when it answers false.
+// Calls visit(cell) for all cells of a box, until visit() answers false.
 template <class CellBox, class Visit>
 void each_cell(const CellBox& box, const Visit& visit) {
   auto cell = box.first;
@@ -173,7 +174,8 @@ ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, std::ui
   return part;
 }
 
-// A part that is too long to be near one triangle is cut at once. That is a guess, and cutting early is never wrong.
+// Whether a part is too long to be near one triangle: such a part is cut at once. That is a guess, and cutting early is
+// never wrong.
 bool ExtractedSurface::is_long(const Part& part) const {
   for (std::size_t n = 0; n < 3; ++n) {
     const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
@@ -187,7 +189,7 @@ ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p, int level) con
           cell_number(p[2] / length(level, 2))};
 }
 
-// Cells far apart may share a key: they are looked into together.
+// The key of a cell. Cells far apart may share a key, and are looked into together.
 std::uint64_t ExtractedSurface::key_of(int level, const Cell& cell) {
   constexpr int kBits = 19;
   constexpr std::uint64_t kMask = (1U << kBits) - 1;
@@ -205,7 +207,7 @@ double ExtractedSurface::CellBox::longest() const {
   return static_cast<double>(std::max({last[0] - first[0], last[1] - first[1], last[2] - first[2]}) + 1);
 }
 
-// The cells of a triangle's box, of which the upper borders are not a part.
+// The cells of a triangle's box, whose upper borders are not a part of it.
 ExtractedSurface::CellBox ExtractedSurface::cells_of(const Corners& triangle, int level) const {
   CellBox box;
   for (std::size_t n = 0; n < 3; ++n) {
@@ -226,8 +228,8 @@ ExtractedSurface::CellBox ExtractedSurface::cells_around(const Vector& p, int le
   return box;
 }
 
-// Calls visit(cell) for the cells of a box of some grid that a triangle touches, or may touch but for rounding; ends
-// when it answers false. A triangle is cut at the layers of cells and then at the rows of each layer.
+// Calls visit(cell) for the cells of a box of some grid that a triangle touches, or may touch but for rounding, until
+// visit() answers false. The triangle is cut at the layers of cells and then at the rows of each layer.
 template <class Visit>
 void ExtractedSurface::each_touched(const Corners& triangle, const CellBox& box, int level, const Visit& visit) const {
   const CutPolygon whole(triangle);
@@ -257,7 +259,8 @@ void ExtractedSurface::each_touched(const Corners& triangle, const CellBox& box,
   }
 }
 
-// Lists a triangle in the cells that it touches, of the finest grid in which they are few, and tells which one that is.
+// Lists a triangle in the cells that it touches, in the finest grid in which they are few. Returns the level of that
+// grid.
 int ExtractedSurface::list_in_cells(const Corners& triangle, std::uint32_t number, std::vector<Place>& places) const {
   const std::size_t before = places.size();
   for (int level = 0;; ++level) {
@@ -299,7 +302,7 @@ void ExtractedSurface::append(const Array<Corners>& triangles, double complete_b
   push_piece(std::move(piece));
 }
 
-// Pieces lie one above the other, but for a few triangles.
+// Adds a piece. Pieces lie one above the other, but for a few triangles.
 void ExtractedSurface::push_piece(Piece&& piece) {
   piece.highest = pieces_.empty() ? piece.top : std::max(piece.top, pieces_.back().highest);
   for (auto before = pieces_.rbegin(); before != pieces_.rend() && before->lowest > piece.lowest; ++before) {
@@ -308,7 +311,7 @@ void ExtractedSurface::push_piece(Piece&& piece) {
   pieces_.push_back(std::move(piece));
 }
 
-// A slot for each cell, with room for its triangles. The triangles of a cell come one after the other, as a rule.
+// Makes a slot for each cell, with room for its triangles. The triangles of a cell come one after the other, as a rule.
 void ExtractedSurface::make_slots(Piece& piece, std::span<const Place> places) {
   std::size_t cells = 1;
   for (std::size_t n = 1; n < places.size(); ++n) {
@@ -334,7 +337,7 @@ void ExtractedSurface::fill_slots(Piece& piece, std::span<const Place> places) {
   for (const Slot& slot : piece.slots) mix(std::span(piece.listed.data() + slot.first, slot.count));
 }
 
-// The slot of a key, or the free one where it belongs.
+// The slot of a key, or the free one that the key would get.
 std::size_t ExtractedSurface::slot_of(const Piece& piece, std::uint64_t key) {
   const std::size_t mask = piece.slots.size() - 1;
   std::size_t at = static_cast<std::size_t>(mix_bits(key)) & mask;
@@ -356,7 +359,7 @@ std::uint64_t ExtractedSurface::bytes() const {
   return sum;
 }
 
-// What of a part is within the distance of a triangle, where what others are near of is known.
+// Finds how much of a part is within the distance of a triangle, where `known` is what other triangles have given.
 ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Corners& triangle, Found known) const {
   const double most = most_ * most_;
   const bool all = std::all_of(part.corners.begin(), part.corners.end(),
@@ -391,7 +394,7 @@ bool ExtractedSurface::is_near(const Vector& p, int level, const Cell& cell) con
   return squared <= most_ * most_;
 }
 
-// In the cells that are `ring` cells away from that of the centre.
+// Looks into the cells that are `ring` cells away from that of the centre.
 ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring,
                                                        std::span<const Piece> pieces) const {
   Found found = Found::kNothing;
@@ -410,7 +413,7 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
   return found;
 }
 
-// In the grids of larger triangles, where the cells that come near the centre are few: its own cell first.
+// Looks into the grids of larger triangles, where few cells come near the centre: into its own cell first.
 ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span<const Piece> pieces) const {
   std::uint64_t levels = 0;
   for (const Piece& piece : pieces) levels |= piece.levels;
@@ -437,8 +440,8 @@ std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Vec
   return {first, end};
 }
 
-// Looks at the cells around the centre, ring by ring. Of a part that can be cut some more, rings behind the first one
-// that is near are left out: the surface farther away will do no better.
+// Looks into the cells around the centre, ring by ring. For a part that can be cut some more, the search ends at the
+// first ring that is near: the surface farther away will do no better.
 ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
   const std::span<const Piece> pieces = pieces_near(part.centre);
   if (pieces.empty()) return Found::kNothing;

@@ -1,4 +1,4 @@
-// The surface as it was extracted, around the undecided zone: what a guaranteed distance is measured from.
+// The extracted surface around the undecided zone: a guaranteed distance is measured from it.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace isoweave {
 
-// The triangles of a surface that comes in pieces, ordered by z, in grids of cells, for one question: is every point
-// of a triangle within a distance of them? The answer, once it is known, depends on the whole surface alone, not on the
-// pieces. Its cost is bounded: no more than kMostParts parts of a triangle are looked at, each among the triangles in a
-// few cells of the few pieces that are near in z, however many there are. A triangle is in the cells that it touches,
-// so those of a cell come near each other, whatever their shape and direction.
+// The triangles of a surface that comes in pieces, ordered by z, in grids of cells, for one question: is every point of
+// a triangle within a distance of them? The answer, once it is known, depends on the whole surface alone, not on the
+// pieces. The cost of an answer is bounded: no more than kMostParts parts of a triangle are looked at, each among the
+// triangles in a few cells of the few pieces that are near in z, however many there are. A triangle is listed in the
+// cells that it touches, so the triangles of a cell come near each other, whatever their shape and direction.
 class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
@@ -34,20 +34,21 @@ class ExtractedSurface {
   // Takes the triangles of a piece. No later piece has a point below `complete_below`.
   void append(const Array<Corners>& triangles, double complete_below);
 
-  // Questions will be about triangles in the layer of z and above.
+  // Forgets triangles that are not needed for questions about the layer of z and above.
   void forget_below(double z);
 
-  // Whether all of a triangle lies within the distance. It is cut at its longest side until the corners of each part
-  // are within the distance of one and the same triangle of the surface, and with them, as that is convex, the part.
-  // Parts smaller than a sixteenth of the distance are not cut again. So what is within 15/16 of the distance is always
-  // found to be, unless that takes more parts than kMostParts, and nothing beyond it ever is. May be called by several
-  // threads at the same time.
-  // looks: gets one more for each time that a part is compared with a triangle, if it is not null.
+  // Whether all of a triangle lies within the distance. The triangle is cut at its longest side until the corners of
+  // each part are within the distance of one and the same triangle of the surface. The points within the distance of a
+  // triangle form a convex set, so all of the part is within it then. Parts smaller than a sixteenth of the distance
+  // are not cut again. So a triangle within 15/16 of the distance is always found to be within it, unless that takes
+  // more parts than kMostParts. A triangle beyond the distance never is. May be called by several threads at the same
+  // time.
+  // looks: unless null, counts the comparisons of a part with a triangle.
   Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t* looks = nullptr) const;
 
   std::uint64_t bytes() const;
 
-  // What is held between two appends.
+  // Reads or writes the state between two appends.
   template <class Archive>
   void exchange(Archive& archive) {
     std::uint64_t count = pieces_.size();
@@ -70,12 +71,13 @@ class ExtractedSurface {
  private:
   using Cell = std::array<std::int64_t, 3>;
 
-  // Of the layers that layer_of() tells apart: not where surfaces like to lie, on slices or halfway between them.
+  // The shift of the layers that layer_of() tells apart: their borders do not lie where surfaces like to lie, on slices
+  // or halfway between them.
   static constexpr double kShift = 0.382;
 
   static constexpr int kLastLevel = 63;  // of grids
 
-  // Parts of one triangle that is asked about.
+  // The most parts of one triangle that is asked about.
   static constexpr int kMostParts = 1 << 14;
 
   // A cell that holds triangles of its piece.
@@ -110,8 +112,8 @@ class ExtractedSurface {
 
   enum class Found : std::uint8_t { kNothing, kCentre, kAll };  // what is within the distance of some triangle
 
-  // Cells with both, in a grid of some level: those of level 0 are as long as they were asked for, those of each other
-  // one four times as long as those below.
+  // The cells from one to another, in a grid of some level. Cells of level 0 have the length that was asked for; those
+  // of each other level are four times as long as those of the level below.
   struct CellBox {
     Cell first{}, last{};
     double cells() const;

@@ -7,8 +7,8 @@
 namespace isoweave {
 namespace {
 
-// No vertex leaves the layers of cells that the stars are in, so nothing that is held ever sinks below the lowest layer
-// of what has been held before, and what lies farther down can be forgotten.
+// Whether a place lies in the layers of cells that the stars are in. No vertex leaves these layers, so no held triangle
+// ever sinks below the lowest layer held before, and the surface farther down can be forgotten.
 bool stays_in_layers(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place) {
   double low = zone.vertices[u.vertex].position.z;
   double high = low;

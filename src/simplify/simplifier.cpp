@@ -79,7 +79,7 @@ std::vector<Index> Simplifier::final_triangles(std::size_t level) {
   return triangles;
 }
 
-// Vertices that have become final in a level; those of them that are inspected, as their star can be walked.
+// Makes vertices final in a level. Returns those of them that are inspected, as their star can be walked.
 std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
   const CostBits within = is_last(level) ? zone_.options.retire : finer_[level];
   undecided_.resize(zone_.vertices.size());
@@ -97,7 +97,7 @@ std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
   return walkable;
 }
 
-// Tells whether it was not final before. Those that are locked stay so.
+// Makes v final. Returns whether it was not final before. Locked vertices stay locked.
 bool Simplifier::make_final(Index v, std::size_t level) {
   if (zone_.states[v] == VertexState::kLocked) return false;
   if (is_last(level)) return std::exchange(zone_.states[v], VertexState::kFinal) != VertexState::kFinal;
@@ -116,7 +116,8 @@ void Simplifier::close_gaps() {
   if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
 }
 
-// The faces that name a vertex must be the one fan that is found by walking around it, and its neighbours must differ.
+// Inspects vertices. The faces that name a vertex must be the one fan that a walk around it finds, and its neighbours
+// must differ.
 SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,
                                    const std::vector<std::uint32_t>& corners) const {
   std::atomic<std::uint64_t> bad_vertices{0};
@@ -136,7 +137,7 @@ SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,
   return {bad_edges, bad_vertices};
 }
 
-// Walks around v over at most `most` + 1 faces, and tells how many there are.
+// Walks around v over at most `most` + 1 faces, and returns their number.
 std::uint32_t Simplifier::list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const {
   neighbours.clear();
   const Index first = zone_.vertices[v].half_edge;

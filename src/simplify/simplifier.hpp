@@ -1,4 +1,4 @@
-// The simplifier: takes pieces of a surface in, decides what is safe, and tells what is final.
+// The simplifier: takes pieces of a surface in, decides all edges that are safe to decide, and finds what is final.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@ namespace isoweave {
 struct SimplifierOptions {
   ZoneOptions zone;
   Schedule schedule = Schedule::kAutomatic;
-  // Costs at which finer meshes are taken out, ascending, all below what retires an edge.
+  // The costs of the finer meshes, ascending, all below the cost at which edges are retired.
   std::vector<CostBits> finer{};
-  bool inspect = true;  // what becomes final, for defects
+  bool inspect = true;  // inspect final vertices for defects
 };
 
 class Simplifier {
@@ -30,37 +30,38 @@ class Simplifier {
 
   void append(const SurfacePiece& piece) {
     zone_.append(piece, executor_);
-    if (schedule_ != Schedule::kLocal) zone_.settle_edges(executor_);  // which does that while it decides
+    if (schedule_ != Schedule::kLocal) zone_.settle_edges(executor_);  // the local one settles edges while it decides
     appended_ += piece.triangles.size();
   }
 
-  // The meshes that come out: those of the finer levels, and the last one.
+  // The number of meshes that come out: one for each finer level, and the last one.
   std::size_t levels() const { return finer_.size() + 1; }
   bool is_last(std::size_t level) const { return level == finer_.size(); }
 
-  // Decides every edge that can be decided with what has been appended. Throws Interrupted.
+  // Decides every edge that can be decided with the pieces appended so far. Throws Interrupted.
   void decide();
 
-  // The same up to the cost of a level. After an append the levels come one after the other, each before the next one
-  // changes what is final in it.
+  // Decides every edge up to the cost of a level. After an append the levels follow one another, and each hands out its
+  // final triangles before the next one changes them.
   void decide(std::size_t level);
 
   // For a complete surface, after decide(): decides in the order of the keys until no more than `triangles` of the
   // surface are left, or no edge is. Throws Interrupted.
   void decide_in_order(std::uint64_t triangles);
 
-  // Triangles of a level all of whose vertices are final there and that have not been named before, in memory order.
-  // Marks vertices final. The caller hands those of the last level to drop() once it has no more use for them.
+  // Finds the triangles of a level whose vertices are all final there, in memory order. Each triangle is found once.
+  // Marks vertices final. The caller must hand the triangles of the last level to drop() when they are no longer
+  // needed.
   std::vector<Index> final_triangles(std::size_t level);
   void drop(const std::vector<Index>& triangles);
 
   // Compacts the zone if much of it has gone.
   void close_gaps();
 
-  // Of the surface so far: held, and handed out.
+  // The triangles of the surface so far: those held, and those handed out.
   std::uint64_t triangles() const { return appended_ - counts().removed; }
 
-  // Those that are held and have not been collapsed.
+  // The triangles that are held and have not been collapsed.
   std::uint64_t live_triangles() const { return triangles() - dropped_; }
 
   DecisionCounts counts() const {
@@ -73,7 +74,7 @@ class Simplifier {
   const SurfaceDefects& defects(std::size_t level) const { return defects_[level]; }
   const SurfaceDefects& defects() const { return defects_.back(); }
 
-  // The state between two slabs.
+  // Reads or writes the state between two slabs.
   template <class Archive>
   void exchange(Archive& archive) {
     DecisionCounts counted = counts();

@@ -1,4 +1,4 @@
-// The undecided zone: the part of the surface that is held.
+// The undecided zone: the part of the surface that is held in memory.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace isoweave {
 
-// Vertices whose edges may have got keys: some that were there before, and all new ones.
+// The settled vertices, whose edges may have got keys: some older ones, and all new ones.
 struct SettledVertices {
   std::vector<Index> old;
   Index first_new = 0;
@@ -34,7 +34,7 @@ struct SettledVertices {
   }
 };
 
-// What a vertex is to the mesh of a level before the last one.
+// The facts about a vertex in the mesh of a level before the last one.
 struct LevelVertex {
   std::uint64_t output = kNotWritten;  // number in the output
   Index component = 0;                 // of the written surface, once written
@@ -46,7 +46,7 @@ struct TriangleRange {
   Index end = 0;
 };
 
-// Owns what its view shows.
+// The zone owns the arrays that its view shows.
 class Zone : public ZoneView {
  public:
   // finer_levels: meshes with smaller errors that come out of the zone as well.
@@ -54,7 +54,7 @@ class Zone : public ZoneView {
   Zone(const Zone&) = delete;
   Zone& operator=(const Zone&) = delete;
 
-  // To be copied: what a pass needs of the zone.
+  // The view, to be copied into passes over the zone.
   const ZoneView& view() const { return *this; }
 
   SettledVertices settled;                 // with the last piece
@@ -65,32 +65,32 @@ class Zone : public ZoneView {
   // Forgets all turns: every undecided vertex counts as settled.
   void settle_all();
 
-  // Nothing more is to be decided: all edges are retired.
+  // Retires all edges, as nothing more is to be decided.
   void retire_all() { options.retire = limit = kUnknownCost; }
 
   // Takes a piece in: links it to the front, and gives quadrics to the vertices that are complete now. Throws
   // OverMemory when the zone would hold 2^30 triangles.
   void append(const SurfacePiece& piece, const Executor& executor);
 
-  // To be called after an append: gives keys to the edges both of whose ends are complete now.
+  // Gives keys to the edges both of whose ends are complete now. Must be called after an append.
   void settle_edges(const Executor& executor);
 
-  // The same in parts, for who decides edges meanwhile. First those that have waited for a vertex; then the new
-  // triangles of each column, by several threads at once, where `unkeyed` gets the edges that wait from now on; in the
-  // end these, of all threads in any order. Meanwhile an edge may be decided once the countdown has named both its ends
-  // and all their neighbours.
+  // The parts of settle_edges(), for a schedule that decides edges meanwhile. The first part is for the edges that have
+  // waited for a vertex. The second is for the new triangles of each column, by several threads at once; `unkeyed` gets
+  // the edges that wait from now on. The last part takes these edges, of all threads in any order. Meanwhile an edge
+  // may be decided once the countdown has named both its ends and all their neighbours.
   void settle_waiting_edges(const Executor& executor);
   TriangleRange unsettled(std::size_t column) const;
   void settle_edges(TriangleRange range, std::vector<Index>& unkeyed);
   void set_aside(std::span<const Index> unkeyed);
 
-  // Drops what is gone. Keeps the order of triangles.
+  // Removes the triangles and vertices that are gone. Triangles keep their order.
   void compact(const Executor& executor);
 
   std::uint64_t bytes() const;
 
-  // The state between two appends, all of manifold pieces. Turns are not part of it: with the next append all
-  // undecided vertices count as settled.
+  // Reads or writes the state between two appends, where all pieces are manifold. Turns are not part of the state: with
+  // the next append all undecided vertices count as settled.
   template <class Archive>
   void exchange(Archive& archive) {
     archive.list(vertex_array_);
@@ -117,7 +117,7 @@ class Zone : public ZoneView {
   void show_arrays();
   void forget_turns();
   void list_settled(Index end);
-  // Of a vertex of the last piece, by its number there once it is sorted.
+  // A vertex of the last piece, by its number in that piece after sorting.
   Index index_of(Index number) const {
     return number < front_.size() ? front_[number] : settled.first_new + (number - static_cast<Index>(front_.size()));
   }

@@ -23,8 +23,9 @@ struct EdgeSide {
   ISOWEAVE_HD bool backwards() const { return (other & kBackwards) != 0; }
 };
 
-// Pairs the sides at one end, sorted by the other end. An edge has one side, or two that run in opposite directions:
-// see_pair(forwards, backwards) is told those half-edges. Another one is bad: see_bad(half-edge) is told.
+// Pairs the sides at one end, sorted by the other end. A good edge has one side, or two that run in opposite
+// directions: see_pair(forwards, backwards) is told those half-edges. A bad edge has others: see_bad(half-edge) is
+// told.
 template <class SeePair, class SeeBad>
 ISOWEAVE_HD inline void link_sorted(std::span<const EdgeSide> sides, const SeePair& see_pair, const SeeBad& see_bad) {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
@@ -40,17 +41,18 @@ ISOWEAVE_HD inline void link_sorted(std::span<const EdgeSide> sides, const SeePa
   }
 }
 
-// Of a face, per twice its area.
+// The weight of a face's plane, per twice its area.
 ISOWEAVE_HD inline double initial_weight(const ZoneOptions& options) { return 1 / (6 * options.a0 * options.a0); }
 
-// Of the face of h, twice as long as its area, as seen from the origin of h.
+// The normal of the face of h, twice as long as its area, as seen from the origin of h.
 ISOWEAVE_HD inline Vec3 face_normal(const ZoneView& zone, Index h) {
   const Vec3 from = zone.vertices[zone.origin(h)].position;
   return cross(zone.vertices[zone.destination(h)].position - from,
                zone.vertices[zone.origin(previous(h))].position - from);
 }
 
-// Through the border edge from v to another vertex, perpendicular to its face, weighted by squared length.
+// The quadric of the plane through the border edge from v to another vertex, perpendicular to its face, weighted by
+// squared length.
 ISOWEAVE_HD inline Quadric border_plane(const ZoneView& zone, Index v, Index other, Index face) {
   const Vec3 side = zone.vertices[other].position - zone.vertices[v].position;
   const Vec3 across = cross(side, face_normal(zone, face));

@@ -1,5 +1,4 @@
-// The undecided zone as everyone who decides edges sees it, on the host and on a device: half-edge arrays that somebody
-// else owns.
+// The undecided zone as all deciders see it, on the host and on a device: half-edge arrays that another object owns.
 //
 // Half-edge h = 4 * triangle + corner runs from its vertex to the vertex of next(h); twin(h) runs back. A collapse
 // writes the triangles and vertices of the two stars only, so collapses whose stars share no triangle can run at the
@@ -27,7 +26,8 @@ inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and g
 
 ISOWEAVE_HD inline Index half_edge(Index triangle, Index corner) { return 4 * triangle + corner; }
 
-// Without comparisons, of which compilers make branches: the corner that a walk comes by cannot be predicted.
+// next() and previous() have no comparisons, of which compilers make branches: the corner of a walk cannot be
+// predicted.
 ISOWEAVE_HD inline Index next(Index h) { return h + 1 - 3 * (h >> 1 & 1); }
 ISOWEAVE_HD inline Index previous(Index h) { return h - 1 + (((h & 3) - 1) >> 30); }
 
@@ -54,8 +54,8 @@ struct alignas(64) Vertex {
 
 static_assert(sizeof(Vertex) == 128, "two cache lines");
 
-// The key is what the safe rule compares: the bits of the cost above the upper half of the tie. It is equal on both
-// half-edges of an edge.
+// A key is what the safe rule compares: the bits of the cost above the upper half of the tie. Both half-edges of an
+// edge have the same key.
 using Key = std::uint64_t;
 
 ISOWEAVE_HD inline Key make_key(CostBits cost, std::uint64_t tie) { return Key{cost} << 32 | tie >> 32; }
@@ -70,7 +70,8 @@ struct HalfEdge {
   Key key = 0;
 };
 
-// One cache line holds what a walk around a vertex reads. Half-edge h is the h-th sixteen bytes.
+// A triangle is one cache line with everything that a walk around a vertex reads. Half-edge h is the h-th sixteen
+// bytes.
 struct alignas(64) Triangle {
   std::array<HalfEdge, 3> sides;
   std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
@@ -79,8 +80,8 @@ struct alignas(64) Triangle {
 
 static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);
 
-// Whose turn it is at a vertex, and who waits for that to change. The key of its least edge is kept apart: it is what
-// neighbours look at.
+// The turn of a vertex: its least edge, and the pairs that wait for that to change. The key of that edge is kept in an
+// array of its own, as neighbours read it.
 struct Turn {
   Index edge = kNone;  // half-edge of the least edge; kNone: unknown, or none
   Index first_waiter = kNone;
@@ -110,8 +111,8 @@ struct ZoneView {
   std::span<Turn> turns;     // parallel to vertices; kept by the schedules that use them
   std::span<Triangle> triangles;
   ZoneOptions options;
-  // Edges with a higher cost wait until it is raised: what is decided is what a run with that error would decide. At
-  // most options.retire; lowered, it leaves what has been decided as it is.
+  // Edges with a higher cost wait until the limit is raised, so a run decides what a run with that error would decide.
+  // The limit is at most options.retire. Lowering it leaves the decisions made so far as they are.
   CostBits limit = 0;
   const ExtractedSurface* extracted = nullptr;  // where distances are bounded; on the host only
   std::span<NormalQuadric> normal_quadrics{};   // parallel to vertices, where normals count; on the host only
@@ -132,18 +133,19 @@ struct ZoneView {
   ISOWEAVE_HD std::uint64_t tie(Index h) const { return key(h) << 32 | tie_low(h); }
   ISOWEAVE_HD bool alive(Index h) const { return origin(h) != kNone; }  // the triangle of h is there
 
-  // The order in which edges are decided.
+  // Whether edge a is decided before edge b.
   ISOWEAVE_HD bool comes_before(Index a, Index b) const {
     return key(a) != key(b) ? key(a) < key(b) : tie_low(a) < tie_low(b);
   }
 
-  // The star of v is one fan that can be walked around.
+  // Whether the star of v is one fan that can be walked around.
   ISOWEAVE_HD bool walkable(Index v) const {
     const VertexState state = states[v];
     return state != VertexState::kIncomplete && state != VertexState::kLocked && exists(vertices[v].half_edge);
   }
 
-  // The half-edge that stands for its edge: the smaller one, or the only one, as what is no half-edge is greater.
+  // Whether a half-edge represents its edge: the smaller of two does, and a single one, as numbers that stand for no
+  // half-edge are greater.
   ISOWEAVE_HD bool represents_edge(Index h) const { return h < twin(h); }
 
   // The next half-edge around the origin of h, counter-clockwise; kNone past a border.

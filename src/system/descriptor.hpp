@@ -1,5 +1,5 @@
-// Open files, pipes and sockets by the system's numbers for them. What fails returns -1 or false and leaves the reason
-// in errno; calls that a signal interrupts are made again.
+// Open files, pipes and sockets by the system's numbers for them. A function that fails returns -1 or false and leaves
+// the reason in errno. Calls that a signal interrupts are made again.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@ enum class Opening : std::uint8_t {
 // Not inherited by programs that the process starts. The umask takes its share of the rights of a new file.
 int open_descriptor(const std::string& path, Opening how);
 
-// Another number for what is open.
+// Another descriptor of the same open file.
 int duplicate(int descriptor);
 int duplicate_standard_input();
 
 bool close_descriptor(int descriptor);
 
-// These return how many bytes there were, 0 at the end.
+// These functions return the number of bytes read, 0 at the end.
 std::int64_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> out);
 std::int64_t read_once(int descriptor, std::span<std::byte> out);  // of a pipe; waits where its opener wished not to
 
-// All of it; nothing left to write to is ENOSPC.
+// Writes all bytes. ENOSPC means that nothing more can be written.
 bool write_all(int descriptor, std::span<const std::byte> bytes);
 bool write_all_at(int descriptor, std::uint64_t offset, std::span<const std::byte> bytes);
 

@@ -1,4 +1,4 @@
-// Facts of files: what there is under a name or behind a descriptor, and by which a changed file is told.
+// Facts of files: the kind of a file by its name or descriptor, and the facts by which a changed file is recognised.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct FileFacts {
   std::int64_t seconds = 0, nanoseconds = 0;  // of the last change, since 1970
 };
 
-// Nothing for a name of no regular file.
+// The facts of a regular file. Nothing for other names.
 std::optional<FileFacts> facts_of_file(const std::string& path);
 
 struct FileStatus {
@@ -27,17 +27,18 @@ struct FileStatus {
   bool same_file(const FileStatus& other) const { return device == other.device && file == other.file; }
 };
 
-// Of what is open, or has a name, behind symbolic links. Nothing where the system does not tell: errno says why.
+// The status of an open file, or of the file that a name leads to. Nothing where the system does not tell: errno says
+// why.
 std::optional<FileStatus> status_of(int descriptor);
 std::optional<FileStatus> status_of(const std::string& path);
 
 // Whether the name itself is that of a symbolic link.
 bool is_link(const std::string& path);
 
-// The name of what links lead to; empty where errno says why.
+// The name that symbolic links lead to; empty on failure, with the reason in errno.
 std::string resolve_links(const std::string& path);
 
-// False where errno says why.
+// Whether a file may be written; false on failure, with the reason in errno.
 bool may_write(const std::string& path);
 
 // Names of files that a pattern of the shell stands for, in any order; nothing where a folder cannot be listed.

@@ -13,7 +13,7 @@ void* checked(void* pages) {
   return pages;
 }
 
-// A wish: small pages do as well.
+// Asks for huge pages. Small pages do as well.
 void wish_for_huge_pages([[maybe_unused]] void* pages, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
   ::madvise(pages, bytes, MADV_HUGEPAGE);

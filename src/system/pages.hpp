@@ -11,8 +11,8 @@ inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
 // Zeros, on huge pages where the system has them. Pages cost nothing until they are touched. Throws std::bad_alloc.
 void* take_pages(std::size_t bytes);
 
-// The same bytes followed by zeros, elsewhere perhaps; without a copy where the system can move pages. Throws
-// std::bad_alloc, and then nothing has changed.
+// Grows pages: returns the same bytes followed by zeros, perhaps at another address. There is no copy where the system
+// can move pages. Throws std::bad_alloc, and changes nothing then.
 void* grow_pages(void* pages, std::size_t bytes, std::size_t more);
 
 void free_pages(void* pages, std::size_t bytes) noexcept;

@@ -3,10 +3,10 @@
 
 namespace isoweave::system {
 
-// The number by which the system, and whoever looks at its processes, knows this one.
+// The number of this process.
 int process_number();
 
-// How many processors it may run on, at least 1.
+// The number of processors that the process may run on, at least 1.
 int processors();
 
 }  // namespace isoweave::system

@@ -5,7 +5,7 @@
 
 namespace isoweave::system {
 
-// Bytes in physical memory now, and at most until now; 0 where the system does not tell.
+// The bytes in physical memory now, and the most until now; 0 where the system does not tell.
 std::uint64_t resident_bytes();
 std::uint64_t peak_bytes();
 

@@ -5,10 +5,11 @@
 
 namespace isoweave::system {
 
-// A library stays for as long as the process; null where it cannot be loaded. Its names are for find_symbol() only.
+// Loads a library, which stays as long as the process. Null where it cannot be loaded. Its names are for find_symbol()
+// only.
 void* load_library(const std::string& name);
 
-// Null where the library has no such name.
+// The address of a name in a library; null where the library does not have it.
 void* find_symbol(void* library, const char* name);
 
 }  // namespace isoweave::system

@@ -1,4 +1,4 @@
-// Forecasts: a few blocks of the volume are meshed, and the rest is taken to be like them.
+// Forecasts: a few blocks of the volume are meshed, and the rest is assumed to be like them.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -26,7 +26,7 @@
 namespace isoweave {
 namespace {
 
-// Thin blocks tell how many triangles there are, thick ones what simplification leaves of them.
+// Thin blocks show how many triangles there are, thick blocks how many of them simplification leaves.
 constexpr std::int64_t kThin = 2;  // slices
 constexpr std::int64_t kThick = 15;
 constexpr std::int64_t kThickBlocks = 3;
@@ -42,8 +42,8 @@ constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever 
 constexpr std::int64_t kThinnestBand = 8;  // rows
 constexpr double kRoughSurface = 250;      // triangles that are held, per sample along two sides of a slice
 
-// How many layers deep the undecided zone is where a share `left` of the triangles remains, and how much deeper in the
-// flats of the caps. Fits to runs on scans and textures, see docs/memory.md.
+// The depth of the undecided zone, in layers, where a share `left` of the triangles remains, and the further depth in
+// the flats of the caps. Both are fits to runs on scans and textures; see docs/memory.md.
 double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
 constexpr double kCapDepth = 20;
 constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
@@ -72,7 +72,7 @@ class Forecaster {
     control_.slab = control.slab;
     control_.stop = control.stop;
     error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
-    // Tiles tell how long simplification takes and how many triangles are left, at least where a number is to stop it.
+    // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
     refuse_reader(control.memory);
     band_rows_ = band_rows();
@@ -101,11 +101,12 @@ class Forecaster {
   }
 
  private:
-  // What meshing a block of slices holds, per sample of one: slices in the ring, and bits.
+  // The bytes that meshing a block of slices holds, per sample of a slice: slices in the ring, and bits.
   double block_bytes() const { return 9 * static_cast<double>(sample_bytes(info_.type)) + 4; }
 
-  // A source that decodes more at once than the cap leaves is not read from at all, unless that is no more than what
-  // looking at a volume takes anyway. The surface is not known then: what is named is enough for a rough one.
+  // Refuses a source that decodes more at once than the cap leaves, unless that is no more than looking at a volume
+  // takes anyway. Such a source is not read at all, so the surface is not known: the cap that is named is enough for a
+  // rough one.
   void refuse_reader(std::uint64_t cap) const {
     const auto held = static_cast<double>(held_by_rows(volume_));
     const double least =
@@ -116,21 +117,22 @@ class Forecaster {
     refuse_cap(info_.path, with_slack(to_count(std::max(least, least_cap(rough)))), cap);
   }
 
-  // Rows of the bands that are looked at: all, unless slices are so large that a block of them would not fit.
+  // The rows of the bands that are looked at: all rows, unless slices are so large that a block of them would not fit.
   std::int64_t band_rows() const {
     const double rows = kBandBytes / (block_bytes() * static_cast<double>(info_.dims[0]));
     return std::clamp(static_cast<std::int64_t>(rows), std::min(kThinnestBand, info_.dims[1]), info_.dims[1]);
   }
 
-  // Another band for each block, spread evenly however many there are (by the golden section), the first in the middle.
+  // The band of a block. Bands are spread evenly however many blocks there are (by the golden section), the first one
+  // in the middle.
   RowBand band_of(std::int64_t block) const {
     const double place = 0.5 + 0.6180339887498949 * static_cast<double>(block);
     const auto free = static_cast<double>(info_.dims[1] - band_rows_);
     return {static_cast<std::int64_t>((place - std::floor(place)) * free), band_rows_};
   }
 
-  // How many blocks there are, one in each of as many equal parts, and how thick the thick ones are: a small part of
-  // the volume.
+  // Plans the blocks: how many there are, one in each of as many equal parts, and how thick the thick ones are.
+  // Together they are a small part of the volume.
   void plan_blocks() {
     const auto whole = static_cast<double>(info_.slice_bytes());
     const double slice = whole * static_cast<double>(band_rows_) / static_cast<double>(info_.dims[1]);
@@ -149,7 +151,7 @@ class Forecaster {
     every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
-  // Triangles on one side of a slice that no block looks at, where it is an end of a closed volume.
+  // The triangles on one side of a slice that no block looks at, where the slice is an end of a closed volume.
   double end_cap(std::int64_t k) {
     double cap = 0;
     const std::size_t row = info_.slice_bytes() / static_cast<std::size_t>(info_.dims[1]);
@@ -208,7 +210,7 @@ class Forecaster {
             2.0 * inside / layers(section)};
   }
 
-  // Simplifies as much of a tile as is a small part of the volume's surface.
+  // Simplifies a part of a tile that is a small part of the volume's surface.
   void simplify_part(const Tile& tile, double per_layer) {
     const double expected = per_layer * layers_in_bands() * static_cast<double>(info_.dims[2]);
     const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
@@ -248,7 +250,7 @@ class Forecaster {
     return counted;
   }
 
-  // The open surface in samples.
+  // Meshes the open surface of a block, in samples.
   MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
     MeshOptions options = options_;
     options.closed = false;
@@ -264,14 +266,14 @@ class Forecaster {
     return mesh_volume(block, sink, options, control);
   }
 
-  // Rows of a slice, and layers between them, for one in a band.
+  // The rows of a slice, and the layers between them, over those of a band.
   double rows_in_bands() const { return static_cast<double>(info_.dims[1]) / static_cast<double>(band_rows_); }
   double layers_in_bands() const {
     const auto between = [](std::int64_t rows) { return static_cast<double>(std::max<std::int64_t>(rows - 1, 1)); };
     return between(info_.dims[1]) / between(band_rows_);
   }
 
-  // Samples inside on the sides of a slice. Of a band two sides are cuts: the others stand for all four.
+  // The samples inside on the sides of a slice. Two sides of a band are cuts, so the two others stand for all four.
   double inside_on_sides(std::span<const std::byte> slice) const {
     const IsoRule rule = stored_rule(info_, options_);
     const std::int64_t nx = info_.dims[0];
@@ -316,14 +318,14 @@ class Forecaster {
     return forecast;
   }
 
-  // A run stops at the number or at the error, whatever leaves more.
+  // The triangles that are left: a run stops at the number or at the error, whichever leaves more.
   std::uint64_t left_of_number(const Forecast& forecast) const {
     const std::uint64_t most =
         std::isinf(error_) ? options_.triangles : std::max(options_.triangles, forecast.triangles);
     return std::min(most, forecast.triangles_extracted);
   }
 
-  // Nothing but the six sides of a closed volume that is inside as a whole.
+  // The forecast of a closed volume that is inside as a whole: its surface is the six sides.
   Forecast conclude_constant() {
     const bool inside = is_inside(*constant_sample(volume_), info_.type, stored_rule(info_, options_));
     const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
@@ -336,8 +338,8 @@ class Forecaster {
     return conclude();
   }
 
-  // How many triangles lie below a height, in layers: between the middles of two blocks the facts go from those of the
-  // one to those of the other, outside they stay.
+  // The number of triangles below a height, in layers. Between the middles of two blocks the facts go from those of the
+  // one to those of the other; outside they stay.
   class Profile {
    public:
     Profile(std::vector<double> per_layer, double distance) : per_layer_(std::move(per_layer)), distance_(distance) {
@@ -363,7 +365,7 @@ class Forecaster {
     std::vector<double> below_;  // the middle of each block
   };
 
-  // Of the open surface, and of the caps.
+  // The profiles of the open surface, and of the caps.
   struct Profiles {
     Profile open, caps;
   };
@@ -385,7 +387,8 @@ class Forecaster {
     return before_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
   }
 
-  // Undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is reached.
+  // The undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is
+  // reached.
   double held_before(const Profiles& profiles, double at, double depth, Reachable reachable) const {
     if (options_.triangles > 0) {
       const double all = profiles.open.below(at) + profiles.caps.below(at);
@@ -399,7 +402,7 @@ class Forecaster {
     return above(profiles.open, depth) + kCapWeight * above(profiles.caps, kCapDepth * depth);
   }
 
-  // Goes through the slabs of a run.
+  // The peak of a run's memory, found by going through its slabs.
   double peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
     const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
@@ -423,7 +426,7 @@ class Forecaster {
       const auto at = static_cast<double>(done);
       const double undecided = held_before(profiles, at, depth, reachable);
       const SlabGoal goal = beside_zone(slab_goal(error_ > 0), undecided);
-      // What is read and classified was planned before it turned out how full it is.
+      // The slab was planned before its slices were read, when nobody knew how full it is.
       const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
       const auto ahead =
           static_cast<double>(std::min(slices_ahead(field, goal, planned), info_.dims[2] - done - planned));

@@ -1,4 +1,4 @@
-// What can be said of a cap before anything is read.
+// The check of a memory cap before anything is read.
 #pragma once
 
 #include "isoweave/pipeline.hpp"

@@ -19,7 +19,7 @@ struct Rectangle {
   std::array<std::int64_t, 2> from{}, size{};
 };
 
-// Where on a slice triangles lie: counts in a grid of bins.
+// The places of triangles on a slice: counts in a grid of bins.
 class TriangleMap {
  public:
   explicit TriangleMap(const std::array<std::int64_t, 3>& dims) : dims_(dims), counts_(kBins * kBins) {}
@@ -53,7 +53,7 @@ class Tile final : public SliceSource {
   // Takes slice n from a whole one of the volume.
   void take(std::int64_t n, std::span<const std::byte> slice);
 
-  // What of it lies in another part of the slices, or all of it if nothing does.
+  // The part of the tile that lies in another part of the slices; the whole tile if no part does.
   Tile cut(const Rectangle& part) const;
 
  private:
@@ -65,7 +65,7 @@ class Tile final : public SliceSource {
   std::vector<std::byte> samples_;
 };
 
-// Some rows of slices.
+// A band: some rows of slices.
 struct RowBand {
   std::int64_t from = 0, count = 0;
 };
