@@ -23,7 +23,6 @@ constexpr std::size_t kMostCells = 256;  // of one grid that a triangle is liste
 constexpr std::size_t kMixed = 16;       // triangles of a list: the order of more is mixed
 constexpr double kFewCells = 8;          // of a triangle's box: they are taken as they are
 constexpr double kSlack = 1e-9;          // of lengths, for rounding
-constexpr int kLastLevel = 63;           // of grids
 constexpr double kUsualReach = 1;     // of the distance, beyond the largest triangle: longer parts are seldom near one
 constexpr double kFinest = 1.0 / 16;  // of the distance
 constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
