@@ -87,7 +87,7 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
     contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
   } else {
     MeshOptions full;
-    static_cast<SurfaceOptions&>(full) = options;
+    static_cast<SurfaceOptions&>(full) = static_cast<const SurfaceOptions&>(options);
     full.error = Length::units(0);
     full.space = options.space;
     const std::unique_ptr<SliceSource> volume = open_input(arguments.input);

@@ -93,8 +93,8 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
   require_possible(kind, options, control);
   Task task;
   task.volume = checked_volume(volume);
-  task.surface = options;
-  task.attributes = options;
+  task.surface = static_cast<const SurfaceOptions&>(options);
+  task.attributes = static_cast<const AttributeOptions&>(options);
   task.space = options.space;
   task.offset = offset;
   task.rule = stored_rule(volume, options);
