@@ -86,9 +86,7 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   } else if (report.triangles_extracted - report.triangles_dropped > kMostFullTriangles) {
     contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
   } else {
-    MeshOptions full;
-    static_cast<SurfaceOptions&>(full) = static_cast<const SurfaceOptions&>(options);
-    full.error = Length::units(0);
+    MeshOptions full = full_surface(options);
     full.space = options.space;
     const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
     MeshInMemory surface(mesh_offset(volume->info(), options.space));

@@ -58,5 +58,8 @@ struct MeshOptions : SurfaceOptions, SimplifyOptions, AttributeOptions {
   OutputSpace space = OutputSpace::kAsVolume;
 };
 
+// The options of the same surface, not simplified and without attributes.
+MeshOptions full_surface(const SurfaceOptions& surface);
+
 }  // namespace isoweave
 #pragma GCC visibility pop

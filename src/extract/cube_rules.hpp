@@ -1,4 +1,4 @@
-// What is inside and where a crossing lies: the per-element rules of extraction, shared by every back end.
+// The per-element rules of extraction, shared by every back end: which samples are inside, and where crossings lie.
 #pragma once
 
 #include <cmath>

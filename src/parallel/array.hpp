@@ -1,6 +1,6 @@
 // A growing array for passes that fill the elements they ask for. resize() leaves new elements without a value, so that
 // the threads that fill them touch their pages first. Large arrays ask for huge pages, as walks jump about in them.
-// They grow in place, as two copies of the largest would be the peak of a run.
+// Arrays grow in place, as two copies of the largest would be the peak of a run.
 #pragma once
 
 #include <algorithm>

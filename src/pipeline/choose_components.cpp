@@ -13,6 +13,16 @@
 namespace isoweave {
 namespace {
 
+// The control of a pass that keeps nothing, on the way to the run that is controlled.
+RunControl passing_control(const RunControl& control) {
+  RunControl passing = control;
+  passing.measure = false;
+  passing.checkpoint = {};
+  passing.resume.reset();
+  passing.observer.reset();
+  return passing;
+}
+
 // One pass over the volume, in which a stage looks at the surface.
 class Pass {
  public:

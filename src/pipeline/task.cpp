@@ -113,15 +113,6 @@ MeshOptions full_surface(const SurfaceOptions& surface) {
   return full;
 }
 
-RunControl passing_control(const RunControl& control) {
-  RunControl passing = control;
-  passing.measure = false;
-  passing.checkpoint = {};
-  passing.resume.reset();
-  passing.observer.reset();
-  return passing;
-}
-
 const VolumeInfo& checked_volume(const VolumeInfo& volume) {
   require_usable(volume);
   if (!VertexNumbering::of_cube_edges(volume.dims).fits()) {

@@ -62,12 +62,6 @@ struct Task {
 Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunControl& control,
              const std::array<double, 3>& offset = {0, 0, 0}, RunKind kind = RunKind::kMesh);
 
-// The options for the same surface, not simplified and without attributes.
-MeshOptions full_surface(const SurfaceOptions& surface);
-
-// The control for a pass over the volume that keeps nothing, on the way to the run that is controlled.
-RunControl passing_control(const RunControl& control);
-
 // Throws BadInput when a volume has more samples than can be numbered.
 const VolumeInfo& checked_volume(const VolumeInfo& volume);
 

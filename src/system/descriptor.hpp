@@ -28,7 +28,7 @@ int duplicate_standard_input();
 
 bool close_descriptor(int descriptor);
 
-// These functions return the number of bytes read, 0 at the end.
+// The functions that read return the number of bytes read, 0 at the end.
 std::int64_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> out);
 std::int64_t read_once(int descriptor, std::span<std::byte> out);  // of a pipe; waits where its opener wished not to
 

@@ -186,7 +186,7 @@ plain::Options plain_options(const MeshOptions& options, double unit) {
   return plain;
 }
 
-// What the two have done, and every bit of what is left.
+// The counters of the library and of the plain rules, and every bit of their meshes, are equal.
 void expect_same(const TriangleMesh& mesh, const MeshReport& report, const plain::Outcome& plain,
                  const std::string& what) {
   EXPECT_EQ(mesh.triangles.size(), plain.surface.triangles.size()) << what;
@@ -578,7 +578,7 @@ Scene any_scene(std::mt19937& random) {
   return scene;
 }
 
-// What options do to each other.
+// Options that are drawn by chance, together: one may change the work of another.
 TEST(PlainRules, AnyOptionsTogether) {
   std::mt19937 random(2024);
   std::uint64_t collapses = 0;

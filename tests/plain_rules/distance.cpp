@@ -58,7 +58,7 @@ bool Distances::is_near(const Vector& p, const Triangle& triangle) const {
   return squared_to_triangle(p, triangle) <= most_ * most_;
 }
 
-// Those with a box around them that comes near the box around a part: the others would take most of the time.
+// Triangles whose boxes come near the box of a part: the other ones would take most of the time.
 Distances::List Distances::near_box(const Triangle& part, const List& triangles) const {
   const auto is_far = [&](const Triangle& t, std::size_t n) {
     const auto [low, high] = std::minmax({t[0][n], t[1][n], t[2][n]});

@@ -83,7 +83,7 @@ class Solver {
   std::array<double, 3> inverse_;
 };
 
-// What faces say of the normal at a place: for each component the sum of gradient.x + offset, weighted.
+// The normal at a place as the faces tell it: for each component the weighted sum of gradient.x + offset.
 struct NormalQuadric {
   std::array<Vector, 3> gradient{};
   Vector offset{};
@@ -102,7 +102,7 @@ inline NormalQuadric moved(const NormalQuadric& q, const Vector& d) {
   return out;
 }
 
-// What the quadric comes to where the normal is the best one at each place.
+// The quadric of places alone, where the normal is the best one at each place.
 inline Quadric with_best_normal(Quadric q, const NormalQuadric& n) {
   for (std::size_t c = 0; c < 3 && n.weight > 0; ++c) q = q + square(n.gradient[c], n.offset[c], -1 / n.weight);
   return q;
