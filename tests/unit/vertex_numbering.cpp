@@ -50,7 +50,7 @@ std::vector<VertexNumbering> numberings(const Dims& dims) {
 }
 
 TEST(VertexNumbering, NamesEveryVertexAndEveryMeshEdgeOnce) {
-  for (const Dims& dims : {Dims{1, 1, 2}, {2, 1, 1}, {1, 2, 1}}) {
+  for (const Dims& dims : {Dims{1, 1, 2}, {2, 1, 1}, {3, 4, 2}}) {
     for (const VertexNumbering& numbering : numberings(dims)) {
       SCOPED_TRACE(numbering.slots);
       const std::vector<Numbered> all = all_ids(numbering);
