@@ -20,6 +20,7 @@
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
 #include "pipeline/task.hpp"
+#include "volume/axes.hpp"
 
 namespace {
 
@@ -90,11 +91,12 @@ Point point(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>
 
 // In the volume's index space times spacing, as --space index writes it.
 std::uint64_t digest_of(const FinalPiece& piece) {
+  const std::size_t known = piece.known.size();
+  const auto corner = [&](std::uint32_t v) {
+    return point(v < known ? piece.known[v].position : piece.positions[v - known]);
+  };
   std::uint64_t digest = 0;
-  for (const auto& [a, b, c] : piece.triangles) {
-    digest += triangle_digest(point(piece.vertices[a].position), point(piece.vertices[b].position),
-                              point(piece.vertices[c].position));
-  }
+  for (const auto& [a, b, c] : piece.triangles) digest += triangle_digest(corner(a), corner(b), corner(c));
   return digest;
 }
 
@@ -116,9 +118,8 @@ Run run_once(const Arguments& arguments, const Executor& executor) {
     run.stages.time("append", [&] { engine->append(); });
     run.stages.time("decide", [&] { engine->decide(); });
     run.bytes = std::max(run.bytes, engine->bytes());
-    run.stages.time("name final", [&] { engine->name_final(); });
-    run.stages.time("take final", [&] { engine->take_final(written, 0, piece); });
-    written += piece.new_vertices;
+    run.stages.time("take final", [&] { engine->take_final({written, 0}, piece); });
+    written += piece.positions.size();
     run.triangles += piece.triangles.size();
     run.digest += digest_of(piece);
   }

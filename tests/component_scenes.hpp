@@ -187,7 +187,7 @@ inline SurfaceRun reference(const Scene& scene, const Kept& kept, std::uint64_t 
   SurfaceRun run;
   run.report.collapses = decide_in_order(simplifier.zone(), most).collapses;
   simplifier.zone().retire_all();
-  output.take(simplifier);
+  output.take(simplifier.final_source());
   output.wait();
   output.report(run.report);
   run.mesh = std::move(sink.mesh);

@@ -130,7 +130,7 @@ SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& 
     run.report.vertices_extracted += piece.positions.size();
     simplifier.append(piece);
     decide();
-    output.take(simplifier);
+    output.take(simplifier.final_source());
   }
   output.wait();
   output.report(run.report);

@@ -20,13 +20,18 @@ enum class Stop { kError, kTriangles };
 template <class Options>
 void stop_at(Stop stop, const Goal& goal, Options& options) {
   const bool counts = stop == Stop::kTriangles;
-  options.error = Length::units(counts ? std::numeric_limits<double>::infinity() : goal.length);
+  options.error = isoweave::Length::units(counts ? std::numeric_limits<double>::infinity() : goal.length);
   options.triangles = counts ? goal.triangles : 0;
 }
 
 // Open, as the peers make no caps, and without origin and direction, which the peers do not apply.
 isoweave::MeshOptions mesh_options(double iso, Quality quality) {
-  return {.iso = iso, .closed = false, .quality = quality, .space = isoweave::OutputSpace::kIndex};
+  isoweave::MeshOptions options;
+  options.iso = iso;
+  options.closed = false;
+  options.quality = quality;
+  options.space = isoweave::OutputSpace::kIndex;
+  return options;
 }
 
 isoweave::RunControl on(int threads) {
@@ -42,7 +47,7 @@ class Extraction : public Task {
   void run() override {
     const std::unique_ptr<isoweave::SliceSource> source = volume_in_memory(volume_.info, volume_.samples);
     isoweave::MeshOptions options = mesh_options(volume_.iso, Quality::kNormal);
-    options.error = Length::units(0);
+    options.error = isoweave::Length::units(0);
     mesh_volume(*source, mesh_, options, on(threads_));
   }
   std::size_t triangles() const override { return mesh_.triangles().size(); }

@@ -46,8 +46,9 @@ Json extract_full(const SuiteInput& input, const FullSurface& full, double limit
   const auto work = [&]() -> Json {
     const auto source = open_source(input.volume);
     const auto file = isoweave::open_mesh_file(full.path);
-    mesh_volume(*source, *file,
-                {.iso = input.iso, .closed = false, .error = Length::units(0), .space = isoweave::OutputSpace::kIndex});
+    isoweave::MeshOptions options = isoweave::full_surface({.iso = input.iso, .closed = false});
+    options.space = isoweave::OutputSpace::kIndex;
+    mesh_volume(*source, *file, options);
     const isoweave::MeshCheck check = check_mesh(isoweave::read_mesh(full.path));
     return {{"triangles", check.triangles}, {"euler", check.euler}, {"components", check.components}};
   };

@@ -28,7 +28,7 @@ void run(const std::string& path, double error) {
   control.threads = 1;
   control.measure = false;
   CountingSink sink;
-  const isoweave::MeshReport report = simplify_mesh(full, sink, {.error = Length::units(error)}, control);
+  const isoweave::MeshReport report = simplify_mesh(full, sink, {.error = isoweave::Length::units(error)}, control);
   const std::size_t left = meshoptimizer_simplify(flat_indices(full), full.vertices, sink.triangles(), 0).size() / 3;
   // An edge inside the surface takes two triangles with it.
   std::printf("isoweave %llu\nmeshoptimizer %zu\n", static_cast<unsigned long long>(report.collapses),

@@ -1,7 +1,7 @@
 // The engine of any device.
 //
 // The passes are those of the headers beside this one, and a Device runs them (simulated_device.hpp). The surface, the
-// decisions and the order of the output are those of the host's MarchingCubes, Zone and FinalOutput.
+// decisions and the order of the output are those of the host's MarchingCubes, Zone and HandOver.
 #pragma once
 
 #include <algorithm>
@@ -128,68 +128,29 @@ class BulkEngine final : public DeviceEngine {
         decisions_);
   }
 
-  std::size_t name_final() override {
-    const std::size_t vertices = zone_.vertices.size();
-    const std::size_t triangles = zone_.triangles.size();
-    status_.resize(vertices);
-    corners_.resize(vertices);
-    new_place_.resize(vertices + 1);
-    old_place_.resize(vertices + 1);
-    triangle_place_.resize(triangles + 1);
-    final_ = FinalPasses();
-    final_.zone = zone_;
-    final_.status = status_.data();
-    final_.corners = corners_.data();
-    final_.triangle_place = triangle_place_.data();
-    final_.new_place = new_place_.data();
-    final_.old_place = old_place_.data();
-    device_.template for_each<&FinalPasses::name_vertex>(signed_count(vertices), final_);
-    device_.template for_each<&FinalPasses::name_triangle>(signed_count(triangles), final_);
-    totals_ += device_.template sum<&FinalPasses::inspect, FinalTotals>(signed_count(vertices), final_);
-    device_.scan(triangle_place_, triangles);
-    device_.scan(new_place_, vertices);
-    device_.scan(old_place_, vertices);
-    final_triangle_count_ = read_one(triangle_place_.data() + triangles);
-    final_.new_vertices = read_one(new_place_.data() + vertices);
-    old_vertex_count_ = read_one(old_place_.data() + vertices);
-    return final_.new_vertices;
-  }
-
-  void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) override {
-    const std::size_t vertices = final_.new_vertices + old_vertex_count_;
-    final_triangles_.resize(final_triangle_count_);
-    final_vertices_.resize(vertices);
-    out_vertices_.resize(vertices);
-    out_triangles_.resize(final_triangle_count_);
-    out_normals_.resize(options_.normals ? final_.new_vertices : 0);
-    final_.first_output = first_output;
-    final_.first_component = first_component;
-    final_.final_triangles = final_triangles_.data();
-    final_.final_vertices = final_vertices_.data();
-    final_.out_vertices = out_vertices_.data();
-    final_.out_triangles = out_triangles_.data();
-    final_.out_normals = options_.normals ? out_normals_.data() : nullptr;
-    device_.template for_each<&FinalPasses::list_triangle>(signed_count(zone_.triangles.size()), final_);
-    device_.template for_each<&FinalPasses::list_vertex>(signed_count(zone_.vertices.size()), final_);
-    device_.template for_each<&FinalPasses::write_triangle>(final_triangle_count_, final_);
-    device_.template for_each<&FinalPasses::write_vertex>(signed_count(vertices), final_);
-    totals_ += device_.template sum<&FinalPasses::close_sides, FinalTotals>(final_triangle_count_, final_);
-    device_.template for_each<&FinalPasses::drop>(final_triangle_count_, final_);
-    read_all(out_vertices_, piece.vertices);
+  void take_final(const Receipt& first, FinalPiece& piece) override {
+    name_final();
+    final_.first = first;
+    list_final();
+    read_all(out_known_, piece.known);
+    read_all(out_positions_, piece.positions);
     read_all(out_normals_, piece.normals);
     read_all(out_triangles_, piece.triangles);
-    piece.new_vertices = final_.new_vertices;
+    const std::uint64_t open_before = totals_.open_edges;
+    totals_ += device_.template sum<&FinalPasses::close_sides, FinalTotals>(final_triangle_count_, final_);
+    piece.open_edges = totals_.open_edges - open_before;
+    device_.template for_each<&FinalPasses::drop>(final_triangle_count_, final_);
     dropped_ += final_triangle_count_;
     const std::uint64_t gone = zone_.triangles.size() - live_triangles();
     if (8 * gone >= zone_.triangles.size()) compact();
   }
 
-  void change_components(const std::function<void(std::span<std::uint32_t*>)>& change) override {
+  void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) override {
     std::vector<Vertex> held(zone_.vertices.size());
     device_.read(zone_.vertices.data(), held.size(), held.data());
     std::vector<std::uint32_t*> labels;
     for (Vertex& vertex : held) {
-      if (vertex.output != kNotWritten) labels.push_back(&vertex.component);
+      if (vertex.number != kNotHandedOver) labels.push_back(&vertex.label);
     }
     change(labels);
     device_.write(held.data(), held.size(), zone_.vertices.data());
@@ -201,14 +162,14 @@ class BulkEngine final : public DeviceEngine {
     return arrays_.bytes() + spare_.bytes() +
            sum_bytes(ring_, inside_, vertex_base_, triangle_base_, front_base_, front_next_base_, front_, front_next_,
                      unkeyed_, unkeyed_next_, marks_, side_base_, side_fill_, sides_, changed_, candidates_, minima_,
-                     status_, corners_, triangle_place_, new_place_, old_place_, final_triangles_, final_vertices_,
-                     out_vertices_, out_normals_, out_triangles_);
+                     status_, corners_, triangle_place_, new_place_, known_place_, final_triangles_, final_vertices_,
+                     out_known_, out_positions_, out_normals_, out_triangles_);
   }
   std::uint64_t room_for_vertices(std::uint64_t cap) const override {
     // The bytes of a vertex with its triangles: twice in the zone, as compaction moves them from one set of arrays to
     // another, and in the lists of the passes.
     constexpr std::uint64_t kZone = sizeof(Vertex) + sizeof(Key) + sizeof(Turn) + 2 * sizeof(Triangle) + sizeof(Point);
-    constexpr std::uint64_t kPasses = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(FinalVertex) + sizeof(Point);
+    constexpr std::uint64_t kPasses = 16 * sizeof(Index) + 6 * sizeof(EdgeSide) + sizeof(KnownVertex) + sizeof(Point);
     const std::uint64_t held = bytes();
     std::uint64_t room = device_.free_bytes();
     if (cap > 0) room = std::min(room, cap > held ? cap - held : 0);
@@ -217,7 +178,6 @@ class BulkEngine final : public DeviceEngine {
   std::uint64_t rounds() const override { return rounds_; }
   const DecisionCounts& decisions() const override { return decisions_; }
   const SurfaceDefects& defects() const override { return totals_.defects; }
-  std::uint64_t open_edges() const override { return totals_.open_edges; }
 
  private:
   template <class T>
@@ -271,7 +231,7 @@ class BulkEngine final : public DeviceEngine {
   }
 
   template <class T>
-  void read_all(const Buffer<T>& from, std::vector<T>& to) {
+  void read_all(const Buffer<T>& from, Array<T>& to) {
     to.resize(from.size());
     device_.read(from.data(), from.size(), to.data());
   }
@@ -435,6 +395,54 @@ class BulkEngine final : public DeviceEngine {
     zone_ = passes.to;
   }
 
+  // Finds the vertices and triangles that have become final.
+  void name_final() {
+    const std::size_t vertices = zone_.vertices.size();
+    const std::size_t triangles = zone_.triangles.size();
+    status_.resize(vertices);
+    corners_.resize(vertices);
+    new_place_.resize(vertices + 1);
+    known_place_.resize(vertices + 1);
+    triangle_place_.resize(triangles + 1);
+    final_ = FinalPasses();
+    final_.zone = zone_;
+    final_.status = status_.data();
+    final_.corners = corners_.data();
+    final_.triangle_place = triangle_place_.data();
+    final_.new_place = new_place_.data();
+    final_.known_place = known_place_.data();
+    device_.template for_each<&FinalPasses::name_vertex>(signed_count(vertices), final_);
+    device_.template for_each<&FinalPasses::name_triangle>(signed_count(triangles), final_);
+    totals_ += device_.template sum<&FinalPasses::inspect, FinalTotals>(signed_count(vertices), final_);
+    device_.scan(triangle_place_, triangles);
+    device_.scan(new_place_, vertices);
+    device_.scan(known_place_, vertices);
+    final_triangle_count_ = read_one(triangle_place_.data() + triangles);
+    new_vertex_count_ = read_one(new_place_.data() + vertices);
+    final_.known_vertices = read_one(known_place_.data() + vertices);
+  }
+
+  // Lists the final triangles and their vertices for the host, after name_final().
+  void list_final() {
+    const std::size_t vertices = std::size_t{final_.known_vertices} + new_vertex_count_;
+    final_triangles_.resize(final_triangle_count_);
+    final_vertices_.resize(vertices);
+    out_known_.resize(final_.known_vertices);
+    out_positions_.resize(new_vertex_count_);
+    out_normals_.resize(options_.normals ? new_vertex_count_ : 0);
+    out_triangles_.resize(final_triangle_count_);
+    final_.final_triangles = final_triangles_.data();
+    final_.final_vertices = final_vertices_.data();
+    final_.out_known = out_known_.data();
+    final_.out_positions = out_positions_.data();
+    final_.out_normals = options_.normals ? out_normals_.data() : nullptr;
+    final_.out_triangles = out_triangles_.data();
+    device_.template for_each<&FinalPasses::list_triangle>(signed_count(zone_.triangles.size()), final_);
+    device_.template for_each<&FinalPasses::list_vertex>(signed_count(zone_.vertices.size()), final_);
+    device_.template for_each<&FinalPasses::write_triangle>(final_triangle_count_, final_);
+    device_.template for_each<&FinalPasses::write_vertex>(signed_count(vertices), final_);
+  }
+
   Device device_;
   BulkOptions options_;
   SlabBits bits_;
@@ -463,12 +471,13 @@ class BulkEngine final : public DeviceEngine {
 
   // The final triangles.
   FinalPasses final_;
-  Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, old_place_;
+  Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, known_place_;
   Buffer<Index> final_triangles_, final_vertices_;
-  Buffer<FinalVertex> out_vertices_;
+  Buffer<KnownVertex> out_known_;
+  Buffer<Vec3> out_positions_;
   Buffer<Point> out_normals_;
   Buffer<std::array<std::uint32_t, 3>> out_triangles_;
-  std::uint32_t final_triangle_count_ = 0, old_vertex_count_ = 0;
+  std::uint32_t final_triangle_count_ = 0, new_vertex_count_ = 0;
 
   std::uint64_t appended_ = 0, dropped_ = 0, rounds_ = 0;
   DecisionCounts decisions_;

@@ -3,14 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <span>
 #include <utility>
-#include <vector>
 
-#include "device/final_passes.hpp"
 #include "extract/cube_rules.hpp"
 #include "extract/extractor.hpp"
+#include "simplify/final_piece.hpp"
+#include "simplify/simplify_totals.hpp"
 #include "simplify/zone_view.hpp"
 #include "volume/slice_window.hpp"
 
@@ -23,22 +21,9 @@ struct BulkOptions {
   ZoneOptions zone;
 };
 
-// Triangles that have become final, on the host. Vertices written for the first time come first.
-struct FinalPiece {
-  std::vector<FinalVertex> vertices;
-  std::vector<Point> normals;  // of the new ones; or none
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::size_t new_vertices = 0;
-};
-
 // Throws DeviceError when the device fails or has no memory left.
-class DeviceEngine {
+class DeviceEngine : public FinalSource {
  public:
-  DeviceEngine() = default;
-  DeviceEngine(const DeviceEngine&) = delete;
-  DeviceEngine& operator=(const DeviceEngine&) = delete;
-  virtual ~DeviceEngine() = default;
-
   virtual VertexNumbering numbering() const = 0;
 
   virtual std::int64_t layers_left() const = 0;
@@ -65,19 +50,8 @@ class DeviceEngine {
   // Decides every edge that can be decided with what has been appended.
   virtual void decide() = 0;
 
-  // Finds the vertices and triangles that have become final. Returns the number of vertices to be written for the first
-  // time.
-  virtual std::size_t name_final() = 0;
-
-  // Takes out the triangles that name_final() has found, and gives the new vertices consecutive numbers and labels.
-  virtual void take_final(std::uint64_t first_output, std::uint32_t first_component, FinalPiece& piece) = 0;
-
-  // Lets the caller replace the labels of the vertices that have been written and are still held.
-  virtual void change_components(const std::function<void(std::span<std::uint32_t*>)>& change) = 0;
-
   virtual std::uint64_t live_triangles() const = 0;  // held, and not collapsed
-  virtual std::size_t held_vertices() const = 0;
-  virtual std::uint64_t bytes() const = 0;  // held in the memory of the device
+  virtual std::uint64_t bytes() const = 0;           // held in the memory of the device
 
   // The number of new vertices, with their triangles, that the device has room for, where at most `cap` bytes of its
   // memory may be held (0: all of it).
@@ -85,7 +59,6 @@ class DeviceEngine {
   virtual std::uint64_t rounds() const = 0;
   virtual const DecisionCounts& decisions() const = 0;
   virtual const SurfaceDefects& defects() const = 0;
-  virtual std::uint64_t open_edges() const = 0;
 };
 
 }  // namespace isoweave

@@ -1,4 +1,4 @@
-// How final triangles leave the zone on a device: the passes of Simplifier and FinalOutput, with one thread for every
+// How final triangles leave the zone on a device: the passes of Simplifier and HandOver, with one thread for every
 // item.
 #pragma once
 
@@ -7,13 +7,6 @@
 #include "simplify/turns.hpp"
 
 namespace isoweave {
-
-// A vertex of the output, as the host gets it.
-struct FinalVertex {
-  Vec3 position;
-  std::uint64_t output;  // its number; kNotWritten: it has none yet
-  Index component;
-};
 
 struct FinalTotals {
   SurfaceDefects defects;
@@ -34,16 +27,16 @@ struct FinalPasses {
   std::uint32_t* status = nullptr;          // per vertex
   std::uint32_t* corners = nullptr;         // per vertex: of the triangles that are there
   std::uint32_t* triangle_place = nullptr;  // per triangle: 1 if it is final, then its place among those
-  std::uint32_t* new_place = nullptr;       // per vertex: 1 if it is written now, then its place among those
-  std::uint32_t* old_place = nullptr;       // per vertex: 1 if it was written before and is named now, then its place
+  std::uint32_t* new_place = nullptr;       // per vertex: 1 if it is new in the piece, then its place among those
+  std::uint32_t* known_place = nullptr;     // per vertex: 1 if the piece names it and it is known, then its place
   Index* final_triangles = nullptr;
-  Index* final_vertices = nullptr;  // those written now, then those written before
-  FinalVertex* out_vertices = nullptr;
-  Point* out_normals = nullptr;  // of those written now; or none
+  Index* final_vertices = nullptr;  // the known ones of the piece, then the new ones
+  KnownVertex* out_known = nullptr;
+  Vec3* out_positions = nullptr;
+  Point* out_normals = nullptr;  // of new vertices; or none
   std::array<std::uint32_t, 3>* out_triangles = nullptr;
-  std::uint32_t new_vertices = 0;
-  std::uint64_t first_output = 0;
-  Index first_component = 0;
+  std::uint32_t known_vertices = 0;
+  Receipt first{};  // of the new vertices
 
   // Makes a vertex final when all its edges are retired.
   ISOWEAVE_HD void name_vertex(std::int64_t n) {
@@ -53,7 +46,7 @@ struct FinalPasses {
     const bool newly = !undecided && state != VertexState::kFinal;
     status[v] = (undecided ? kUndecided : 0) | (newly && zone.walkable(v) ? kNewlyFinal : 0);
     if (newly) state = VertexState::kFinal;
-    corners[v] = new_place[v] = old_place[v] = 0;
+    corners[v] = new_place[v] = known_place[v] = 0;
   }
 
   // Finds the final triangles: those whose vertices are all final.
@@ -70,8 +63,8 @@ struct FinalPasses {
     if (undecided) return;
     triangle_place[t] = 1;
     for (const HalfEdge& side : triangle.sides) {
-      const bool is_new = zone.vertices[side.vertex].output == kNotWritten;
-      store_relaxed((is_new ? new_place : old_place)[side.vertex], 1);
+      const bool is_new = zone.vertices[side.vertex].number == kNotHandedOver;
+      store_relaxed((is_new ? new_place : known_place)[side.vertex], 1);
     }
   }
 
@@ -103,27 +96,32 @@ struct FinalPasses {
     if (triangle_place[t + 1] != triangle_place[t]) final_triangles[triangle_place[t]] = static_cast<Index>(t);
   }
   ISOWEAVE_HD void list_vertex(std::int64_t v) {
-    if (new_place[v + 1] != new_place[v]) final_vertices[new_place[v]] = static_cast<Index>(v);
-    if (old_place[v + 1] != old_place[v]) final_vertices[new_vertices + old_place[v]] = static_cast<Index>(v);
+    if (known_place[v + 1] != known_place[v]) final_vertices[known_place[v]] = static_cast<Index>(v);
+    if (new_place[v + 1] != new_place[v]) final_vertices[known_vertices + new_place[v]] = static_cast<Index>(v);
   }
 
-  // Fills in a vertex for the host to write. A new vertex gets its number.
+  // Fills in a vertex of the piece. A new one gets its receipt.
   ISOWEAVE_HD void write_vertex(std::int64_t n) {
     const Index v = final_vertices[n];
     Vertex& vertex = zone.vertices[v];
-    out_vertices[n] = {vertex.position, vertex.output, vertex.component};
-    if (n >= new_vertices) return;
-    if (out_normals != nullptr) out_normals[n] = zone.normals[v];
-    vertex.output = first_output + static_cast<std::uint64_t>(n);
-    vertex.component = first_component + static_cast<Index>(n);
+    if (n < known_vertices) {
+      out_known[n] = {vertex.position, {vertex.number, vertex.label}};
+      return;
+    }
+    const std::int64_t place = n - known_vertices;
+    out_positions[place] = vertex.position;
+    if (out_normals != nullptr) out_normals[place] = zone.normals[v];
+    vertex.number = first.number + static_cast<std::uint64_t>(place);
+    vertex.label = first.label + static_cast<std::uint32_t>(place);
   }
 
-  // Fills in a triangle for the host to write. Must be called before vertices get their numbers.
+  // Fills in a triangle of the piece. Must be called before vertices get their receipts.
   ISOWEAVE_HD void write_triangle(std::int64_t n) {
     const Triangle& triangle = zone.triangles[final_triangles[n]];
     for (std::size_t c = 0; c < 3; ++c) {
       const Index v = triangle.sides[c].vertex;
-      out_triangles[n][c] = zone.vertices[v].output == kNotWritten ? new_place[v] : new_vertices + old_place[v];
+      const bool is_new = zone.vertices[v].number == kNotHandedOver;
+      out_triangles[n][c] = is_new ? known_vertices + new_place[v] : known_place[v];
     }
   }
 

@@ -1,26 +1,24 @@
-// Final triangles on their way out of the zone.
+// The output of final triangles, from whatever simplifies.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <vector>
 
 #include "output/locked_part.hpp"
 #include "output/surface_output.hpp"
-#include "simplify/simplifier.hpp"
+#include "simplify/final_piece.hpp"
 
 namespace isoweave {
 
 class FinalOutput {
  public:
-  // level: the level of the simplifier; by default the only one.
-  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true, std::size_t level = 0,
+  FinalOutput(const World& world, MeshSink& sink, const Executor& executor, bool measure = true,
               SweepObserver* observer = nullptr)
-      : output_(world, sink, executor, measure, observer), executor_(executor), level_(level) {}
+      : executor_(executor), output_(world, sink, executor, measure, observer) {}
 
-  // Writes the triangles that have become final in the level, each vertex once. Triangles of the last level leave the
-  // simplifier's zone, which is compacted.
-  void take(Simplifier& simplifier);
+  // Writes the triangles that have become final since the last call, each vertex once.
+  void take(FinalSource& source);
+
+  bool measures() const { return output_.measures(); }
 
   // Fills in the counts of what has been written so far, its Euler number, components and digest. The counts of edges
   // leave out the edges with a locked end.
@@ -34,34 +32,19 @@ class FinalOutput {
 
   template <class Archive>
   void exchange(Archive& archive) {
-    std::uint64_t open_edges = open_edges_;
-    archive.value(open_edges);
+    archive.value(open_edges_);
     output_.exchange(archive);
-    open_edges_ = open_edges;
   }
 
  private:
-  // The place in the zone for the number of a vertex in this level's output.
-  std::uint64_t& number(Zone& zone, Index v) const {
-    return level_ < zone.levels.size() ? zone.levels[level_][v].output : zone.vertices[v].output;
-  }
-  std::uint32_t& component(Zone& zone, Index v) const {
-    return level_ < zone.levels.size() ? zone.levels[level_][v].component : zone.vertices[v].component;
-  }
+  void write(std::uint64_t first_number);
+  void keep_locked(std::uint64_t first_number);
 
-  void number_vertices(Zone& zone, const std::vector<Index>& triangles);
-  void keep_locked(Zone& zone, const std::vector<Index>& triangles);
-  void count_open(const Zone& zone, const HalfEdge& side, const HalfEdge& next_side);
-  void keep(Zone& zone, Index triangle);
-  void close_sides(Zone& zone, Index triangle);
-  void forget_components(Zone& zone);
-
-  SurfaceOutput output_;
   const Executor& executor_;
-  std::size_t level_;
-  std::vector<std::uint8_t> marks_;  // per vertex of the zone: is written with this slab
-  std::vector<Index> new_vertices_;
-  std::atomic<std::uint64_t> open_edges_{0};  // without a locked end
+  SurfaceOutput output_;
+  FinalPiece piece_;
+  std::vector<OutputCorner> corners_;  // of the known vertices
+  std::uint64_t open_edges_ = 0;       // without a locked end
   LockedPart locked_part_;
 };
 

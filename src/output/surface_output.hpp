@@ -5,24 +5,31 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
-#include <utility>
+#include <vector>
 
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "measure/component_counter.hpp"
 #include "output/overlapped_sink.hpp"
-#include "output/sweep_view.hpp"
 #include "output/world.hpp"
 #include "parallel/array.hpp"
 #include "parallel/parallel.hpp"
 
 namespace isoweave {
 
-// A vertex of a triangle on its way out.
+// A vertex that has been written.
 struct OutputCorner {
   std::uint64_t number;  // in the output
   std::uint32_t label;   // of its component
   Point point;           // where it lies in the output
+};
+
+// A piece on its way out. Its triangles name vertices that have been written first, then the new ones.
+struct OutputPiece {
+  std::span<const Vec3> positions;  // of new vertices
+  std::span<const Point> normals;   // of new vertices; or none
+  std::span<const float> values;    // of new vertices; or none
+  std::span<const std::array<std::uint32_t, 3>> triangles;
 };
 
 class SurfaceOutput {
@@ -40,6 +47,10 @@ class SurfaceOutput {
 
   std::uint64_t vertices() const { return vertices_; }
 
+  // Writes a piece. `written`: the vertices written before that it names; the first new vertex is appended, from whose
+  // number and label on the new ones have theirs. Returns that vertex.
+  OutputCorner take(const OutputPiece& piece, std::vector<OutputCorner>& written);
+
   // The place of a position in the output.
   Point point(Vec3 position) const { return world_.point(position); }
 
@@ -48,38 +59,10 @@ class SurfaceOutput {
   // The label of the next vertex that is added.
   std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
 
-  // Begins a piece with its vertices, which get consecutive numbers from vertices() on and consecutive labels from the
-  // returned one. position(n), normal(n) and value(n) give the attributes of the n-th vertex, and are called by any
-  // thread; the latter two only where there are any.
-  template <class Position, class Normal, class Value>
-  std::uint32_t add_vertices(const MeshPieceSize& size, const Position& position, const Normal& normal,
-                             const Value& value) {
-    make_room(size);
-    executor_.for_each(static_cast<std::int64_t>(size.vertices), kBlock, [&](std::int64_t i) {
-      const auto n = static_cast<std::size_t>(i);
-      room_.vertices[n] = world_.point(position(n));
-      if (size.normals) room_.normals[n] = world_.normal(normal(n));
-      if (size.values) room_.values[n] = value(n);
-    });
-    vertices_ += size.vertices;
-    return measure_ ? components_.add(size.vertices) : 0;
-  }
-
   bool measures() const { return measure_; }
 
   // The places of the vertices added last, until others are added.
   std::span<const Point> added_points() const { return room_.vertices; }
-
-  // Completes the piece with its triangles, as many as it was begun for, and hands it to the sink. number(first, out)
-  // writes the corners of consecutive triangles by their numbers in the output, in 32 or 64 bits. corner(n, c) gives
-  // corner c of the n-th triangle. Called by any thread.
-  template <class Number, class CornerOf>
-  void add_triangles(const Number& number, const CornerOf& corner) {
-    if (sink_.has_room()) return write_triangles(room_.triangles, number, corner);
-    auto& triangles = buffer().triangles;
-    write_triangles(std::span(triangles.begin(), triangles.end()), number, corner);
-    hand_over();
-  }
 
   // Returns when the sink has received everything. Throws what it threw.
   void wait() { overlapped_.wait(); }
@@ -112,35 +95,17 @@ class SurfaceOutput {
   void make_room(const MeshPieceSize& size);
   void hand_over();
 
-  // Numbers, measures and shows triangles.
-  template <class Index, class Number, class CornerOf>
-  void write_triangles(std::span<std::array<Index, 3>> triangles, const Number& number, const CornerOf& corner) {
-    const std::array<std::size_t, 3> turn =
-        world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
-    executor_.for_blocks(static_cast<std::int64_t>(triangles.size()), kBlock, [&](std::int64_t from, std::int64_t to) {
-      const auto begin = static_cast<std::size_t>(from);
-      const auto end = static_cast<std::size_t>(to);
-      const std::span block = triangles.subspan(begin, end - begin);
-      number(begin, block);
-      if (world_.mirrors()) {
-        for (auto& triangle : block) std::swap(triangle[1], triangle[2]);
-      }
-      if (!measure_) return;
-      std::uint64_t digest = 0;
-      std::uint64_t joins = 0;
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::array<OutputCorner, 3> corners{corner(n, turn[0]), corner(n, turn[1]), corner(n, turn[2])};
-        digest += triangle_digest(corners[0].point, corners[1].point, corners[2].point, world_.offset());
-        for (std::size_t c = 1; c < 3; ++c) joins += components_.join(corners[0].label, corners[c].label) ? 1U : 0U;
-      }
-      digest_.fetch_add(digest, std::memory_order_relaxed);
-      components_.count_joins(joins);
-    });
-    triangles_ += triangles.size();
-    if (observer_ == nullptr) return;
-    view_triangles(
-        triangles.size(), [&](std::size_t n, std::size_t c) { return corner(n, turn.at(c)).point; }, executor_,
-        [&](std::span<const TriangleCorners> block) { observer_->add_final(block); });
+  std::uint32_t add_vertices(const OutputPiece& piece);
+  template <class Index>
+  void add_triangles(std::span<const std::array<std::uint32_t, 3>> from, std::span<const OutputCorner> written,
+                     std::span<std::array<Index, 3>> out);
+  void measure(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const OutputCorner> written);
+  void show(std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const OutputCorner> written) const;
+  OutputCorner corner(std::uint32_t v, std::span<const OutputCorner> written) const;
+
+  // The order in which the corners of a triangle are written.
+  std::array<std::size_t, 3> turn() const {
+    return world_.mirrors() ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2};
   }
 
   const World& world_;

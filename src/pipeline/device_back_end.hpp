@@ -5,7 +5,7 @@
 
 #include "device/device_engine.hpp"
 #include "extract/extractor.hpp"
-#include "output/surface_output.hpp"
+#include "output/final_output.hpp"
 #include "pipeline/back_end.hpp"
 
 namespace isoweave {
@@ -39,9 +39,8 @@ class DeviceExtractor final : public Extractor {
 class DeviceBackEnd final : public BackEnd {
  public:
   // All arguments must outlive the back end.
-  DeviceBackEnd(DeviceEngine& engine, bool normals, const World& world, MeshSink& sink, const Executor& executor,
-                bool measure)
-      : engine_(engine), normals_(normals), output_(world, sink, executor, measure) {}
+  DeviceBackEnd(DeviceEngine& engine, const World& world, MeshSink& sink, const Executor& executor, bool measure)
+      : engine_(engine), output_(world, sink, executor, measure) {}
 
   void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
   void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
@@ -55,9 +54,7 @@ class DeviceBackEnd final : public BackEnd {
 
  private:
   DeviceEngine& engine_;
-  bool normals_;
-  SurfaceOutput output_;
-  FinalPiece piece_;
+  FinalOutput output_;
 };
 
 }  // namespace isoweave

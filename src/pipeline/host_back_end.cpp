@@ -14,7 +14,7 @@ HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span
       full_output_(world, *sinks.back(), executor, control.measure, control.observer.get()) {
   for (std::size_t level = 0; level < simplifier_.levels(); ++level) {
     SweepObserver* const observer = simplifier_.is_last(level) ? control.observer.get() : nullptr;
-    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, level, observer));
+    outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, observer));
   }
   if (task.triangles > 0) target_.emplace(simplifier_, executor, task.triangles);
 }
@@ -27,7 +27,7 @@ void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord&
   record.bytes += zone_bytes_;
   for (std::size_t level = 0; !simplifier_.is_last(level); ++level) {
     simplifier_.decide(level);
-    outputs_[level]->take(simplifier_);
+    outputs_[level]->take(simplifier_.final_source(level));
   }
   simplifier_.decide(simplifier_.levels() - 1);
   if (target_) complete ? target_->finish() : target_->thin_out();
@@ -35,7 +35,7 @@ void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord&
 
 void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) {
   if (task_.needed) {
-    outputs_.back()->take(simplifier_);
+    outputs_.back()->take(simplifier_.final_source(simplifier_.levels() - 1));
     outputs_.back()->report(report);
     record.undecided_triangles = simplifier_.live_triangles();
   } else {

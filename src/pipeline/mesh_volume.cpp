@@ -68,8 +68,7 @@ class VolumeRun final : public SavedRun::State {
       engine_ =
           make_cuda_engine({sweep_.field().info(), sweep_.field().rule(), task_.has_normals(), task_.simplify.zone});
       extractor_ = std::make_unique<DeviceExtractor>(*engine_);
-      back_end_ = std::make_unique<DeviceBackEnd>(*engine_, task_.has_normals(), world_, *sinks_.back(), executor,
-                                                  control_.measure);
+      back_end_ = std::make_unique<DeviceBackEnd>(*engine_, world_, *sinks_.back(), executor, control_.measure);
       return;
     }
     extractor_ = sweep_.make_extractor();

@@ -5,6 +5,7 @@
 
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
+#include "simplify/hand_over.hpp"
 #include "simplify/local_minima.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/rounds.hpp"
@@ -28,6 +29,27 @@ std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, const Executo
 
 }  // namespace
 
+class Simplifier::Source final : public FinalSource {
+ public:
+  Source(Simplifier& simplifier, std::size_t level)
+      : simplifier_(simplifier), level_(level), hand_over_(simplifier.zone_, level, simplifier.executor_) {}
+
+  void take_final(const Receipt& first, FinalPiece& piece) override {
+    const std::vector<Index> triangles = simplifier_.final_triangles(level_);
+    hand_over_.fill(triangles, first, piece);
+    if (simplifier_.is_last(level_)) simplifier_.drop(triangles);
+  }
+  std::size_t held_vertices() const override { return simplifier_.zone_.vertices.size(); }
+  void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) override {
+    hand_over_.change_labels(change);
+  }
+
+ private:
+  Simplifier& simplifier_;
+  const std::size_t level_;
+  HandOver hand_over_;
+};
+
 Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop)
     : zone_(options.zone, options.finer.size()),
       executor_(executor),
@@ -36,7 +58,11 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
       finer_(options.finer),
       inspects_(options.inspect),
       driver_(make_driver(schedule_, zone_, executor)),
-      defects_(levels()) {}
+      defects_(levels()) {
+  for (std::size_t level = 0; level < levels(); ++level) sources_.push_back(std::make_unique<Source>(*this, level));
+}
+
+Simplifier::~Simplifier() = default;
 
 void Simplifier::decide() {
   driver_->run(stop_);
@@ -56,6 +82,7 @@ void Simplifier::decide_in_order(std::uint64_t triangles) {
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
 }
 
+// Finds the triangles of a level whose vertices are all final there, in memory order, each once. Makes vertices final.
 std::vector<Index> Simplifier::final_triangles(std::size_t level) {
   const std::vector<Index> vertices = name_final_vertices(level);
   std::vector<std::uint32_t> corners(inspects_ ? zone_.vertices.size() : 0, 0);
@@ -104,6 +131,7 @@ bool Simplifier::make_final(Index v, std::size_t level) {
   return !std::exchange(zone_.levels[level][v].final, true);
 }
 
+// Removes triangles that have been handed over.
 void Simplifier::drop(const std::vector<Index>& triangles) {
   executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
                      [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });

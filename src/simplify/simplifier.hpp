@@ -9,6 +9,7 @@
 #include "isoweave/run.hpp"
 #include "parallel/parallel.hpp"
 #include "simplify/driver.hpp"
+#include "simplify/final_piece.hpp"
 #include "simplify/zone.hpp"
 
 namespace isoweave {
@@ -24,6 +25,7 @@ struct SimplifierOptions {
 class Simplifier {
  public:
   Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop);
+  ~Simplifier();
 
   Zone& zone() { return zone_; }
   const Zone& zone() const { return zone_; }
@@ -49,11 +51,9 @@ class Simplifier {
   // surface are left, or no edge is. Throws Interrupted.
   void decide_in_order(std::uint64_t triangles);
 
-  // Finds the triangles of a level whose vertices are all final there, in memory order. Each triangle is found once.
-  // Marks vertices final. The caller must hand the triangles of the last level to drop() when they are no longer
-  // needed.
-  std::vector<Index> final_triangles(std::size_t level);
-  void drop(const std::vector<Index>& triangles);
+  // Where the final triangles of a level come from, after decide(level): those whose vertices are all final there, in
+  // memory order. Triangles of the last level leave the zone, which is compacted.
+  FinalSource& final_source(std::size_t level = 0) { return *sources_[level]; }
 
   // Compacts the zone if much of it has gone.
   void close_gaps();
@@ -92,6 +92,10 @@ class Simplifier {
   }
 
  private:
+  class Source;
+
+  std::vector<Index> final_triangles(std::size_t level);
+  void drop(const std::vector<Index>& triangles);
   std::vector<Index> name_final_vertices(std::size_t level);
   bool make_final(Index v, std::size_t level);
   SurfaceDefects inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) const;
@@ -104,8 +108,9 @@ class Simplifier {
   std::vector<CostBits> finer_;
   bool inspects_;
   std::unique_ptr<Driver> driver_;
-  std::vector<std::uint8_t> undecided_;  // per vertex
-  std::uint64_t appended_ = 0;           // triangles
+  std::vector<std::unique_ptr<FinalSource>> sources_;  // per level
+  std::vector<std::uint8_t> undecided_;                // per vertex
+  std::uint64_t appended_ = 0;                         // triangles
   std::uint64_t dropped_ = 0;
   std::vector<SurfaceDefects> defects_;  // per level
   DecisionCounts counts_before_;         // by the process that saved the state

@@ -36,9 +36,9 @@ struct SettledVertices {
 
 // The facts about a vertex in the mesh of a level before the last one.
 struct LevelVertex {
-  std::uint64_t output = kNotWritten;  // number in the output
-  Index component = 0;                 // of the written surface, once written
-  bool final = false;                  // no edge has a key within the level's error
+  std::uint64_t number = kNotHandedOver;  // with the label, its receipt
+  std::uint32_t label = 0;
+  bool final = false;  // no edge has a key within the level's error
 };
 
 struct TriangleRange {

@@ -14,6 +14,7 @@
 #include "parallel/annotations.hpp"
 #include "parallel/check.hpp"
 #include "simplify/edge_rules.hpp"
+#include "simplify/final_piece.hpp"
 #include "simplify/normal_quadric.hpp"
 #include "simplify/quadric.hpp"
 
@@ -41,15 +42,13 @@ enum class VertexState : std::uint8_t {
   kLocked,    // stays where it is; all its edges are retired from the start
 };
 
-inline constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
-
 struct alignas(64) Vertex {
   Vec3 position;
   std::uint64_t id = 0;
-  Quadric quadric;                     // relative to position
-  std::uint64_t output = kNotWritten;  // number in the output
+  Quadric quadric;                        // relative to position
+  std::uint64_t number = kNotHandedOver;  // with the label, its receipt
   Index half_edge = kNone;  // one that starts here; on a border the one without a twin; kNone: the vertex is gone
-  Index component = 0;      // of the written surface, once written
+  std::uint32_t label = 0;
 };
 
 static_assert(sizeof(Vertex) == 128, "two cache lines");

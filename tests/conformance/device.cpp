@@ -15,12 +15,12 @@ namespace isoweave::testing {
 namespace {
 
 // The pipeline's way through an engine, slab by slab.
-SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, bool normals, std::int64_t slab) {
+SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, std::int64_t slab) {
   const Executor executor(2);
   const World world;
   MemorySink sink;
   DeviceExtractor extractor(*engine);
-  DeviceBackEnd back_end(*engine, normals, world, sink, executor, true);
+  DeviceBackEnd back_end(*engine, world, sink, executor, true);
   SliceWindow window(source, extractor.slices_for(1).first);
   SurfacePiece piece;
   SurfaceRun run;
@@ -49,7 +49,7 @@ SurfaceRun run_on_processors(const SurfaceCase& surface, std::int64_t slab) {
   const auto source = generate_volume(surface.volume);
   return sweep_on(
       std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk_options(surface, source->info(), false)),
-      *source, false, slab);
+      *source, slab);
 }
 
 using Corner = std::array<Point, 2>;  // position, and normal where there are any
@@ -124,7 +124,7 @@ TEST_P(Device, GivesTheHostsMeshByCuda) {
   try {
     expect_host_results([](const SurfaceCase& surface, std::int64_t slab) {
       const auto source = generate_volume(surface.volume);
-      return sweep_on(make_cuda_engine(bulk_options(surface, source->info(), false)), *source, false, slab);
+      return sweep_on(make_cuda_engine(bulk_options(surface, source->info(), false)), *source, slab);
     });
   } catch (const DeviceError& error) {
     GTEST_SKIP() << error.what();
@@ -165,8 +165,7 @@ TEST_P(DeviceSamples, AreReadAsTheHostReadsThem) {
                            stored_rule(source->info(), options),
                            true,
                            {VertexNumbering::of_cube_edges(volume.dims), 1, retire_cost(0.1, 1)}};
-    const SurfaceRun run =
-        sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, true, 4);
+    const SurfaceRun run = sweep_on(std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor), bulk), *source, 4);
     EXPECT_GT(expected.mesh.triangles.size(), 100u);
     EXPECT_EQ(run.mesh.vertices.size(), expected.mesh.vertices.size());
     EXPECT_EQ(run.mesh.normals.size(), run.mesh.vertices.size());

@@ -1,0 +1,128 @@
+#include "simplify/hand_over.hpp"
+
+#include "parallel/collect.hpp"
+
+namespace isoweave {
+namespace {
+
+constexpr std::int64_t kBlock = 4096;
+
+std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(count); }
+
+}  // namespace
+
+void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece) {
+  list_vertices(triangles);
+  fill_vertices(first, piece);
+  fill_triangles(triangles, piece);
+  piece.locked.resize(0);
+  if (zone_.locked > 0) mark_locked(piece);
+  open_edges_ = 0;
+  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t n) {
+    const Index t = triangles[static_cast<std::size_t>(n)];
+    is_last() ? close_sides(t) : keep(t);
+  });
+  piece.open_edges = open_edges_;
+}
+
+// Lists the vertices that triangles name, in memory order, and numbers them.
+void HandOver::list_vertices(const std::vector<Index>& triangles) {
+  place_.assign(zone_.vertices.size(), 0);
+  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t n) {
+    for (const HalfEdge& side : zone_.triangles[triangles[static_cast<std::size_t>(n)]].sides) {
+      std::atomic_ref(place_[side.vertex]).store(1, std::memory_order_relaxed);
+    }
+  });
+  const auto list = [&](bool known, std::uint32_t first, std::vector<Index>& vertices) {
+    collect(
+        executor_, signed_count(place_.size()), kBlock,
+        [&](std::int64_t begin, std::int64_t end, std::vector<Index>& out) {
+          for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+            if (place_[v] != 0 && (number(v) != kNotHandedOver) == known) out.push_back(v);
+          }
+        },
+        vertices);
+    return first + static_cast<std::uint32_t>(vertices.size());
+  };
+  list(false, list(true, 0, known_), new_);
+  const auto first_new = static_cast<std::uint32_t>(known_.size());
+  executor_.for_each(signed_count(known_.size()), kBlock, [&](std::int64_t n) {
+    place_[known_[static_cast<std::size_t>(n)]] = static_cast<std::uint32_t>(n);
+  });
+  executor_.for_each(signed_count(new_.size()), kBlock, [&](std::int64_t n) {
+    place_[new_[static_cast<std::size_t>(n)]] = first_new + static_cast<std::uint32_t>(n);
+  });
+}
+
+void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
+  piece.known.resize(known_.size());
+  piece.positions.resize(new_.size());
+  piece.normals.resize(zone_.normals.empty() ? 0 : new_.size());
+  piece.values.resize(zone_.values.empty() ? 0 : new_.size());
+  executor_.for_each(signed_count(known_.size()), kBlock, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Index v = known_[n];
+    piece.known[n] = {zone_.vertices[v].position, {number(v), label(v)}};
+  });
+  executor_.for_each(signed_count(new_.size()), kBlock, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Index v = new_[n];
+    piece.positions[n] = zone_.vertices[v].position;
+    if (!zone_.normals.empty()) piece.normals[n] = zone_.normals[v];
+    if (!zone_.values.empty()) piece.values[n] = zone_.values[v];
+    number(v) = first.number + static_cast<std::uint64_t>(n);
+    label(v) = first.label + static_cast<std::uint32_t>(n);
+  });
+}
+
+void HandOver::fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const {
+  piece.triangles.resize(triangles.size());
+  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Triangle& triangle = zone_.triangles[triangles[n]];
+    for (std::size_t c = 0; c < 3; ++c) piece.triangles[n][c] = place_[triangle.sides[c].vertex];
+  });
+}
+
+void HandOver::mark_locked(FinalPiece& piece) const {
+  piece.locked.resize(known_.size() + new_.size());
+  std::size_t n = 0;
+  for (const std::vector<Index>* list : {&known_, &new_}) {
+    for (const Index v : *list) piece.locked[n++] = zone_.states[v] == VertexState::kLocked ? 1 : 0;
+  }
+}
+
+void HandOver::count_open(const HalfEdge& side, const HalfEdge& next_side) {
+  const bool locked =
+      zone_.states[side.vertex] == VertexState::kLocked || zone_.states[next_side.vertex] == VertexState::kLocked;
+  if (!locked) open_edges_.fetch_add(1, std::memory_order_relaxed);
+}
+
+// Counts that a finer level has the triangle, which stays for the coarser levels.
+void HandOver::keep(Index triangle) {
+  ++zone_.triangles[triangle].levels;
+  const auto& sides = zone_.triangles[triangle].sides;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (sides[c].twin == kNone) count_open(sides[c], sides[(c + 1) % 3]);
+  }
+}
+
+// Tells the triangles beside this one that it is gone. Neighbours may leave at the same time.
+void HandOver::close_sides(Index triangle) {
+  auto& sides = zone_.triangles[triangle].sides;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Index twin = std::atomic_ref(sides[c].twin).load(std::memory_order_relaxed);
+    if (twin == kNone) count_open(sides[c], sides[(c + 1) % 3]);
+    if (exists(twin)) std::atomic_ref(zone_.half(twin).twin).store(kWritten, std::memory_order_relaxed);
+  }
+}
+
+void HandOver::change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) {
+  std::vector<std::uint32_t*> labels;
+  for (Index v = 0; v < zone_.vertices.size(); ++v) {
+    if (number(v) != kNotHandedOver) labels.push_back(&label(v));
+  }
+  change(labels);
+}
+
+}  // namespace isoweave

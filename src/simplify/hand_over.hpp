@@ -1,0 +1,47 @@
+// How final triangles leave the zone on processors.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "parallel/parallel.hpp"
+#include "simplify/final_piece.hpp"
+#include "simplify/zone.hpp"
+
+namespace isoweave {
+
+class HandOver {
+ public:
+  // level: of the zone's levels, or their number for the last mesh. Both other arguments must outlive this.
+  HandOver(Zone& zone, std::size_t level, const Executor& executor) : zone_(zone), level_(level), executor_(executor) {}
+
+  // Fills in triangles of the level, which have become final there, with their vertices in memory order. Those of the
+  // last mesh are cut off from the triangles beside them; the others stay for the levels behind.
+  void fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece);
+
+  // Lets the receiver replace the labels in the receipts that are held.
+  void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change);
+
+ private:
+  bool is_last() const { return level_ == zone_.levels.size(); }
+  std::uint64_t& number(Index v) const { return is_last() ? zone_.vertices[v].number : zone_.levels[level_][v].number; }
+  std::uint32_t& label(Index v) const { return is_last() ? zone_.vertices[v].label : zone_.levels[level_][v].label; }
+
+  void list_vertices(const std::vector<Index>& triangles);
+  void fill_vertices(const Receipt& first, FinalPiece& piece) const;
+  void fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const;
+  void mark_locked(FinalPiece& piece) const;
+  void count_open(const HalfEdge& side, const HalfEdge& next_side);
+  void keep(Index triangle);
+  void close_sides(Index triangle);
+
+  Zone& zone_;
+  const std::size_t level_;
+  const Executor& executor_;
+  std::vector<std::uint32_t> place_;  // per vertex of the zone: its number in the piece, where that names it
+  std::vector<Index> known_, new_;    // vertices of the piece
+  std::atomic<std::uint64_t> open_edges_{0};
+};
+
+}  // namespace isoweave
