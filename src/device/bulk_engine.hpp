@@ -130,7 +130,7 @@ class BulkEngine final : public DeviceEngine {
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
     name_final();
-    final_.first = first;
+    final_.first_new = first;
     list_final();
     read_all(out_known_, piece.known);
     read_all(out_positions_, piece.positions);

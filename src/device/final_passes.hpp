@@ -36,7 +36,7 @@ struct FinalPasses {
   Point* out_normals = nullptr;  // of new vertices; or none
   std::array<std::uint32_t, 3>* out_triangles = nullptr;
   std::uint32_t known_vertices = 0;
-  Receipt first{};  // of the new vertices
+  Receipt first_new{};  // of the new vertices
 
   // Makes a vertex final when all its edges are retired.
   ISOWEAVE_HD void name_vertex(std::int64_t n) {
@@ -111,8 +111,8 @@ struct FinalPasses {
     const std::int64_t place = n - known_vertices;
     out_positions[place] = vertex.position;
     if (out_normals != nullptr) out_normals[place] = zone.normals[v];
-    vertex.number = first.number + static_cast<std::uint64_t>(place);
-    vertex.label = first.label + static_cast<std::uint32_t>(place);
+    vertex.number = first_new.number + static_cast<std::uint64_t>(place);
+    vertex.label = first_new.label + static_cast<std::uint32_t>(place);
   }
 
   // Fills in a triangle of the piece. Must be called before vertices get their receipts.
