@@ -52,8 +52,8 @@ class Extractor {
   virtual void take_slices(const SliceWindow&, std::int64_t) {}
 
   // The state between two slabs.
-  virtual void exchange(StateWriter& state) = 0;
-  virtual void exchange(StateReader& state) = 0;
+  virtual void serialize(StateWriter& state) = 0;
+  virtual void serialize(StateReader& state) = 0;
 };
 
 }  // namespace isoweave

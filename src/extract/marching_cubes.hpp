@@ -44,12 +44,12 @@ class MarchingCubes final : public Extractor {
   SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                      SurfacePiece& piece) override;
 
-  void exchange(StateWriter& state) override { exchange_with(state); }
-  void exchange(StateReader& state) override { exchange_with(state); }
+  void serialize(StateWriter& state) override { serialize_with(state); }
+  void serialize(StateReader& state) override { serialize_with(state); }
 
  private:
   template <class Archive>
-  void exchange_with(Archive& archive) {
+  void serialize_with(Archive& archive) {
     archive.value(next_layer_);
     archive.value(front_size_);
     archive.list(slices_.front().inside);

@@ -22,8 +22,8 @@ class PieceStage {
   virtual std::uint64_t bytes() const { return 0; }
 
   // The state between two pieces.
-  virtual void exchange(StateWriter& state) = 0;
-  virtual void exchange(StateReader& state) = 0;
+  virtual void serialize(StateWriter& state) = 0;
+  virtual void serialize(StateReader& state) = 0;
 };
 
 }  // namespace isoweave

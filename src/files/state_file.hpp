@@ -1,7 +1,7 @@
 // The file that the state of a run is saved in: fields one after another, in the machine's own byte order, and a CRC-32
 // of all that stands before it.
 //
-// A class with a state has a member template `exchange(archive)`. It names the fields once, for a StateWriter to write
+// A class with a state has a member template `serialize(archive)`. It names the fields once, for a StateWriter to write
 // and for a StateReader to read.
 #pragma once
 

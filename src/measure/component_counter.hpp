@@ -32,7 +32,7 @@ class ComponentCounter {
   void compact(std::span<std::uint32_t*> labels);
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     std::uint64_t joined = joined_;
     archive.list(parent_);
     archive.value(added_);

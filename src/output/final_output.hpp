@@ -31,9 +31,9 @@ class FinalOutput {
   void wait() { output_.wait(); }
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     archive.value(open_edges_);
-    output_.exchange(archive);
+    output_.serialize(archive);
   }
 
  private:

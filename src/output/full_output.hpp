@@ -23,10 +23,10 @@ class FullOutput {
   void wait() { output_.wait(); }
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     archive.list(front_);
     archive.value(open_edges_);
-    output_.exchange(archive);
+    output_.serialize(archive);
   }
 
  private:

@@ -71,12 +71,12 @@ class SurfaceOutput {
   void report(std::uint64_t open_edges, SurfaceReport& report) const;
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     std::uint64_t digest = digest_;
     archive.value(vertices_);
     archive.value(triangles_);
     archive.value(digest);
-    components_.exchange(archive);
+    components_.serialize(archive);
     digest_ = digest;
   }
 

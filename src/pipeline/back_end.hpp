@@ -37,8 +37,8 @@ class BackEnd {
   virtual void finish(MeshReport& report) const = 0;
 
   // The state between two pieces.
-  virtual void exchange(StateWriter& state) = 0;
-  virtual void exchange(StateReader& state) = 0;
+  virtual void serialize(StateWriter& state) = 0;
+  virtual void serialize(StateReader& state) = 0;
 };
 
 }  // namespace isoweave

@@ -32,7 +32,7 @@ struct Header {
   Checkpoint checkpoint;
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     archive.value(number);
     archive.list(identity.volume);
     archive.list(identity.options);
@@ -59,7 +59,7 @@ Header read_header(StateReader& reader) {
   reader.list(version);
   if (version != ISOWEAVE_VERSION) bad_input(reader.path(), kExpected, "one of version " + version);
   Header header;
-  header.exchange(reader);
+  header.serialize(reader);
   header.checkpoint.path = reader.path();
   return header;
 }
@@ -180,7 +180,7 @@ std::unique_ptr<StateWriter> CheckpointFolder::begin_state(const Checkpoint& che
   auto writer = std::make_unique<StateWriter>(state_path(folder_, number_));
   writer->list(kFormat);
   writer->list(std::string_view(ISOWEAVE_VERSION));
-  Header{number_, identity, checkpoint}.exchange(*writer);
+  Header{number_, identity, checkpoint}.serialize(*writer);
   return writer;
 }
 

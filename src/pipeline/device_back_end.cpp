@@ -13,9 +13,9 @@ SlabCounts DeviceExtractor::extract(const SliceWindow& window, std::int64_t laye
   return engine_.extract(layers, most_vertices);
 }
 
-void DeviceExtractor::exchange(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceExtractor::serialize(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
 
-void DeviceExtractor::exchange(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceExtractor::serialize(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
 
 void DeviceBackEnd::simplify(const SurfacePiece&, bool, SlabRecord& record) {
   engine_.append();
@@ -41,8 +41,8 @@ void DeviceBackEnd::finish(MeshReport& report) const {
   if (output_.measures()) report_defects(engine_.defects(), report);
 }
 
-void DeviceBackEnd::exchange(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceBackEnd::serialize(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
 
-void DeviceBackEnd::exchange(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceBackEnd::serialize(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
 
 }  // namespace isoweave

@@ -29,8 +29,8 @@ class DeviceExtractor final : public Extractor {
   void take_slices(const SliceWindow& window, std::int64_t layers) override { engine_.upload(window, layers); }
 
   // Throw std::logic_error: states are not saved with a device.
-  void exchange(StateWriter& state) override;
-  void exchange(StateReader& state) override;
+  void serialize(StateWriter& state) override;
+  void serialize(StateReader& state) override;
 
  private:
   DeviceEngine& engine_;
@@ -49,8 +49,8 @@ class DeviceBackEnd final : public BackEnd {
   void finish(MeshReport& report) const override;
 
   // Throw std::logic_error, as DeviceExtractor does.
-  void exchange(StateWriter& state) override;
-  void exchange(StateReader& state) override;
+  void serialize(StateWriter& state) override;
+  void serialize(StateReader& state) override;
 
  private:
   DeviceEngine& engine_;

@@ -27,15 +27,15 @@ class HostBackEnd final : public BackEnd {
   void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sinks() override;
   void finish(MeshReport& report) const override;
-  void exchange(StateWriter& state) override { exchange_with(state); }
-  void exchange(StateReader& state) override { exchange_with(state); }
+  void serialize(StateWriter& state) override { serialize_with(state); }
+  void serialize(StateReader& state) override { serialize_with(state); }
 
  private:
   template <class Archive>
-  void exchange_with(Archive& archive) {
-    simplifier_.exchange(archive);
-    for (const auto& output : outputs_) output->exchange(archive);
-    full_output_.exchange(archive);
+  void serialize_with(Archive& archive) {
+    simplifier_.serialize(archive);
+    for (const auto& output : outputs_) output->serialize(archive);
+    full_output_.serialize(archive);
   }
 
   const SimplifyTask task_;

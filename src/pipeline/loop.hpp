@@ -41,9 +41,9 @@ class Loop {
 
   // Reads or writes the state between two pieces, without that of the source.
   template <class Archive>
-  void exchange(Archive& archive) {
-    for (PieceStage* stage : stages_) stage->exchange(archive);
-    if (back_end_ != nullptr) back_end_->exchange(archive);
+  void serialize(Archive& archive) {
+    for (PieceStage* stage : stages_) stage->serialize(archive);
+    if (back_end_ != nullptr) back_end_->serialize(archive);
   }
 
  private:

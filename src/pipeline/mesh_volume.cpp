@@ -136,14 +136,14 @@ class VolumeRun final : public SavedRun::State {
   void wait_for_sinks() override { back_end_->wait_for_sinks(); }
 
   void write(StateWriter& writer) override {
-    exchange(writer);
+    serialize(writer);
     const std::optional<std::uint32_t> crc = sweep_.pieces().crc_of_next_slice();
     writer.value(static_cast<std::uint32_t>(crc.has_value()));
     writer.value(crc.value_or(0));
   }
 
   void read(StateReader& reader) override {
-    exchange(reader);
+    serialize(reader);
     std::uint32_t has_crc = 0;
     std::uint32_t crc = 0;
     reader.value(has_crc);
@@ -152,9 +152,9 @@ class VolumeRun final : public SavedRun::State {
   }
 
   template <class Archive>
-  void exchange(Archive& archive) {
-    sweep_.pieces().exchange(archive);
-    sweep_.loop().exchange(archive);
+  void serialize(Archive& archive) {
+    sweep_.pieces().serialize(archive);
+    sweep_.loop().serialize(archive);
     archive.value(report_.cells_crossed);
     archive.value(report_.triangles_extracted);
     archive.value(report_.vertices_extracted);

@@ -37,7 +37,7 @@ class SlabPlanner {
   void weigh_zone(const SlabRecord& record, const Held& held);
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     archive.value(recent_layers_);
     archive.value(recent_triangles_);
   }

@@ -49,9 +49,9 @@ class VolumePieces final : public PieceSource {
 
   // Reads or writes the state between two slabs, with that of extractor and planner.
   template <class Archive>
-  void exchange(Archive& archive) {
-    extractor_.exchange(archive);
-    planner_.exchange(archive);
+  void serialize(Archive& archive) {
+    extractor_.serialize(archive);
+    planner_.serialize(archive);
     archive.value(range_);
     archive.value(voxels_);
   }

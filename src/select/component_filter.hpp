@@ -27,15 +27,15 @@ class ComponentFilter final : public PieceStage {
 
   std::uint64_t triangles() const { return triangles_; }  // kept so far
 
-  void exchange(StateWriter& state) override { exchange_with(state); }
-  void exchange(StateReader& state) override { exchange_with(state); }
+  void serialize(StateWriter& state) override { serialize_with(state); }
+  void serialize(StateReader& state) override { serialize_with(state); }
 
   // Throws BadInput: the surface is not the one that components were chosen in.
   [[noreturn]] void refuse() const;
 
  private:
   template <class Archive>
-  void exchange_with(Archive& archive) {
+  void serialize_with(Archive& archive) {
     archive.list(front_is_kept_);
     archive.value(triangles_);
   }

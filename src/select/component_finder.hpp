@@ -37,8 +37,8 @@ class ComponentFinder final : public PieceStage {
   std::uint64_t bytes() const override;
 
   // Throw std::logic_error: no state is saved of this short pass, and a resumed run makes it anew.
-  void exchange(StateWriter& state) override;
-  void exchange(StateReader& state) override;
+  void serialize(StateWriter& state) override;
+  void serialize(StateReader& state) override;
 
  private:
   // The vertices and triangles of a piece up to the end of a layer.

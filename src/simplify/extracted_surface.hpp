@@ -50,7 +50,7 @@ class ExtractedSurface {
 
   // Reads or writes the state between two appends.
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     std::uint64_t count = pieces_.size();
     archive.value(count);
     archive.value(complete_below_);

@@ -76,7 +76,7 @@ class Simplifier {
 
   // Reads or writes the state between two slabs.
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     DecisionCounts counted = counts();
     std::uint64_t passed = rounds();
     archive.value(counted);
@@ -84,7 +84,7 @@ class Simplifier {
     archive.value(appended_);
     archive.value(dropped_);
     for (SurfaceDefects& defects : defects_) archive.value(defects);
-    zone_.exchange(archive);
+    zone_.serialize(archive);
     if constexpr (Archive::kReads) {
       counts_before_ = counted;
       rounds_before_ = passed;

@@ -92,7 +92,7 @@ class Zone : public ZoneView {
   // Reads or writes the state between two appends, where all pieces are manifold. Turns are not part of the state: with
   // the next append all undecided vertices count as settled.
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     archive.list(vertex_array_);
     archive.list(state_array_);
     archive.list(normal_array_);
@@ -100,7 +100,7 @@ class Zone : public ZoneView {
     archive.list(value_array_);
     archive.list(triangle_array_);
     for (Array<LevelVertex>& level : levels) archive.list(level);
-    if (extracted_surface_) extracted_surface_->exchange(archive);
+    if (extracted_surface_) extracted_surface_->serialize(archive);
     archive.list(front_);
     archive.list(unkeyed_edges_);
     archive.value(limit);
