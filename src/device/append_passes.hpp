@@ -67,11 +67,15 @@ struct AppendPasses {
     link_sorted({sides + begin, end - begin}, link, [](Index) {});
   }
 
-  // Settles the vertices that were incomplete, and those beside them.
+  // Settles the vertices that were incomplete, and those beside them; all that may have a turn, where turns are
+  // unknown.
   ISOWEAVE_HD void settle_front(std::int64_t n, const Index* old_front) { settle_old(old_front[n]); }
   ISOWEAVE_HD void settle_ends(std::int64_t n) {
     settle_old(zone.origin(unkeyed[n]));
     settle_old(zone.destination(unkeyed[n]));
+  }
+  ISOWEAVE_HD void settle_held(std::int64_t v) {
+    if (zone.states[static_cast<std::size_t>(v)] == VertexState::kComplete) settle_old(static_cast<Index>(v));
   }
   ISOWEAVE_HD void settle_new(std::int64_t n) { settled.push(first_vertex + static_cast<Index>(n)); }
 

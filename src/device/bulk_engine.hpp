@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "device/append_passes.hpp"
+#include "device/bulk_hand_over.hpp"
 #include "device/compact_passes.hpp"
+#include "device/device_arrays.hpp"
 #include "device/device_engine.hpp"
 #include "device/extract_passes.hpp"
-#include "device/final_passes.hpp"
+#include "extract/front_bits.hpp"
 #include "isoweave/error.hpp"
 #include "volume/samples.hpp"
 
@@ -129,18 +131,7 @@ class BulkEngine final : public DeviceEngine {
   }
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
-    name_final();
-    final_.first_new = first;
-    list_final();
-    read_all(out_known_, piece.known);
-    read_all(out_positions_, piece.positions);
-    read_all(out_normals_, piece.normals);
-    read_all(out_triangles_, piece.triangles);
-    const std::uint64_t open_before = totals_.open_edges;
-    totals_ += device_.template sum<&FinalPasses::close_sides, FinalTotals>(final_triangle_count_, final_);
-    piece.open_edges = totals_.open_edges - open_before;
-    device_.template for_each<&FinalPasses::drop>(final_triangle_count_, final_);
-    dropped_ += final_triangle_count_;
+    dropped_ += hand_over_.take(device_, zone_, first, piece);
     const std::uint64_t gone = zone_.triangles.size() - live_triangles();
     if (8 * gone >= zone_.triangles.size()) compact();
   }
@@ -156,14 +147,61 @@ class BulkEngine final : public DeviceEngine {
     device_.write(held.data(), held.size(), zone_.vertices.data());
   }
 
+  std::uint64_t inherited() const override { return inherited_; }
+  std::uint64_t front_size() const override { return front_.size(); }
+
+  void write_extraction(StateWriter& state) override {
+    FrontBits front{next_layer_, std::vector<std::uint64_t>(plane_words())};
+    device_.read(inside_.data(), plane_words(), front.inside.data());
+    front.write(state);
+  }
+
+  void read_extraction(StateReader& state) override {
+    const FrontBits front = FrontBits::read(state, options_.volume.dims, end_layer_);
+    next_layer_ = bits_.first_layer = front.next_layer;
+    device_.write(front.inside.data(), plane_words(), inside_.data());
+    device_.template for_each<&ExtractPasses::count_front>(plane(), extract_passes(), std::int64_t{0},
+                                                           front_base_.data());
+    device_.scan(front_base_, plane_words());
+    inherited_ = layers_left() > 0 ? read_one(front_base_.data() + plane_words()) : 0;
+  }
+
+  void write_zone(StateWriter& state) override {
+    SimplifierCounts{decisions_, rounds_, appended_, dropped_}.serialize(state);
+    state.value(hand_over_.defects);
+    ZonePart held;
+    read_all(device_, arrays_.vertices, held.vertices);
+    read_all(device_, arrays_.states, held.states);
+    read_all(device_, arrays_.normals, held.normals);
+    read_all(device_, arrays_.triangles, held.triangles);
+    read_all(device_, front_, held.front);
+    write_part(state, held.view(), {}, held.front);
+    state.value(options_.zone.retire);
+  }
+
+  void read_zone(StateReader& state, const PartShape& shape) override {
+    SimplifierCounts saved;
+    saved.serialize(state);
+    state.value(hand_over_.defects);
+    ZonePart part = read_part(state, shape);
+    CostBits limit = 0;
+    state.value(limit);
+    state.require(limit == options_.zone.retire, "the limit of costs of a run on a device");
+    state.require(saved.held() == part.triangles.size(), "as many triangles as are counted");
+    decisions_ = saved.decisions;
+    rounds_ = saved.rounds;
+    appended_ = saved.appended;
+    dropped_ = saved.dropped;
+    hold(part);
+  }
+
   std::uint64_t live_triangles() const override { return appended_ - decisions_.removed - dropped_; }
   std::size_t held_vertices() const override { return zone_.vertices.size(); }
   std::uint64_t bytes() const override {
-    return arrays_.bytes() + spare_.bytes() +
+    return arrays_.bytes() + spare_.bytes() + hand_over_.bytes() +
            sum_bytes(ring_, inside_, vertex_base_, triangle_base_, front_base_, front_next_base_, front_, front_next_,
                      unkeyed_, unkeyed_next_, marks_, side_base_, side_fill_, sides_, changed_, candidates_, minima_,
-                     status_, corners_, triangle_place_, new_place_, known_place_, final_triangles_, final_vertices_,
-                     out_known_, out_positions_, out_normals_, out_triangles_);
+                     triangle_place_, vertex_place_);
   }
   std::uint64_t room_for_vertices(std::uint64_t cap) const override {
     // The bytes of a vertex with its triangles: twice in the zone, as compaction moves them from one set of arrays to
@@ -177,64 +215,20 @@ class BulkEngine final : public DeviceEngine {
   }
   std::uint64_t rounds() const override { return rounds_; }
   const DecisionCounts& decisions() const override { return decisions_; }
-  const SurfaceDefects& defects() const override { return totals_.defects; }
+  const SurfaceDefects& defects() const override { return hand_over_.defects; }
 
  private:
   template <class T>
   using Buffer = typename Device::template Buffer<T>;
 
-  template <class... Buffers>
-  static std::uint64_t sum_bytes(const Buffers&... buffers) {
-    return (... + (buffers.capacity() * sizeof(*buffers.data())));
-  }
-
   enum List : std::size_t { kChanged, kCandidates, kMinima, kUnkeyed, kLists };
-
-  // The arrays of the zone. Each exists twice: compaction moves elements from one to the other.
-  struct ZoneArrays {
-    Buffer<Vertex> vertices;
-    Buffer<VertexState> states;
-    Buffer<Point> normals;
-    Buffer<Key> turn_keys;
-    Buffer<Turn> turns;
-    Buffer<Triangle> triangles;
-
-    void resize(std::size_t vertex_count, std::size_t triangle_count, bool has_normals) {
-      vertices.resize(vertex_count);
-      states.resize(vertex_count);
-      normals.resize(has_normals ? vertex_count : 0);
-      turn_keys.resize(vertex_count);
-      turns.resize(vertex_count);
-      triangles.resize(triangle_count);
-    }
-
-    std::uint64_t bytes() const { return sum_bytes(vertices, states, normals, turn_keys, turns, triangles); }
-
-    ZoneView view(const ZoneOptions& options) {
-      const auto show = [](auto& array) { return std::span(array.data(), array.size()); };
-      return {show(vertices), show(states),    show(normals), show(turn_keys),
-              show(turns),    show(triangles), options,       options.retire};
-    }
-  };
-
-  static std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(count); }
 
   std::size_t plane_words() const { return static_cast<std::size_t>(bits_.plane()); }
   std::int64_t plane() const { return bits_.plane(); }
   std::int64_t front_count() const { return signed_count(front_.size()); }
   std::int64_t side_count() const { return unkeyed_count_ + 3 * signed_count(counts_.triangles); }
 
-  std::uint32_t read_one(const std::uint32_t* from) {
-    std::uint32_t value = 0;
-    device_.read(from, 1, &value);
-    return value;
-  }
-
-  template <class T>
-  void read_all(const Buffer<T>& from, Array<T>& to) {
-    to.resize(from.size());
-    device_.read(from.data(), from.size(), to.data());
-  }
+  std::uint32_t read_one(const std::uint32_t* from) { return isoweave::read_one(device_, from); }
 
   // A list of a pass: its items, and where its size is kept. A pass adds to the list, unless the size is set to 0
   // first.
@@ -286,6 +280,22 @@ class BulkEngine final : public DeviceEngine {
       ++counts.layers;
     } while (counts.layers < layers);
     return counts;
+  }
+
+  // Takes a part into the memory of the device.
+  void hold(const ZonePart& part) {
+    const std::size_t vertices = part.vertices.size();
+    write_all(device_, part.vertices, arrays_.vertices);
+    write_all(device_, part.states, arrays_.states);
+    write_all(device_, part.normals, arrays_.normals);
+    write_all(device_, std::vector<Key>(vertices, kNoTurn), arrays_.turn_keys);
+    write_all(device_, std::vector<Turn>(vertices), arrays_.turns);
+    write_all(device_, part.triangles, arrays_.triangles);
+    zone_ = arrays_.view(options_.zone);
+    write_all(device_, part.front, front_);
+    write_all(device_, part.unkeyed_edges, unkeyed_);
+    unkeyed_count_ = static_cast<std::uint32_t>(part.unkeyed_edges.size());
+    turns_known_ = false;
   }
 
   void make_room(const SlabCounts& counts) {
@@ -345,6 +355,8 @@ class BulkEngine final : public DeviceEngine {
     device_.template for_each<&AppendPasses::settle_front>(front_count(), passes,
                                                            static_cast<const Index*>(front_.data()));
     device_.template for_each<&AppendPasses::settle_ends>(unkeyed_count_, passes);
+    if (!turns_known_) device_.template for_each<&AppendPasses::settle_held>(passes.first_vertex, passes);
+    turns_known_ = true;
     device_.template for_each<&AppendPasses::settle_new>(signed_count(counts_.vertices), passes);
   }
 
@@ -363,6 +375,7 @@ class BulkEngine final : public DeviceEngine {
                                                             front_next_.data());
     }
     std::swap(front_, front_next_);
+    inherited_ = front_.size();
     std::swap(front_base_, front_next_base_);
     device_.copy(inside_.data() + static_cast<std::size_t>(counts_.layers) * plane_words(), plane_words(),
                  inside_.data());
@@ -371,20 +384,20 @@ class BulkEngine final : public DeviceEngine {
   void compact() {
     const std::size_t vertices = zone_.vertices.size();
     const std::size_t triangles = zone_.triangles.size();
-    new_place_.resize(vertices + 1);
+    vertex_place_.resize(vertices + 1);
     triangle_place_.resize(triangles + 1);
-    device_.clear(new_place_);
+    device_.clear(vertex_place_);
     CompactPasses passes;
     passes.from = zone_;
     passes.triangle_place = triangle_place_.data();
-    passes.vertex_place = new_place_.data();
+    passes.vertex_place = vertex_place_.data();
     passes.front = front_.data();
     passes.unkeyed = unkeyed_.data();
     device_.template for_each<&CompactPasses::keep_front>(front_count(), passes);
     device_.template for_each<&CompactPasses::keep_triangle>(signed_count(triangles), passes);
     device_.scan(triangle_place_, triangles);
-    device_.scan(new_place_, vertices);
-    spare_.resize(read_one(new_place_.data() + vertices), read_one(triangle_place_.data() + triangles),
+    device_.scan(vertex_place_, vertices);
+    spare_.resize(read_one(vertex_place_.data() + vertices), read_one(triangle_place_.data() + triangles),
                   options_.normals);
     passes.to = spare_.view(options_.zone);
     device_.template for_each<&CompactPasses::move_triangle>(signed_count(triangles), passes);
@@ -393,54 +406,6 @@ class BulkEngine final : public DeviceEngine {
     device_.template for_each<&CompactPasses::move_unkeyed>(unkeyed_count_, passes);
     std::swap(arrays_, spare_);
     zone_ = passes.to;
-  }
-
-  // Finds the vertices and triangles that have become final.
-  void name_final() {
-    const std::size_t vertices = zone_.vertices.size();
-    const std::size_t triangles = zone_.triangles.size();
-    status_.resize(vertices);
-    corners_.resize(vertices);
-    new_place_.resize(vertices + 1);
-    known_place_.resize(vertices + 1);
-    triangle_place_.resize(triangles + 1);
-    final_ = FinalPasses();
-    final_.zone = zone_;
-    final_.status = status_.data();
-    final_.corners = corners_.data();
-    final_.triangle_place = triangle_place_.data();
-    final_.new_place = new_place_.data();
-    final_.known_place = known_place_.data();
-    device_.template for_each<&FinalPasses::name_vertex>(signed_count(vertices), final_);
-    device_.template for_each<&FinalPasses::name_triangle>(signed_count(triangles), final_);
-    totals_ += device_.template sum<&FinalPasses::inspect, FinalTotals>(signed_count(vertices), final_);
-    device_.scan(triangle_place_, triangles);
-    device_.scan(new_place_, vertices);
-    device_.scan(known_place_, vertices);
-    final_triangle_count_ = read_one(triangle_place_.data() + triangles);
-    new_vertex_count_ = read_one(new_place_.data() + vertices);
-    final_.known_vertices = read_one(known_place_.data() + vertices);
-  }
-
-  // Lists the final triangles and their vertices for the host, after name_final().
-  void list_final() {
-    const std::size_t vertices = std::size_t{final_.known_vertices} + new_vertex_count_;
-    final_triangles_.resize(final_triangle_count_);
-    final_vertices_.resize(vertices);
-    out_known_.resize(final_.known_vertices);
-    out_positions_.resize(new_vertex_count_);
-    out_normals_.resize(options_.normals ? new_vertex_count_ : 0);
-    out_triangles_.resize(final_triangle_count_);
-    final_.final_triangles = final_triangles_.data();
-    final_.final_vertices = final_vertices_.data();
-    final_.out_known = out_known_.data();
-    final_.out_positions = out_positions_.data();
-    final_.out_normals = options_.normals ? out_normals_.data() : nullptr;
-    final_.out_triangles = out_triangles_.data();
-    device_.template for_each<&FinalPasses::list_triangle>(signed_count(zone_.triangles.size()), final_);
-    device_.template for_each<&FinalPasses::list_vertex>(signed_count(zone_.vertices.size()), final_);
-    device_.template for_each<&FinalPasses::write_triangle>(final_triangle_count_, final_);
-    device_.template for_each<&FinalPasses::write_vertex>(signed_count(vertices), final_);
   }
 
   Device device_;
@@ -459,29 +424,23 @@ class BulkEngine final : public DeviceEngine {
   SlabCounts counts_;
 
   // The zone.
-  ZoneArrays arrays_, spare_;
+  DeviceZone<Device> arrays_, spare_;  // compaction moves elements from one to the other
   ZoneView zone_;
   Buffer<Index> front_, front_next_;
   Buffer<Index> unkeyed_, unkeyed_next_;
   std::uint32_t unkeyed_count_ = 0;
+  std::uint64_t inherited_ = 0;
+  bool turns_known_ = true;
   Buffer<std::uint32_t> marks_, side_base_, side_fill_;
   Buffer<EdgeSide> sides_;
   Buffer<Index> changed_, candidates_, minima_;
   Buffer<std::uint32_t> list_sizes_;
 
-  // The final triangles.
-  FinalPasses final_;
-  Buffer<std::uint32_t> status_, corners_, triangle_place_, new_place_, known_place_;
-  Buffer<Index> final_triangles_, final_vertices_;
-  Buffer<KnownVertex> out_known_;
-  Buffer<Vec3> out_positions_;
-  Buffer<Point> out_normals_;
-  Buffer<std::array<std::uint32_t, 3>> out_triangles_;
-  std::uint32_t final_triangle_count_ = 0, new_vertex_count_ = 0;
+  Buffer<std::uint32_t> triangle_place_, vertex_place_;  // of a compaction
+  BulkHandOver<Device> hand_over_;
 
   std::uint64_t appended_ = 0, dropped_ = 0, rounds_ = 0;
   DecisionCounts decisions_;
-  FinalTotals totals_;
 };
 
 }  // namespace isoweave

@@ -9,6 +9,7 @@
 #include "extract/extractor.hpp"
 #include "simplify/final_piece.hpp"
 #include "simplify/simplify_totals.hpp"
+#include "simplify/zone_part.hpp"
 #include "simplify/zone_view.hpp"
 #include "volume/slice_window.hpp"
 
@@ -49,6 +50,17 @@ class DeviceEngine : public FinalSource {
 
   // Decides every edge that can be decided with what has been appended.
   virtual void decide() = 0;
+
+  // The vertices that the next slab inherits: of the extraction, and of the zone.
+  virtual std::uint64_t inherited() const = 0;
+  virtual std::uint64_t front_size() const = 0;
+
+  // The state between two slabs, as MarchingCubes and Simplifier have it: written, and read before the first slab.
+  // Throw BadInput.
+  virtual void write_extraction(StateWriter& state) = 0;
+  virtual void read_extraction(StateReader& state) = 0;
+  virtual void write_zone(StateWriter& state) = 0;
+  virtual void read_zone(StateReader& state, const PartShape& shape) = 0;
 
   virtual std::uint64_t live_triangles() const = 0;  // held, and not collapsed
   virtual std::uint64_t bytes() const = 0;           // held in the memory of the device

@@ -51,8 +51,11 @@ class Extractor {
   virtual bool takes_slices_early() const { return false; }
   virtual void take_slices(const SliceWindow&, std::int64_t) {}
 
-  // The state between two slabs.
-  virtual void serialize(StateWriter& state) = 0;
+  // The vertices that the next piece inherits.
+  virtual std::uint64_t inherited() const = 0;
+
+  // The state between two slabs: written, and read before the first one. Throws BadInput.
+  virtual void serialize(StateWriter& state) const = 0;
   virtual void serialize(StateReader& state) = 0;
 };
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "extract/classify.hpp"
+#include "extract/front_bits.hpp"
 #include "isoweave/error.hpp"
 #include "volume/samples.hpp"
 
@@ -126,21 +128,27 @@ void MarchingCubes::classify(const SliceWindow& window, std::int64_t k, std::siz
                kernels_);
 }
 
+// Finds the crossings of one row of a slice.
+void MarchingCubes::find_on_slice(std::size_t row, Slice& slice) const {
+  const std::size_t begin = row * words_;
+  const std::int64_t j = static_cast<std::int64_t>(row) - 1;
+  const bool has_y = row + 1 < rows_ && (options_.rule.closed || (j >= 0 && j + 1 < dims_[1]));
+  const std::uint64_t* const bits = &slice.inside[begin];
+  kernels_.differ_along(bits, edge_mask_.data(), words_, &slice.cross_x[begin]);
+  kernels_.differ(bits, has_y ? bits + words_ : bits, words_, &slice.cross_y[begin]);
+}
+
 // Finds the crossings of one row of layer n of the slab and of the slice above it. Returns how many there are.
 std::uint32_t MarchingCubes::find_crossings(std::size_t n, std::size_t row) {
   Slice& slice = slices_[n + 1];
+  find_on_slice(row, slice);
   const std::size_t begin = row * words_;
   const std::int64_t k = next_layer_ + static_cast<std::int64_t>(n);
-  const std::int64_t j = static_cast<std::int64_t>(row) - 1;
-  const bool closed = options_.rule.closed;
-  const bool has_y = row + 1 < rows_ && (closed || (j >= 0 && j + 1 < dims_[1]));
-  const bool has_z = closed || (k >= 0 && k + 1 < dims_[2]);
+  const bool has_z = options_.rule.closed || (k >= 0 && k + 1 < dims_[2]);
   const std::uint64_t* const bits = &slice.inside[begin];
-  std::uint64_t* const x = &slice.cross_x[begin];
-  std::uint64_t* const y = &slice.cross_y[begin];
+  const std::uint64_t* const x = &slice.cross_x[begin];
+  const std::uint64_t* const y = &slice.cross_y[begin];
   std::uint64_t* const z = &layers_[n].cross_z[begin];
-  kernels_.differ_along(bits, edge_mask_.data(), words_, x);
-  kernels_.differ(bits, has_y ? bits + words_ : bits, words_, y);
   kernels_.differ(bits, has_z ? &slices_[n].inside[begin] : bits, words_, z);
   std::uint32_t count = 0;
   for (std::size_t w = 0; w < words_; ++w) count += ones(x[w]) + ones(y[w]) + ones(z[w]);
@@ -341,13 +349,30 @@ void MarchingCubes::emit_triangles(std::size_t layers, SurfacePiece& piece) cons
 void MarchingCubes::list_front(SurfacePiece& piece) {
   front_size_ = 0;
   if (layers_left() == 0) return;
+  number_front([&](std::uint32_t before) { piece.incomplete.push_back(before); });
+}
+
+// Numbers the crossings of the front. see(number) is told the number that each had in the slab.
+template <class See>
+void MarchingCubes::number_front(const See& see) {
   Slice& front = slices_.front();
   for (std::size_t at = 0; at < front.base.size(); ++at) {
     const std::uint32_t count = ones(front.cross_x[at]) + ones(front.cross_y[at]);
-    for (std::uint32_t n = 0; n < count; ++n) piece.incomplete.push_back(front.base[at] + n);
+    for (std::uint32_t n = 0; n < count; ++n) see(front.base[at] + n);
     front.base[at] = front_size_;
     front_size_ += count;
   }
+}
+
+void MarchingCubes::serialize(StateWriter& state) const { FrontBits{next_layer_, slices_.front().inside}.write(state); }
+
+void MarchingCubes::serialize(StateReader& state) {
+  FrontBits front = FrontBits::read(state, dims_, end_layer_);
+  next_layer_ = front.next_layer;
+  slices_.front().inside = std::move(front.inside);
+  for (std::size_t row = 0; row < rows_; ++row) find_on_slice(row, slices_.front());
+  front_size_ = 0;
+  if (layers_left() > 0) number_front([](std::uint32_t) {});
 }
 
 }  // namespace isoweave

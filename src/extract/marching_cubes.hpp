@@ -44,20 +44,11 @@ class MarchingCubes final : public Extractor {
   SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                      SurfacePiece& piece) override;
 
-  void serialize(StateWriter& state) override { serialize_with(state); }
-  void serialize(StateReader& state) override { serialize_with(state); }
+  std::uint64_t inherited() const override { return front_size_; }
+  void serialize(StateWriter& state) const override;
+  void serialize(StateReader& state) override;
 
  private:
-  template <class Archive>
-  void serialize_with(Archive& archive) {
-    archive.value(next_layer_);
-    archive.value(front_size_);
-    archive.list(slices_.front().inside);
-    archive.list(slices_.front().cross_x);
-    archive.list(slices_.front().cross_y);
-    archive.list(slices_.front().base);
-  }
-
   // Bits and vertex numbers of one slice; one entry per word, row by row.
   struct Slice {
     std::vector<std::uint64_t> inside, cross_x, cross_y;
@@ -82,6 +73,7 @@ class MarchingCubes final : public Extractor {
   struct EdgeRow;
 
   void classify(const SliceWindow& window, std::int64_t k, std::size_t row, Slice& slice) const;
+  void find_on_slice(std::size_t row, Slice& slice) const;
   std::uint32_t find_crossings(std::size_t n, std::size_t row);
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
   void count_rows(std::size_t layers);
@@ -95,6 +87,8 @@ class MarchingCubes final : public Extractor {
                  std::uint64_t inside, std::uint32_t number, SurfacePiece& piece) const;
   void emit_triangles(std::size_t layers, SurfacePiece& piece) const;
   void list_front(SurfacePiece& piece);
+  template <class See>
+  void number_front(const See& see);
   bool has_cells(std::int64_t k, std::size_t row) const;
   template <class Visit>
   void for_rows(std::size_t layers, const Visit& visit) const;

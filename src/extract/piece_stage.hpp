@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "extract/surface_piece.hpp"
 #include "files/state_file.hpp"
@@ -21,8 +22,12 @@ class PieceStage {
   // Bytes that the stage holds from piece to piece, if they grow.
   virtual std::uint64_t bytes() const { return 0; }
 
-  // The state between two pieces.
-  virtual void serialize(StateWriter& state) = 0;
+  // The vertices that the next piece inherits, once it has passed the stage; none where the stage expects another
+  // number of them before.
+  virtual std::optional<std::uint64_t> inherited(std::uint64_t before) const { return before; }
+
+  // The state between two pieces: written, and read before the first one. Throws BadInput.
+  virtual void serialize(StateWriter& state) const = 0;
   virtual void serialize(StateReader& state) = 0;
 };
 

@@ -47,14 +47,18 @@ void StateReader::check_crc() {
   file_.seekg(0);
 }
 
-void StateReader::require(std::uint64_t count, std::uint64_t bytes_each) const {
+void StateReader::require_left(std::uint64_t count, std::uint64_t bytes_each) const {
   if (count <= left_ / bytes_each) return;
   throw BadInput(path_ + ": expected " + std::to_string(count) + " items in the saved state, found " +
                  std::to_string(left_ / bytes_each));
 }
 
+void StateReader::refuse(const char* expected) const {
+  throw BadInput(path_ + ": the saved state is damaged: expected " + expected + ", found something else");
+}
+
 void StateReader::get(std::span<std::byte> bytes) {
-  require(bytes.size(), 1);
+  require_left(bytes.size(), 1);
   file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!file_) throw BadInput(path_ + ": cannot be read to its end");
   left_ -= bytes.size();

@@ -1,21 +1,28 @@
-// The file that the state of a run is saved in: fields one after another, in the machine's own byte order, and a CRC-32
-// of all that stands before it.
+// The file that the state of a run is saved in: fields one after another, little-endian, and a CRC-32 of all that
+// stands before it. Anyone may have written such a file: what is read is checked before it is used.
 //
 // A class with a state has a member template `serialize(archive)`. It names the fields once, for a StateWriter to write
 // and for a StateReader to read.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "files/atomic_file.hpp"
 #include "parallel/size.hpp"
 
 namespace isoweave {
+
+inline constexpr std::size_t kStateBlock = 4096;  // values that are written or read together
+
+static_assert(std::endian::native == std::endian::little, "a state has the bytes of numbers as they lie in memory");
 
 class StateWriter {
  public:
@@ -35,6 +42,19 @@ class StateWriter {
   void list(const List& list) {
     value(static_cast<std::uint64_t>(list.size()));
     put(std::as_bytes(std::span(list.data(), list.size())));
+  }
+
+  // Values without their number, which are made one by one: get(n) gives the n-th.
+  template <class Get>
+  void each(std::size_t count, const Get& get) {
+    using T = decltype(get(std::size_t{0}));
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<T> block(std::min(count, kStateBlock));
+    for (std::size_t first = 0; first < count; first += block.size()) {
+      block.resize(std::min(block.size(), count - first));
+      for (std::size_t n = 0; n < block.size(); ++n) block[n] = get(first + n);
+      put(std::as_bytes(std::span(block)));
+    }
   }
 
   void commit();
@@ -61,18 +81,45 @@ class StateReader {
 
   template <class List>
   void list(List& list) {
-    std::uint64_t size = 0;
-    value(size);
-    require(size, sizeof(*list.data()));
-    list.resize(to_size(size));
+    list.resize(count(sizeof(*list.data())));
     get(std::as_writable_bytes(std::span(list.data(), list.size())));
   }
+
+  // The number of values that follow, of so many bytes each at least.
+  std::size_t count(std::uint64_t bytes_each) {
+    std::uint64_t count = 0;
+    value(count);
+    require_left(count, bytes_each);
+    return to_size(count);
+  }
+
+  // Values without their number: put(n, value) takes the n-th.
+  template <class T, class Put>
+  void each(std::size_t count, const Put& put) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    require_left(count, sizeof(T));
+    std::vector<T> block(std::min(count, kStateBlock));
+    for (std::size_t first = 0; first < count; first += block.size()) {
+      block.resize(std::min(block.size(), count - first));
+      get(std::as_writable_bytes(std::span(block)));
+      for (std::size_t n = 0; n < block.size(); ++n) put(first + n, block[n]);
+    }
+  }
+
+  // Refuses the state unless a condition holds. expected: what the state should have there.
+  void require(bool holds, const char* expected) const {
+    if (!holds) refuse(expected);
+  }
+
+  // Refuses a state with more in it than has been read.
+  void require_end() const { require(left_ == 0, "its end"); }
 
   const std::string& path() const { return path_; }
 
  private:
   void check_crc();
-  void require(std::uint64_t count, std::uint64_t bytes_each) const;
+  void require_left(std::uint64_t count, std::uint64_t bytes_each) const;
+  [[noreturn]] void refuse(const char* expected) const;
   void get(std::span<std::byte> bytes);
 
   std::string path_;

@@ -16,6 +16,23 @@ std::uint32_t ComponentCounter::add(std::size_t count) {
 
 bool ComponentCounter::join(std::uint32_t a, std::uint32_t b) { return join_sets(parent_, a, b); }
 
+void ComponentCounter::serialize(StateWriter& state) const {
+  state.list(parent_);
+  state.value(added_);
+  state.value(joined_.load());
+}
+
+void ComponentCounter::serialize(StateReader& state) {
+  state.list(parent_);
+  for (std::size_t label = 0; label < parent_.size(); ++label) {
+    state.require(parent_[label] <= label, "labels below which there are none but smaller ones");
+  }
+  std::uint64_t joined = 0;
+  state.value(added_);
+  state.value(joined);
+  joined_ = joined;
+}
+
 void ComponentCounter::compact(std::span<std::uint32_t*> labels) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> renumbered(parent_.size(), kUnused);

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "files/state_file.hpp"
+
 namespace isoweave {
 
 // Union-find over labels. compact() forgets labels that are no longer needed, so memory follows the vertices held.
@@ -31,14 +33,9 @@ class ComponentCounter {
   // Renumbers the labels of the vertices still held, in place; all other labels become invalid.
   void compact(std::span<std::uint32_t*> labels);
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    std::uint64_t joined = joined_;
-    archive.list(parent_);
-    archive.value(added_);
-    archive.value(joined);
-    joined_ = joined;
-  }
+  // The labels that are held: written, and read. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   std::vector<std::uint32_t> parent_;

@@ -10,13 +10,23 @@ constexpr std::int64_t kBlock = 4096;
 }  // namespace
 
 void FinalOutput::take(FinalSource& source) {
-  const std::uint64_t first_number = output_.vertices();
-  source.take_final({first_number, output_.next_label()}, piece_);
-  write(first_number);
-  if (piece_.locked.size() > 0) keep_locked(first_number);
+  const Receipt first = end();
+  source.take_final(first, piece_);
+  write(first.number);
+  if (piece_.locked.size() > 0) keep_locked(first.number);
   open_edges_ += piece_.open_edges;
   if (output_.components().labels() <= source.held_vertices()) return;
   source.change_labels([&](std::span<std::uint32_t*> labels) { output_.components().compact(labels); });
+}
+
+void FinalOutput::serialize(StateWriter& state) const {
+  state.value(open_edges_);
+  output_.serialize(state);
+}
+
+void FinalOutput::serialize(StateReader& state) {
+  state.value(open_edges_);
+  output_.serialize(state);
 }
 
 void FinalOutput::write(std::uint64_t first_number) {

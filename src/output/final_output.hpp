@@ -30,11 +30,12 @@ class FinalOutput {
   // Returns when the sink has received everything. Throws what it threw.
   void wait() { output_.wait(); }
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive.value(open_edges_);
-    output_.serialize(archive);
-  }
+  // What comes after all receipts given so far.
+  Receipt end() const { return {output_.next_number(), output_.next_label()}; }
+
+  // The counts between two pieces of a manifold surface: written, and read before the first one. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   void write(std::uint64_t first_number);

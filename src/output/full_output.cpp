@@ -1,5 +1,6 @@
 #include "output/full_output.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -27,6 +28,23 @@ void FullOutput::take(const SurfacePiece& piece) {
   front_ = std::move(front);
   forget_components();
   open_edges_ += piece.open_edges;
+}
+
+void FullOutput::serialize(StateWriter& state) const {
+  state.value(open_edges_);
+  output_.serialize(state);
+  state.list(front_);
+}
+
+void FullOutput::serialize(StateReader& state) {
+  state.value(open_edges_);
+  output_.serialize(state);
+  state.list(front_);
+  for (const OutputCorner& corner : front_) {
+    const bool written = corner.number < output_.next_number();
+    const bool labelled = corner.label < std::max<std::uint32_t>(output_.next_label(), 1);
+    state.require(written && labelled, "a front of vertices that have been written");
+  }
 }
 
 void FullOutput::forget_components() {

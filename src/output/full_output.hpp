@@ -22,12 +22,12 @@ class FullOutput {
   // Returns when the sink has received everything. Throws what it threw.
   void wait() { output_.wait(); }
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive.list(front_);
-    archive.value(open_edges_);
-    output_.serialize(archive);
-  }
+  // The vertices that the next piece inherits.
+  std::size_t front_size() const { return front_.size(); }
+
+  // The state between two pieces: written, and read before the first one. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   void forget_components();

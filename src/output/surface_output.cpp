@@ -150,6 +150,22 @@ void SurfaceOutput::hand_over() {
   next_ ^= 1;
 }
 
+void SurfaceOutput::serialize(StateWriter& state) const {
+  state.value(vertices_);
+  state.value(triangles_);
+  state.value(digest_.load());
+  components_.serialize(state);
+}
+
+void SurfaceOutput::serialize(StateReader& state) {
+  std::uint64_t digest = 0;
+  state.value(vertices_);
+  state.value(triangles_);
+  state.value(digest);
+  components_.serialize(state);
+  digest_ = digest;
+}
+
 void SurfaceOutput::report(std::uint64_t open_edges, SurfaceReport& report) const {
   report.vertices = vertices_;
   report.triangles = triangles_;

@@ -45,8 +45,6 @@ class SurfaceOutput {
         sink_(sink),
         overlapped_(sink, executor.threads() > 1) {}
 
-  std::uint64_t vertices() const { return vertices_; }
-
   // Writes a piece. `written`: the vertices written before that it names; the first new vertex is appended, from whose
   // number and label on the new ones have theirs. Returns that vertex.
   OutputCorner take(const OutputPiece& piece, std::vector<OutputCorner>& written);
@@ -56,7 +54,8 @@ class SurfaceOutput {
 
   ComponentCounter& components() { return components_; }
 
-  // The label of the next vertex that is added.
+  // The number and label of the next vertex that is added.
+  std::uint64_t next_number() const { return vertices_; }
   std::uint32_t next_label() const { return static_cast<std::uint32_t>(components_.labels()); }
 
   bool measures() const { return measure_; }
@@ -70,15 +69,9 @@ class SurfaceOutput {
   // Fills in the counts, Euler number, components and digest of what has been written.
   void report(std::uint64_t open_edges, SurfaceReport& report) const;
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    std::uint64_t digest = digest_;
-    archive.value(vertices_);
-    archive.value(triangles_);
-    archive.value(digest);
-    components_.serialize(archive);
-    digest_ = digest;
-  }
+  // The counts between two pieces: written, and read before the first one. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   static constexpr std::int64_t kBlock = 4096;

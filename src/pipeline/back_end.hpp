@@ -6,6 +6,7 @@
 #include "files/state_file.hpp"
 #include "isoweave/report.hpp"
 #include "pipeline/piece_source.hpp"
+#include "pipeline/task.hpp"
 
 namespace isoweave {
 
@@ -36,9 +37,19 @@ class BackEnd {
   // Fills in the counters of the whole run.
   virtual void finish(MeshReport& report) const = 0;
 
-  // The state between two pieces.
-  virtual void serialize(StateWriter& state) = 0;
+  // The vertices that the next piece inherits.
+  virtual std::uint64_t inherited() const = 0;
+
+  // The state between two pieces: written, and read before the first one. Throws BadInput. Processors and a device
+  // have the same: one goes on where the other was.
+  virtual void serialize(StateWriter& state) const = 0;
   virtual void serialize(StateReader& state) = 0;
 };
+
+// Reads whether the surface is simplified, and refuses the state of a run of the other kind.
+void require_kind(StateReader& state, bool simplified);
+
+// The shape of the parts of a task's surface, without the ends of receipts.
+PartShape part_shape(const SimplifyTask& task);
 
 }  // namespace isoweave

@@ -1,7 +1,5 @@
 #include "pipeline/device_back_end.hpp"
 
-#include <stdexcept>
-
 #include "pipeline/run_report.hpp"
 
 namespace isoweave {
@@ -12,10 +10,6 @@ SlabCounts DeviceExtractor::extract(const SliceWindow& window, std::int64_t laye
   engine_.upload(window, layers);
   return engine_.extract(layers, most_vertices);
 }
-
-void DeviceExtractor::serialize(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
-
-void DeviceExtractor::serialize(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
 
 void DeviceBackEnd::simplify(const SurfacePiece&, bool, SlabRecord& record) {
   engine_.append();
@@ -41,8 +35,18 @@ void DeviceBackEnd::finish(MeshReport& report) const {
   if (output_.measures()) report_defects(engine_.defects(), report);
 }
 
-void DeviceBackEnd::serialize(StateWriter&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceBackEnd::serialize(StateWriter& state) const {
+  state.value(std::uint8_t{1});
+  output_.serialize(state);
+  engine_.write_zone(state);
+}
 
-void DeviceBackEnd::serialize(StateReader&) { throw std::logic_error("what a device holds is not saved"); }
+void DeviceBackEnd::serialize(StateReader& state) {
+  require_kind(state, true);
+  output_.serialize(state);
+  PartShape shape = part_shape(task_);
+  shape.ends.push_back(output_.end());
+  engine_.read_zone(state, shape);
+}
 
 }  // namespace isoweave

@@ -28,9 +28,9 @@ class DeviceExtractor final : public Extractor {
   bool takes_slices_early() const override { return true; }
   void take_slices(const SliceWindow& window, std::int64_t layers) override { engine_.upload(window, layers); }
 
-  // Throw std::logic_error: states are not saved with a device.
-  void serialize(StateWriter& state) override;
-  void serialize(StateReader& state) override;
+  std::uint64_t inherited() const override { return engine_.inherited(); }
+  void serialize(StateWriter& state) const override { engine_.write_extraction(state); }
+  void serialize(StateReader& state) override { engine_.read_extraction(state); }
 
  private:
   DeviceEngine& engine_;
@@ -38,9 +38,10 @@ class DeviceExtractor final : public Extractor {
 
 class DeviceBackEnd final : public BackEnd {
  public:
-  // All arguments must outlive the back end.
-  DeviceBackEnd(DeviceEngine& engine, const World& world, MeshSink& sink, const Executor& executor, bool measure)
-      : engine_(engine), output_(world, sink, executor, measure) {}
+  // All arguments but the task must outlive the back end.
+  DeviceBackEnd(DeviceEngine& engine, const SimplifyTask& task, const World& world, MeshSink& sink,
+                const Executor& executor, bool measure)
+      : engine_(engine), task_(task), output_(world, sink, executor, measure) {}
 
   void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
   void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
@@ -48,12 +49,13 @@ class DeviceBackEnd final : public BackEnd {
   void wait_for_sinks() override { output_.wait(); }
   void finish(MeshReport& report) const override;
 
-  // Throw std::logic_error, as DeviceExtractor does.
-  void serialize(StateWriter& state) override;
+  std::uint64_t inherited() const override { return engine_.front_size(); }
+  void serialize(StateWriter& state) const override;
   void serialize(StateReader& state) override;
 
  private:
   DeviceEngine& engine_;
+  const SimplifyTask task_;
   FinalOutput output_;
 };
 

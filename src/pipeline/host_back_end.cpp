@@ -73,4 +73,26 @@ void HostBackEnd::finish(MeshReport& report) const {
   if (target_) report_target(simplifier_, task_, report);
 }
 
+std::uint64_t HostBackEnd::inherited() const {
+  return task_.needed ? simplifier_.zone().front_size() : full_output_.front_size();
+}
+
+void HostBackEnd::serialize(StateWriter& state) const {
+  state.value(std::uint8_t{task_.needed});
+  if (!task_.needed) return full_output_.serialize(state);
+  for (const auto& output : outputs_) output->serialize(state);
+  simplifier_.serialize(state);
+}
+
+void HostBackEnd::serialize(StateReader& state) {
+  require_kind(state, task_.needed);
+  if (!task_.needed) return full_output_.serialize(state);
+  PartShape shape = part_shape(task_);
+  for (const auto& output : outputs_) {
+    output->serialize(state);
+    shape.ends.push_back(output->end());
+  }
+  simplifier_.serialize(state, shape);
+}
+
 }  // namespace isoweave

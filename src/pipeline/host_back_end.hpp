@@ -27,17 +27,11 @@ class HostBackEnd final : public BackEnd {
   void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sinks() override;
   void finish(MeshReport& report) const override;
-  void serialize(StateWriter& state) override { serialize_with(state); }
-  void serialize(StateReader& state) override { serialize_with(state); }
+  std::uint64_t inherited() const override;
+  void serialize(StateWriter& state) const override;
+  void serialize(StateReader& state) override;
 
  private:
-  template <class Archive>
-  void serialize_with(Archive& archive) {
-    simplifier_.serialize(archive);
-    for (const auto& output : outputs_) output->serialize(archive);
-    full_output_.serialize(archive);
-  }
-
   const SimplifyTask task_;
   const World& world_;
   const Executor& executor_;

@@ -2,6 +2,7 @@
 // stages, decides all edges that are safe to decide, and writes the final triangles.
 #pragma once
 
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -28,7 +29,10 @@ class Loop {
   // Returns when the sinks have received everything. Throws what they threw.
   void wait_for_sinks();
 
-  // Completes the report of a surface that is complete.
+  // The triangles that were held after the last piece: none once the surface is complete.
+  std::uint64_t undecided() const { return undecided_; }
+
+  // Completes the report of a surface that is complete. Throws std::logic_error where triangles are left undecided.
   void finish();
 
   // The parts of the run that are in the memory of the process between two pieces.
@@ -39,14 +43,14 @@ class Loop {
     if (back_end_ != nullptr) back_end_->view_undecided(visitor);
   }
 
-  // Reads or writes the state between two pieces, without that of the source.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    for (PieceStage* stage : stages_) stage->serialize(archive);
-    if (back_end_ != nullptr) back_end_->serialize(archive);
-  }
+  // The state between two pieces, without that of the source: written, and read before the first one, after that of the
+  // source. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
+  void simplify(bool complete, SlabRecord& record);
+  std::exception_ptr try_to_read();
   void read();
 
   PieceSource& source_;
@@ -55,6 +59,7 @@ class Loop {
   MeshReport& report_;
   SurfacePiece piece_;
   bool is_read_ = false;  // what the next piece is made of
+  std::uint64_t undecided_ = 0;
 };
 
 }  // namespace isoweave

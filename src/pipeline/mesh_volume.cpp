@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/cuda_engine.hpp"
+#include "files/input_file.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/pipeline.hpp"
 #include "output/world.hpp"
@@ -68,7 +69,8 @@ class VolumeRun final : public SavedRun::State {
       engine_ =
           make_cuda_engine({sweep_.field().info(), sweep_.field().rule(), task_.has_normals(), task_.simplify.zone});
       extractor_ = std::make_unique<DeviceExtractor>(*engine_);
-      back_end_ = std::make_unique<DeviceBackEnd>(*engine_, world_, *sinks_.back(), executor, control_.measure);
+      back_end_ =
+          std::make_unique<DeviceBackEnd>(*engine_, task_.simplify, world_, *sinks_.back(), executor, control_.measure);
       return;
     }
     extractor_ = sweep_.make_extractor();
@@ -107,9 +109,17 @@ class VolumeRun final : public SavedRun::State {
 
   void finish_report() {
     sweep_.loop().wait_for_sinks();
+    require_decided();
     sweep_.finish();
     finish_components();
     warn_of_nothing(task_, sweep_.pieces().range().empty(), report_);
+  }
+
+  // Refuses a state that leaves a surface which cannot be decided: no other run does.
+  void require_decided() const {
+    if (!control_.resume || sweep_.loop().undecided() == 0) return;
+    bad_input(control_.resume->path, "a saved state of a surface that can be decided",
+              std::to_string(sweep_.loop().undecided()) + " triangles that are left");
   }
 
   // Refuses components that were chosen in another surface: the volume may have changed, with the same name, size and
@@ -148,6 +158,7 @@ class VolumeRun final : public SavedRun::State {
     std::uint32_t crc = 0;
     reader.value(has_crc);
     reader.value(crc);
+    reader.require_end();
     if (has_crc != 0) sweep_.pieces().expect_next_slice(crc, reader.path());
   }
 

@@ -34,6 +34,9 @@ class PieceSource {
   // Whether reading for the next piece is to begin before this one is simplified.
   virtual bool reads_early() const { return false; }
 
+  // The vertices that the next piece inherits.
+  virtual std::uint64_t inherited() const { return 0; }
+
   // Bytes held for what has been read.
   virtual std::uint64_t bytes() const { return 0; }
 };

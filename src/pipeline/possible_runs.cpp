@@ -47,7 +47,7 @@ constexpr std::array<Feature, 11> kFeatures{{
      [](const MeshOptions& options, const RunControl&) { return options.normals == Normals::kQuadric; }},
     {"values of another volume", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return options.values != nullptr; }},
-    {"states to be saved or resumed", kDevice | kLabels | kSimplify,
+    {"states to be saved or resumed", kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
     {"an observer", kDevice | kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},

@@ -45,7 +45,8 @@ std::string volume_text(const VolumeInfo& volume) {
 
 // A task as text. Its fields are taken apart by name, so a new field of a task does not compile before it is told here.
 std::string simplify_text(const SimplifyTask& task) {
-  [[maybe_unused]] const auto& [side, unit, error, level_errors, triangles, needed, zone, level_costs] = task;
+  [[maybe_unused]] const auto& [side, unit, error, level_errors, triangles, needed, zone, level_costs, normals,
+                                values] = task;
   [[maybe_unused]] const auto& [numbering, a0, retire, drop_specks, most_distance, cell, largest, normals_count,
                                 quality] = zone;
   std::string text = ", error" + numbers_text(std::array{error}) + ", triangles " + std::to_string(triangles);

@@ -47,6 +47,17 @@ void SlabPlanner::weigh_zone(const SlabRecord& record, const Held& held) {
   if (expected > 0) heavier_ = std::max(heavier_, static_cast<double>(held.zone_bytes) / expected);
 }
 
+void SlabPlanner::serialize(StateWriter& state) const {
+  state.value(recent_layers_);
+  state.value(recent_triangles_);
+}
+
+void SlabPlanner::serialize(StateReader& state) {
+  state.value(recent_layers_);
+  state.value(recent_triangles_);
+  state.require(recent_layers_ >= 0 && recent_layers_ <= layers_, "a slab of the volume");
+}
+
 double SlabPlanner::per_layer() const {
   return static_cast<double>(recent_triangles_) / static_cast<double>(std::max<std::int64_t>(recent_layers_, 1));
 }

@@ -36,11 +36,9 @@ class SlabPlanner {
   // Notes how much memory the zone took with a slab.
   void weigh_zone(const SlabRecord& record, const Held& held);
 
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive.value(recent_layers_);
-    archive.value(recent_triangles_);
-  }
+  // What is known of the last slab: written, and read. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   double per_layer() const;

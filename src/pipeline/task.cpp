@@ -101,6 +101,8 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
   task.simplify = resolve_simplification(options, measure_of(volume));
   task.simplify.needed = options.error.value > 0 || !has_cells(volume, options);
   task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
+  task.simplify.normals = task.has_normals();
+  task.simplify.values = options.values != nullptr;
   task.measured = control.measure;
   check_values(volume, options);
   return task;

@@ -26,6 +26,7 @@ struct SimplifyTask {
   bool needed = true;                // whether the surface goes through the simplifier at all
   ZoneOptions zone;
   std::vector<CostBits> level_costs;
+  bool normals = false, values = false;  // carried by vertices, and saved with them
 };
 
 // The facts about a surface that the simplifier needs, beside the options.

@@ -1,6 +1,7 @@
 #include "pipeline/volume_pieces.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "extract/values.hpp"
@@ -36,7 +37,7 @@ void VolumePieces::read_slices() {
   const std::int64_t read = window_->advance(first, end, plan_.ahead);
   if (values_window_) values_window_->advance(first, end, plan_.ahead);
   check_expected();
-  voxels_ += static_cast<std::uint64_t>(read * task_.volume.slice_samples());
+  read_.voxels += static_cast<std::uint64_t>(read * task_.volume.slice_samples());
   if (task_.measured) measure_samples(read);
 }
 
@@ -57,6 +58,8 @@ void VolumePieces::make(SurfacePiece& piece, MeshReport& report) {
   Stopwatch clock;
   const SlabCounts slab = extractor_.extract(*window_, plan_.layers, plan_.most_vertices, piece);
   planner_.note_extracted(slab);
+  range_.merge(read_.range);
+  voxels_ += std::exchange(read_, {}).voxels;
   add_extracted(slab, report);
   if (values_window_) {
     sample_values(*values_window_, extractor_.numbering(), field_.info().geometry.spacing, executor_, piece);
@@ -76,7 +79,7 @@ void VolumePieces::measure_samples(std::int64_t slices) {
     ranges[static_cast<std::size_t>(n)] =
         known != nullptr ? *known : sample_range(window_->slice(k), volume.type, volume.slice_samples());
   });
-  for (const SampleRange& range : ranges) range_.merge(range);
+  for (const SampleRange& range : ranges) read_.range.merge(range);
 }
 
 std::optional<std::uint32_t> VolumePieces::crc_of_next_slice() const {

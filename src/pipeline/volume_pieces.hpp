@@ -36,7 +36,7 @@ class VolumePieces final : public PieceSource {
   // Whether an exception came from reading. The pieces made so far are whole then.
   bool failed_reading() const { return failed_reading_; }
 
-  std::uint64_t voxels() const { return voxels_; }  // read
+  std::uint64_t voxels() const { return voxels_; }  // of the pieces made so far
   const SampleRange& range() const { return range_; }
   void set_range(const SampleRange& range) { range_ = range; }
 
@@ -47,13 +47,16 @@ class VolumePieces final : public PieceSource {
   // The checksum of the first slice that the next slab needs, or nothing if that slice has not been read.
   std::optional<std::uint32_t> crc_of_next_slice() const;
 
-  // Reads or writes the state between two slabs, with that of extractor and planner.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    extractor_.serialize(archive);
-    planner_.serialize(archive);
-    archive.value(range_);
-    archive.value(voxels_);
+  std::uint64_t inherited() const override { return extractor_.inherited(); }
+
+  // The state between two slabs, with that of extractor and planner: written, and read before the first one. Throws
+  // BadInput.
+  template <class State>
+  void serialize(State& state) {
+    extractor_.serialize(state);
+    planner_.serialize(state);
+    state.value(range_);
+    state.value(voxels_);
   }
 
  private:
@@ -69,6 +72,10 @@ class VolumePieces final : public PieceSource {
   std::optional<SliceWindow> window_;
   std::optional<SliceWindow> values_window_;
   SlabPlan plan_;  // of the slices that have been read
+  struct {
+    SampleRange range;
+    std::uint64_t voxels = 0;
+  } read_;  // for the next piece
   SampleRange range_;
   std::uint64_t voxels_ = 0;
   std::optional<std::uint32_t> expected_crc_;

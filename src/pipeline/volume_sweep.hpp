@@ -38,6 +38,7 @@ class VolumeSweep {
   void step();
 
   Loop& loop() { return *loop_; }
+  const Loop& loop() const { return *loop_; }
   VolumePieces& pieces() { return *pieces_; }
   std::int64_t layers() const { return layers_; }
   std::int64_t layers_done() const { return layers_ - extractor_->layers_left(); }

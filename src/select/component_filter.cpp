@@ -27,6 +27,22 @@ void ComponentFilter::apply(SurfacePiece& piece) {
   triangles_ += piece.triangles.size();
 }
 
+std::optional<std::uint64_t> ComponentFilter::inherited(std::uint64_t before) const {
+  if (before != front_is_kept_.size()) return std::nullopt;
+  return static_cast<std::uint64_t>(std::count(front_is_kept_.begin(), front_is_kept_.end(), 1));
+}
+
+void ComponentFilter::serialize(StateWriter& state) const {
+  state.list(front_is_kept_);
+  state.value(triangles_);
+}
+
+void ComponentFilter::serialize(StateReader& state) {
+  state.list(front_is_kept_);
+  for (const std::uint8_t kept : front_is_kept_) state.require(kept <= 1, "vertices that are kept or not");
+  state.value(triangles_);
+}
+
 void ComponentFilter::refuse() const {
   throw BadInput(path_ +
                  ": the volume has changed: expected the surface that components were chosen in, found another");

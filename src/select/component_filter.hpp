@@ -27,19 +27,14 @@ class ComponentFilter final : public PieceStage {
 
   std::uint64_t triangles() const { return triangles_; }  // kept so far
 
-  void serialize(StateWriter& state) override { serialize_with(state); }
-  void serialize(StateReader& state) override { serialize_with(state); }
+  std::optional<std::uint64_t> inherited(std::uint64_t before) const override;
+  void serialize(StateWriter& state) const override;
+  void serialize(StateReader& state) override;
 
   // Throws BadInput: the surface is not the one that components were chosen in.
   [[noreturn]] void refuse() const;
 
  private:
-  template <class Archive>
-  void serialize_with(Archive& archive) {
-    archive.list(front_is_kept_);
-    archive.value(triangles_);
-  }
-
   void find_parts(const SurfacePiece& piece);
   void judge_parts(const SurfacePiece& piece);
   bool agrees_with_front() const;

@@ -175,7 +175,7 @@ std::uint64_t ComponentFinder::bytes() const {
          seed_triangles_.capacity() * sizeof(std::uint64_t);
 }
 
-void ComponentFinder::serialize(StateWriter&) { throw std::logic_error("a search for components is not saved"); }
+void ComponentFinder::serialize(StateWriter&) const { throw std::logic_error("a search for components is not saved"); }
 
 void ComponentFinder::serialize(StateReader&) { throw std::logic_error("a search for components is not saved"); }
 

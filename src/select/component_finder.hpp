@@ -37,7 +37,7 @@ class ComponentFinder final : public PieceStage {
   std::uint64_t bytes() const override;
 
   // Throw std::logic_error: no state is saved of this short pass, and a resumed run makes it anew.
-  void serialize(StateWriter& state) override;
+  void serialize(StateWriter& state) const override;
   void serialize(StateReader& state) override;
 
  private:

@@ -32,6 +32,11 @@ Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
 // The number of a cell. It is clamped, as mesh files may lie anywhere.
 std::int64_t cell_number(double cells) { return static_cast<std::int64_t>(std::floor(std::clamp(cells, -1e15, 1e15))); }
 
+bool is_finite(const ExtractedSurface::Corners& corners) {
+  const Vector sum = corners[0] + corners[1] + corners[2];
+  return std::isfinite(sum[0] + sum[1] + sum[2]);
+}
+
 // Puts the longest side first.
 void turn_longest_side_first(ExtractedSurface::Corners& t) {
   std::array<double, 3> squared{};
@@ -347,6 +352,24 @@ std::size_t ExtractedSurface::slot_of(const Piece& piece, std::uint64_t key) {
 void ExtractedSurface::forget_below(double z) {
   const double lowest = (layer_of(z) - kShift - 1) * cell_[2] - most_;  // a layer more than that of z, for rounding
   std::erase_if(pieces_, [&](const Piece& piece) { return piece.top < lowest; });
+}
+
+void ExtractedSurface::serialize(StateWriter& state) const {
+  state.value(static_cast<std::uint64_t>(pieces_.size()));
+  state.value(complete_below_);
+  for (const Piece& piece : pieces_) state.list(piece.triangles);
+}
+
+// Grids are made anew. An answer does not depend on them, nor on pieces that have been forgotten.
+void ExtractedSurface::serialize(StateReader& state) {
+  const std::size_t pieces = state.count(sizeof(std::uint64_t));
+  state.value(complete_below_);
+  Array<Corners> triangles;
+  for (std::size_t n = 0; n < pieces; ++n) {
+    state.list(triangles);
+    for (const Corners& corners : triangles) state.require(is_finite(corners), "a surface whose places are finite");
+    append(triangles, complete_below_);
+  }
 }
 
 std::uint64_t ExtractedSurface::bytes() const {

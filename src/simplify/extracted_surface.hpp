@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "files/state_file.hpp"
 #include "lattice/triangles.hpp"
 #include "lattice/vec3.hpp"
 #include "parallel/array.hpp"
@@ -48,25 +49,9 @@ class ExtractedSurface {
 
   std::uint64_t bytes() const;
 
-  // Reads or writes the state between two appends.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    std::uint64_t count = pieces_.size();
-    archive.value(count);
-    archive.value(complete_below_);
-    if constexpr (Archive::kReads) pieces_.clear();
-    for (std::uint64_t n = 0; n < count; ++n) {
-      if constexpr (Archive::kReads) pieces_.emplace_back();
-      Piece& piece = pieces_[n];
-      archive.list(piece.triangles);
-      archive.list(piece.listed);
-      archive.list(piece.slots);
-      archive.value(piece.levels);
-      archive.value(piece.top);
-      archive.value(piece.highest);
-      archive.value(piece.lowest);
-    }
-  }
+  // The triangles between two appends: written, and read into an empty surface. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state);
 
  private:
   using Cell = std::array<std::int64_t, 3>;

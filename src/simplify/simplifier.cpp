@@ -144,6 +144,24 @@ void Simplifier::close_gaps() {
   if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
 }
 
+void Simplifier::serialize(StateWriter& state) const {
+  SimplifierCounts{counts(), rounds(), appended_, dropped_}.serialize(state);
+  for (const SurfaceDefects& defects : defects_) state.value(defects);
+  zone_.serialize(state);
+}
+
+void Simplifier::serialize(StateReader& state, const PartShape& shape) {
+  SimplifierCounts saved;
+  saved.serialize(state);
+  counts_before_ = saved.decisions;
+  rounds_before_ = saved.rounds;
+  appended_ = saved.appended;
+  dropped_ = saved.dropped;
+  for (SurfaceDefects& defects : defects_) state.value(defects);
+  zone_.serialize(state, shape);
+  state.require(saved.held() == zone_.triangle_count(), "as many triangles as are counted");
+}
+
 // Inspects vertices. The faces that name a vertex must be the one fan that a walk around it finds, and its neighbours
 // must differ.
 SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,

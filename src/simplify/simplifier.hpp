@@ -74,22 +74,9 @@ class Simplifier {
   const SurfaceDefects& defects(std::size_t level) const { return defects_[level]; }
   const SurfaceDefects& defects() const { return defects_.back(); }
 
-  // Reads or writes the state between two slabs.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    DecisionCounts counted = counts();
-    std::uint64_t passed = rounds();
-    archive.value(counted);
-    archive.value(passed);
-    archive.value(appended_);
-    archive.value(dropped_);
-    for (SurfaceDefects& defects : defects_) archive.value(defects);
-    zone_.serialize(archive);
-    if constexpr (Archive::kReads) {
-      counts_before_ = counted;
-      rounds_before_ = passed;
-    }
-  }
+  // The state between two pieces: written, and read before the first one. Throws BadInput.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state, const PartShape& shape);
 
  private:
   class Source;

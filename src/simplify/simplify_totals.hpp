@@ -38,4 +38,22 @@ struct SurfaceDefects {
   }
 };
 
+// The counts of an unfinished simplification, as they are saved.
+struct SimplifierCounts {
+  DecisionCounts decisions;
+  std::uint64_t rounds = 0;
+  std::uint64_t appended = 0;  // triangles
+  std::uint64_t dropped = 0;   // triangles that have been handed over
+
+  std::uint64_t held() const { return appended - decisions.removed - dropped; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive.value(decisions);
+    archive.value(rounds);
+    archive.value(appended);
+    archive.value(dropped);
+  }
+};
+
 }  // namespace isoweave

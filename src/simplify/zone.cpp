@@ -66,6 +66,30 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
   settle_vertices(on_front, executor);
 }
 
+void Zone::serialize(StateWriter& state) const {
+  write_part(state, view(), levels, front_);
+  state.value(limit);
+  if (extracted_surface_) extracted_surface_->serialize(state);
+}
+
+void Zone::serialize(StateReader& state, const PartShape& shape) {
+  ZonePart part = read_part(state, shape);
+  state.value(limit);
+  state.require(limit <= options.retire, "a limit of costs that the run has");
+  if (extracted_surface_) extracted_surface_->serialize(state);
+  vertex_array_ = std::move(part.vertices);
+  state_array_ = std::move(part.states);
+  normal_array_ = std::move(part.normals);
+  normal_quadric_array_ = std::move(part.normal_quadrics);
+  value_array_ = std::move(part.values);
+  triangle_array_ = std::move(part.triangles);
+  levels = std::move(part.levels);
+  front_ = std::move(part.front);
+  unkeyed_edges_ = std::move(part.unkeyed_edges);
+  forget_turns();
+  first_unsettled_ = triangle_count();
+}
+
 // Shows the arrays in the view. Must be called when an array has changed its size.
 void Zone::show_arrays() {
   const auto show = [](auto& view, auto& array) { view = {array.data(), array.size()}; };

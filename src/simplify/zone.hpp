@@ -14,6 +14,7 @@
 #include "simplify/key_countdown.hpp"
 #include "simplify/piece_order.hpp"
 #include "simplify/star.hpp"
+#include "simplify/zone_part.hpp"
 #include "simplify/zone_view.hpp"
 
 namespace isoweave {
@@ -32,13 +33,6 @@ struct SettledVertices {
     old.clear();
     first_new = end = 0;
   }
-};
-
-// The facts about a vertex in the mesh of a level before the last one.
-struct LevelVertex {
-  std::uint64_t number = kNotHandedOver;  // with the label, its receipt
-  std::uint32_t label = 0;
-  bool final = false;  // no edge has a key within the level's error
 };
 
 struct TriangleRange {
@@ -89,26 +83,13 @@ class Zone : public ZoneView {
 
   std::uint64_t bytes() const;
 
-  // Reads or writes the state between two appends, where all pieces are manifold. Turns are not part of the state: with
-  // the next append all undecided vertices count as settled.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive.list(vertex_array_);
-    archive.list(state_array_);
-    archive.list(normal_array_);
-    archive.list(normal_quadric_array_);
-    archive.list(value_array_);
-    archive.list(triangle_array_);
-    for (Array<LevelVertex>& level : levels) archive.list(level);
-    if (extracted_surface_) extracted_surface_->serialize(archive);
-    archive.list(front_);
-    archive.list(unkeyed_edges_);
-    archive.value(limit);
-    if constexpr (Archive::kReads) {
-      forget_turns();
-      first_unsettled_ = triangle_count();
-    }
-  }
+  // The undecided surface between two appends, where all pieces are manifold: written, and read into an empty zone.
+  // Turns are no part of it: with the next append all undecided vertices count as settled.
+  void serialize(StateWriter& state) const;
+  void serialize(StateReader& state, const PartShape& shape);
+
+  // The vertices that the next piece inherits.
+  std::size_t front_size() const { return front_.size(); }
 
  private:
   class Linker;

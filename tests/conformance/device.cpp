@@ -20,7 +20,7 @@ SurfaceRun sweep_on(std::unique_ptr<DeviceEngine> engine, SliceSource& source, s
   const World world;
   MemorySink sink;
   DeviceExtractor extractor(*engine);
-  DeviceBackEnd back_end(*engine, world, sink, executor, true);
+  DeviceBackEnd back_end(*engine, SimplifyTask(), world, sink, executor, true);
   SliceWindow window(source, extractor.slices_for(1).first);
   SurfacePiece piece;
   SurfaceRun run;
@@ -220,7 +220,7 @@ TEST(DeviceEngine, IsRefusedWhatItCannotDo) {
   control.schedule = Schedule::kQueue;
   EXPECT_THROW(mesh_volume(*generate_volume(volume), sink, options, control), std::invalid_argument);
   control.schedule = Schedule::kAutomatic;
-  control.checkpoint.folder = "anywhere";
+  options.max_distance = Length::voxels(1);
   EXPECT_THROW(mesh_volume(*generate_volume(volume), sink, options, control), std::invalid_argument);
 }
 

@@ -12,6 +12,7 @@
 #include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
+#include "saved_runs.hpp"
 #include "volume/formats/formats.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
@@ -418,6 +419,13 @@ void put_state(Seeds& seeds) {
   }
 }
 
+void put_state_bodies(Seeds& seeds) {
+  for (std::size_t run = 0; run < fuzz::kSavedRuns; ++run) {
+    const TempFolder folder;
+    seeds.put("state_body", static_cast<char>(run) + fuzz::save_run(run, folder / "").body);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -450,5 +458,6 @@ int main(int argc, char** argv) {
   put_options(seeds);
   put_label_names(seeds);
   put_state(seeds);
+  put_state_bodies(seeds);
   return 0;
 }

@@ -1,5 +1,4 @@
-// Reads the input as a saved state, under a checksum that fits. What lies behind a state's header is the memory of the
-// run itself, which only the checksum protects.
+// Reads the header of the input as a saved state, under a checksum that fits.
 #include <cstring>
 #include <vector>
 

@@ -1,0 +1,370 @@
+#include "simplify/zone_part.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace isoweave {
+namespace {
+
+// Triangles from their first vertices on, by half-edges, in the order of a part.
+class PartOrder {
+ public:
+  PartOrder(const ZoneView& zone, std::span<const Index> front) : zone_(zone), place_(zone.vertices.size(), kNone) {
+    list_vertices(front);
+    list_triangles();
+  }
+
+  std::span<const Index> vertices() const { return vertices_; }
+  std::span<const Index> triangles() const { return triangles_; }
+  Index place(Index v) const { return place_[v]; }
+
+ private:
+  // Lists the vertices that are held: those of triangles, and those to which later pieces add.
+  void list_vertices(std::span<const Index> front) {
+    for (const Index v : front) place_[v] = 0;
+    for (const Triangle& triangle : zone_.triangles) {
+      if (triangle.sides[0].vertex == kNone) continue;
+      for (const HalfEdge& side : triangle.sides) place_[side.vertex] = 0;
+    }
+    for (Index v = 0; v < place_.size(); ++v) {
+      if (place_[v] != kNone) vertices_.push_back(v);
+    }
+    std::sort(vertices_.begin(), vertices_.end(),
+              [&](Index a, Index b) { return zone_.vertices[a].id < zone_.vertices[b].id; });
+    for (std::size_t n = 0; n < vertices_.size(); ++n) place_[vertices_[n]] = static_cast<Index>(n);
+  }
+
+  void list_triangles() {
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      if (!zone_.alive(half_edge(t, 0))) continue;
+      Index first = half_edge(t, 0);
+      for (Index c = 1; c < 3; ++c) {
+        if (place(zone_.origin(half_edge(t, c))) < place(zone_.origin(first))) first = half_edge(t, c);
+      }
+      triangles_.push_back(first);
+    }
+    // No two triangles have the first two vertices in common, in this order.
+    std::sort(triangles_.begin(), triangles_.end(), [&](Index a, Index b) {
+      return std::pair(place(zone_.origin(a)), place(zone_.destination(a))) <
+             std::pair(place(zone_.origin(b)), place(zone_.destination(b)));
+    });
+  }
+
+  const ZoneView& zone_;
+  std::vector<Index> place_;      // per vertex of the zone; kNone: it is not held
+  std::vector<Index> vertices_;   // of the zone
+  std::vector<Index> triangles_;  // half-edges
+};
+
+// The three half-edges of a triangle from one of them on.
+std::array<Index, 3> sides_from(Index h) { return {h, next(h), previous(h)}; }
+
+bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_finite(const Quadric& q) {
+  return is_finite(Vec3{q.xx, q.xy, q.xz}) && is_finite(Vec3{q.yy, q.yz, q.zz}) && is_finite(q.b) && std::isfinite(q.c);
+}
+
+bool is_finite(const NormalQuadric& q) {
+  return is_finite(q.gradient[0]) && is_finite(q.gradient[1]) && is_finite(q.gradient[2]) && is_finite(q.offset) &&
+         std::isfinite(q.weight);
+}
+
+bool is_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
+// Reads the fields of a part, each of which is checked by itself.
+class PartReader {
+ public:
+  PartReader(StateReader& state, const PartShape& shape) : state_(state), shape_(shape) {}
+
+  ZonePart read() {
+    read_vertices();
+    read_attributes();
+    part_.levels.resize(shape_.ends.size() - 1);
+    for (std::size_t level = 0; level < part_.levels.size(); ++level) read_level(level);
+    read_triangles();
+    read_front();
+    return std::move(part_);
+  }
+
+ private:
+  std::size_t vertices() const { return part_.vertices.size(); }
+
+  void read_vertices() {
+    const std::size_t count = state_.count(sizeof(std::uint64_t));
+    state_.require(count < (Index{1} << 31), "fewer vertices than a zone may hold");
+    part_.vertices.resize(count);
+    part_.states.resize(count);
+    std::fill(part_.vertices.begin(), part_.vertices.end(), Vertex());
+    state_.each<std::uint64_t>(count, [&](std::size_t n, std::uint64_t id) {
+      state_.require(n == 0 || part_.vertices[n - 1].id < id, "ids that ascend");
+      part_.vertices[n].id = id;
+    });
+    state_.each<Vec3>(count, [&](std::size_t n, const Vec3& position) {
+      state_.require(is_finite(position), "positions that are finite");
+      part_.vertices[n].position = position;
+    });
+    state_.each<Quadric>(count, [&](std::size_t n, const Quadric& quadric) {
+      state_.require(is_finite(quadric), "quadrics that are finite");
+      part_.vertices[n].quadric = quadric;
+    });
+    read_receipts(
+        shape_.ends.back(), [&](std::size_t n) -> std::uint64_t& { return part_.vertices[n].number; },
+        [&](std::size_t n) -> std::uint32_t& { return part_.vertices[n].label; },
+        [&](std::size_t n, bool final) { part_.states[n] = final ? VertexState::kFinal : VertexState::kComplete; });
+  }
+
+  template <class Number, class Label, class SetFinal>
+  void read_receipts(const Receipt& end, const Number& number, const Label& label, const SetFinal& set_final) {
+    state_.each<std::uint8_t>(vertices(), [&](std::size_t n, std::uint8_t final) {
+      state_.require(final <= 1, "vertices that are final or not");
+      set_final(n, final == 1);
+    });
+    state_.each<std::uint64_t>(vertices(), [&](std::size_t n, std::uint64_t value) {
+      state_.require(value == kNotHandedOver || value < end.number, "numbers of vertices that have been written");
+      number(n) = value;
+    });
+    state_.each<std::uint32_t>(vertices(), [&](std::size_t n, std::uint32_t value) {
+      state_.require(number(n) == kNotHandedOver || value < std::max<std::uint32_t>(end.label, 1),
+                     "labels of components");
+      label(n) = value;
+    });
+  }
+
+  void read_attributes() {
+    const auto read_all = [&](bool has, auto& array, const char* what) {
+      using T = std::remove_cvref_t<decltype(array[0])>;
+      array.resize(has ? vertices() : 0);
+      state_.each<T>(array.size(), [&](std::size_t n, const T& value) {
+        if constexpr (!std::is_same_v<T, float>) state_.require(is_finite(value), what);
+        array[n] = value;
+      });
+    };
+    read_all(shape_.normals, part_.normals, "normals that are finite");
+    read_all(shape_.normal_quadrics, part_.normal_quadrics, "quadrics of normals that are finite");
+    read_all(shape_.values, part_.values, "");
+  }
+
+  void read_level(std::size_t level) {
+    Array<LevelVertex>& facts = part_.levels[level];
+    facts.resize(vertices());
+    std::fill(facts.begin(), facts.end(), LevelVertex());
+    read_receipts(
+        shape_.ends[level], [&](std::size_t n) -> std::uint64_t& { return facts[n].number; },
+        [&](std::size_t n) -> std::uint32_t& { return facts[n].label; },
+        [&](std::size_t n, bool final) { facts[n].final = final; });
+  }
+
+  void read_triangles() {
+    using Three = std::array<std::uint32_t, 3>;
+    const std::size_t count = state_.count(sizeof(Three));
+    state_.require(count < kWritten / 4, "fewer triangles than a zone may hold");
+    part_.triangles.resize(count);
+    std::fill(part_.triangles.begin(), part_.triangles.end(), Triangle());
+    const auto side = [&](std::size_t t, std::size_t c) -> HalfEdge& { return part_.triangles[t].sides[c]; };
+    state_.each<Three>(count, [&](std::size_t t, const Three& corners) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        state_.require(corners[c] < vertices() && corners[c] != corners[(c + 1) % 3], "triangles of three vertices");
+        side(t, c).vertex = corners[c];
+      }
+    });
+    state_.each<std::array<Key, 3>>(count, [&](std::size_t t, const std::array<Key, 3>& keys) {
+      for (std::size_t c = 0; c < 3; ++c) side(t, c).key = keys[c];
+    });
+    state_.each<Three>(count, [&](std::size_t t, const Three& ties) { part_.triangles[t].tie_low = ties; });
+    state_.each<std::uint8_t>(count, [&](std::size_t t, std::uint8_t written) {
+      state_.require(written < 8, "bits for three sides");
+      for (std::size_t c = 0; c < 3; ++c) side(t, c).twin = (written >> c & 1) != 0 ? kWritten : kNone;
+    });
+    state_.each<std::uint32_t>(count, [&](std::size_t t, std::uint32_t levels) {
+      state_.require(levels < shape_.ends.size(), "triangles of the levels of the run");
+      part_.triangles[t].levels = levels;
+    });
+  }
+
+  void read_front() {
+    const std::size_t count = state_.count(sizeof(Index));
+    part_.front.resize(count);
+    state_.each<Index>(count, [&](std::size_t n, Index v) {
+      state_.require(v < vertices() && part_.states[v] == VertexState::kComplete,
+                     "a front of vertices that are not final");
+      part_.states[v] = VertexState::kIncomplete;
+      part_.front[n] = v;
+    });
+  }
+
+  StateReader& state_;
+  const PartShape& shape_;
+  ZonePart part_;
+};
+
+// Links a part: twins, and where the fans of vertices start. Refuses a surface that no zone could hold.
+class PartLinker {
+ public:
+  PartLinker(StateReader& state, ZonePart& part, CostBits retire)
+      : state_(state), part_(part), retire_(retire), zone_(part.view()) {}
+
+  void link() {
+    list_sides();
+    for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+      while (end < sides_.size() && sides_[end].edge == sides_[begin].edge) ++end;
+      link_edge({sides_.data() + begin, end - begin});
+    }
+    sides_ = {};
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      for (Index c = 0; c < 3; ++c) settle(half_edge(t, c));
+    }
+    start_fans();
+  }
+
+ private:
+  struct Side {
+    std::uint64_t edge;  // its smaller vertex, and its larger one
+    Index half_edge;
+  };
+
+  void list_sides() {
+    sides_.reserve(3 * part_.triangles.size());
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      for (Index c = 0; c < 3; ++c) {
+        const Index h = half_edge(t, c);
+        const Index a = zone_.origin(h);
+        const Index b = zone_.destination(h);
+        sides_.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), h});
+      }
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+      return std::pair(a.edge, a.half_edge) < std::pair(b.edge, b.half_edge);
+    });
+  }
+
+  void link_edge(std::span<const Side> sides) {
+    if (sides.size() == 1) return;
+    const Index a = sides[0].half_edge;
+    const Index b = sides[1].half_edge;
+    const bool good = sides.size() == 2 && zone_.origin(a) == zone_.destination(b) && zone_.twin(a) == kNone &&
+                      zone_.twin(b) == kNone && zone_.key(a) == zone_.key(b) && zone_.tie_low(a) == zone_.tie_low(b);
+    state_.require(good, "edges whose two sides fit together");
+    zone_.set_twin(a, b);
+    zone_.set_twin(b, a);
+  }
+
+  bool is_incomplete(Index v) const { return zone_.states[v] == VertexState::kIncomplete; }
+
+  // Checks the key of a side, or sets it aside where an end is incomplete.
+  void settle(Index h) {
+    const Index ends[2] = {zone_.origin(h), zone_.destination(h)};
+    if (is_incomplete(ends[0]) || is_incomplete(ends[1])) {
+      state_.require(zone_.key(h) == 0, "no keys where a vertex is incomplete");
+      if (zone_.represents_edge(h)) part_.unkeyed_edges.push_back(h);
+      return;
+    }
+    state_.require(zone_.cost(h) != kUnknownCost, "keys of edges");
+    for (const Index v : ends) {
+      const bool live = zone_.cost(h) <= retire_;
+      state_.require(!live || zone_.states[v] != VertexState::kFinal, "no edge to decide at a final vertex");
+    }
+  }
+
+  // A fan starts where a vertex lies on a border, or anywhere.
+  void start_fans() {
+    std::vector<std::uint32_t> corners(part_.vertices.size(), 0);
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      for (Index c = 0; c < 3; ++c) {
+        const Index h = half_edge(t, c);
+        Index& start = zone_.vertices[zone_.origin(h)].half_edge;
+        if (start == kNone || !exists(zone_.twin(h))) start = h;
+        ++corners[zone_.origin(h)];
+      }
+    }
+    for (Index v = 0; v < corners.size(); ++v) {
+      state_.require(corners[v] > 0 || is_incomplete(v), "vertices of triangles");
+      if (zone_.states[v] == VertexState::kComplete) check_fan(v, corners[v]);
+    }
+  }
+
+  // A vertex with an edge to decide has all its triangles here, in one fan.
+  void check_fan(Index v, std::uint32_t corners) {
+    const Index first = zone_.vertices[v].half_edge;
+    std::uint32_t faces = 0;
+    Index h = first;
+    do {
+      state_.require(zone_.twin(h) != kWritten && zone_.twin(previous(h)) != kWritten && ++faces <= corners,
+                     "whole stars around vertices that are not final");
+      h = zone_.rotate(h);
+    } while (h != first && exists(h));
+    state_.require(faces == corners, "one fan of triangles around each vertex that is not final");
+  }
+
+  StateReader& state_;
+  ZonePart& part_;
+  const CostBits retire_;
+  ZoneView zone_;
+  std::vector<Side> sides_;
+};
+
+}  // namespace
+
+ZoneView ZonePart::view() {
+  const auto show = [](auto& array) { return std::span(array.data(), array.size()); };
+  ZoneView view;
+  view.vertices = show(vertices);
+  view.states = show(states);
+  view.normals = show(normals);
+  view.triangles = show(triangles);
+  return view;
+}
+
+void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<LevelVertex>> levels,
+                std::span<const Index> front) {
+  const PartOrder order(zone, front);
+  const auto each_vertex = [&](const auto& field) {
+    state.each(order.vertices().size(), [&](std::size_t n) { return field(order.vertices()[n]); });
+  };
+  const auto each_triangle = [&](const auto& field) {
+    state.each(order.triangles().size(), [&](std::size_t n) { return field(sides_from(order.triangles()[n])); });
+  };
+  state.value(static_cast<std::uint64_t>(order.vertices().size()));
+  each_vertex([&](Index v) { return zone.vertices[v].id; });
+  each_vertex([&](Index v) { return zone.vertices[v].position; });
+  each_vertex([&](Index v) { return zone.vertices[v].quadric; });
+  each_vertex([&](Index v) { return static_cast<std::uint8_t>(zone.states[v] == VertexState::kFinal); });
+  each_vertex([&](Index v) { return zone.vertices[v].number; });
+  each_vertex([&](Index v) { return zone.vertices[v].label; });
+  if (!zone.normals.empty()) each_vertex([&](Index v) { return zone.normals[v]; });
+  if (!zone.normal_quadrics.empty()) each_vertex([&](Index v) { return zone.normal_quadrics[v]; });
+  if (!zone.values.empty()) each_vertex([&](Index v) { return zone.values[v]; });
+  for (const Array<LevelVertex>& level : levels) {
+    each_vertex([&](Index v) { return static_cast<std::uint8_t>(level[v].final); });
+    each_vertex([&](Index v) { return level[v].number; });
+    each_vertex([&](Index v) { return level[v].label; });
+  }
+  using Sides = std::array<Index, 3>;
+  const auto of_each = [](const Sides& sides, const auto& field) {
+    return std::array{field(sides[0]), field(sides[1]), field(sides[2])};
+  };
+  state.value(static_cast<std::uint64_t>(order.triangles().size()));
+  each_triangle(
+      [&](const Sides& sides) { return of_each(sides, [&](Index h) { return order.place(zone.origin(h)); }); });
+  each_triangle([&](const Sides& sides) { return of_each(sides, [&](Index h) { return zone.key(h); }); });
+  each_triangle([&](const Sides& sides) { return of_each(sides, [&](Index h) { return zone.tie_low(h); }); });
+  each_triangle([&](const Sides& sides) {
+    unsigned written = 0;
+    for (std::size_t c = 0; c < 3; ++c) written |= unsigned{zone.twin(sides[c]) == kWritten} << c;
+    return static_cast<std::uint8_t>(written);
+  });
+  each_triangle([&](const Sides& sides) { return zone.triangles[sides[0] >> 2].levels; });
+  state.value(static_cast<std::uint64_t>(front.size()));
+  state.each(front.size(), [&](std::size_t n) { return order.place(front[n]); });
+}
+
+ZonePart read_part(StateReader& state, const PartShape& shape) {
+  ZonePart part = PartReader(state, shape).read();
+  PartLinker(state, part, shape.retire).link();
+  return part;
+}
+
+}  // namespace isoweave
