@@ -1,4 +1,4 @@
-// The options that choose which components of a surface are kept.
+// The options of mesh and simplify that choose which components of a surface are kept.
 #pragma once
 
 #include <string>

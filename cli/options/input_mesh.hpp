@@ -1,4 +1,4 @@
-// Meshes as verbs read them.
+// The meshes that check, compare, render, simplify and view read.
 #pragma once
 
 #include <cstdint>

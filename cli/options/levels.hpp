@@ -1,4 +1,5 @@
-// Levels of detail: several meshes from one sweep, each in a file of its own or all in one.
+// Levels of detail of mesh and simplify (--lods): several meshes from one sweep, each in a file of its own or all in
+// one.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The output of a mesh: the options that mesh and simplify share.
+// The mesh that mesh and simplify write.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// When simplification stops: at an error, at several, or at a number of triangles.
+// When the simplification of mesh and simplify stops: at an error, at several, or at a number of triangles.
 #pragma once
 
 #include <cstdint>

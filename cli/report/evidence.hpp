@@ -1,4 +1,4 @@
-// The files beside a mesh that tell of its run: the report and the page.
+// The files beside a mesh of mesh or simplify that tell of its run: the report and the page.
 #pragma once
 
 #include <functional>

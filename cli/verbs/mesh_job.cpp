@@ -163,7 +163,6 @@ class MeshJob {
   // Checks all options that need no file.
   void check() const {
     parse_slab(arguments_.slab, 1);
-    check_page(arguments_.page, arguments_.output);
     check_watch(arguments_.watch);
     check_possible();
     check_labels(arguments_);
@@ -174,6 +173,7 @@ class MeshJob {
       check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
       check_different({arguments_.color_by, output.path});
     }
+    check_page(arguments_.page, arguments_.output);
   }
 
   // Refuses options that do not go together, before any file is looked at. A volume and an observer that are not the

@@ -1,4 +1,4 @@
-// The labels of a map that are asked for, and their names.
+// The labels of a map that mesh --labels asks for, and their names.
 #pragma once
 
 #include <cstdint>

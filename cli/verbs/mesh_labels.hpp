@@ -1,4 +1,4 @@
-// Label maps: a mesh for each label, each in a file of its own.
+// mesh --labels: a mesh for each label, each in a file of its own.
 #pragma once
 
 #include <functional>

@@ -138,11 +138,11 @@ void run_simplify(const SimplifyArguments& arguments) {
   SimplifyOptions options = simplify_options(arguments, "");  // finds errors in them now
   check_possible(arguments, options, control);
   const ComponentRule rule = component_rule(arguments.components);
-  check_page(arguments.page, arguments.output);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({arguments.input, output.path, run.report, arguments.page.path});
   }
+  check_page(arguments.page, arguments.output);
 
   exit_on_signal();
   InputMesh input = read_input_mesh(arguments.input, arguments.reading, arguments.weld);

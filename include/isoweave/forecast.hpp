@@ -46,7 +46,7 @@ void require_memory(const Forecast& forecast, std::uint64_t cap, const std::stri
 
 // Refuses a cap on memory that a run would not keep even while it reads the volume. Reads nothing, where forecast_mesh
 // reads a part.
-// @throws OverMemory, and std::invalid_argument for a negative error
+// @throws OverMemory; BadInput and std::invalid_argument for a volume that mesh_volume refuses as well
 void require_memory_to_read(SliceSource& volume, const MeshOptions& options, const RunControl& control);
 
 }  // namespace isoweave
