@@ -5,10 +5,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "options.hpp"
-#include "output.hpp"
+#include "options/values.hpp"
+#include "report/print.hpp"
 #include "signals.hpp"
-#include "verbs.hpp"
+#include "verbs/verbs.hpp"
 
 namespace isoweave::cli {
 namespace {

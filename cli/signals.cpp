@@ -6,7 +6,7 @@
 #include <csignal>
 #include <string_view>
 
-#include "output.hpp"
+#include "report/print.hpp"
 
 namespace isoweave::cli {
 namespace {

@@ -4,7 +4,7 @@ string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
 # Lines of 32 bytes: compilers are slow on a single one.
 string(REPEAT "....," 32 line)
 string(REGEX REPLACE "(${line})" "\\1\n" bytes "${bytes}")
-file(WRITE ${TO} "#include \"page_template.hpp\"
+file(WRITE ${TO} "#include \"page/page_template.hpp\"
 
 namespace isoweave::cli {
 namespace {

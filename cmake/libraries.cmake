@@ -5,9 +5,9 @@
 set(ISOWEAVE_CORE_ROOMS system parallel lattice extract select simplify device measure output pipeline)
 set(ISOWEAVE_CORE_FILES
     files/atomic_file.cpp files/crc32.cpp files/from_chars.cpp files/header_text.cpp files/input_file.cpp files/length_units.cpp
-    files/printable.cpp files/state_file.cpp
+    files/output_file.cpp files/printable.cpp files/state_file.cpp
     mesh/mesh_in_memory.cpp mesh/read/match_place.cpp mesh/read/welder.cpp
-    volume/axes.cpp volume/fields.cpp volume/generate.cpp volume/histogram.cpp volume/label_box.cpp volume/label_numbers.cpp volume/labels.cpp
+    volume/axes.cpp volume/fields.cpp volume/generate.cpp volume/histogram.cpp volume/histogram_counter.cpp volume/label_box.cpp volume/label_numbers.cpp volume/labels.cpp
     volume/noise.cpp volume/part_of_volume.cpp volume/row_source.cpp volume/sample_type.cpp volume/samples.cpp
     volume/slice_window.cpp volume/smoothed_mask.cpp volume/volume_in_memory.cpp volume/volume_sizes.cpp)
 

@@ -154,6 +154,16 @@ class MeshInMemory final : public MeshSink {
   std::array<double, 3> offset_;
 };
 
+// The formats of mesh files that open_mesh_file writes.
+enum class MeshFormat : std::uint8_t { kPly, kStl, kObj, kOff, kGlb, kVtp, k3mf, kPrecomputed };
+
+// The format of a mesh file, by the ending of its name in any case.
+// @throws CannotWrite when the ending is unknown
+MeshFormat mesh_format(const std::string& path);
+
+// Whether a format has a place for a number at each vertex (MeshFileOptions::values).
+bool holds_values(MeshFormat format);
+
 struct MeshFileOptions {
   bool normals = false;               // STL, 3MF and neuroglancer have no place for them and ignore them
   std::vector<std::string> comments;  // one line each, into the file where the format has a place for them

@@ -53,6 +53,11 @@ enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
 // origin.
 std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space);
 
+// The place in the output of a point of the volume, by its indices i, j, k. They count samples, from 0, and need not be
+// whole or inside the volume. For what a program shows beside a mesh: the box of the volume, its slices. Relative to no
+// offset.
+std::array<double, 3> output_place(const VolumeInfo& volume, OutputSpace space, const std::array<double, 3>& index);
+
 // Everything that the mesh of a volume depends on.
 struct MeshOptions : SurfaceOptions, SimplifyOptions, AttributeOptions {
   OutputSpace space = OutputSpace::kAsVolume;

@@ -22,14 +22,6 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// The kinds of runs: the mesh of a volume, the meshes of labels, a choice of components, a mesh from a mesh.
-enum class RunKind : std::uint8_t { kMesh, kLabels, kComponents, kSimplify };
-
-// Checks that the options of a run go together, by one table for all runs. Every run calls it. Checks that need the
-// volume are made when the run begins.
-// @throws std::invalid_argument, naming both, for two options that do not go together
-void require_possible(RunKind kind, const MeshOptions& options, const RunControl& control);
-
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
 // and a warning. With a checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a
 // source that fails in the middle. A mesh file kept in parts is read back when it is opened again and when it is
@@ -105,23 +97,6 @@ ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& opt
 // error. It is a twentieth of the diagonal of the volume, or of the box around the mesh.
 double most_shape_error(const VolumeInfo& volume);
 double most_shape_error(const TriangleMesh& mesh);
-
-// The forecast of a run, from a sample of the volume.
-struct Forecast {
-  std::uint64_t triangles_extracted = 0;
-  std::uint64_t triangles = 0, vertices = 0;  // written
-  std::uint64_t peak_bytes = 0;               // of the process
-  std::uint64_t least_bytes = 0;              // the smallest RunControl::memory that should do
-  double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
-};
-
-// Forecasts a run. Reads slices at up to 24 places, extracts the surface between them and simplifies a part of it, in a
-// small part of the time of the run. Dropped components are not known here: triangles and vertices are upper bounds
-// then. A source can be read once only, so this one is of no use afterwards. Where skipping slices means decompressing
-// them, only the first half gigabyte is looked at.
-// @throws what mesh_volume throws
-// @determinism All fields but `seconds`.
-Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 // Simplifies a mesh by the same rules, one piece of its triangles after the other. Vertices on non-manifold or badly
 // oriented edges, and vertices whose triangles form more than one fan, are locked: they stay where they are. Triangles

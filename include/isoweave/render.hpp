@@ -59,6 +59,14 @@ struct Picture {
 // @determinism The same picture for any number of threads.
 Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options = {}, std::span<const float> quality = {});
 
+// The least and the largest of the finite numbers: the range that a picture takes where its options name none. The
+// first is larger than the second where there are none.
+std::array<double, 2> finite_range(std::span<const float> numbers);
+
+// Refuses a file that write_png could not write, before a picture is made in vain.
+// @throws CannotWrite as write_png
+void require_png(const std::string& path);
+
 // Writes a picture as PNG of 8 bits, without alpha where all pixels are opaque. The file is complete or absent.
 // @throws CannotWrite where the file cannot be written, and in builds without libpng
 void write_png(const std::string& path, const Picture& picture);

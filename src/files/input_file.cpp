@@ -5,8 +5,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "files/printable.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/printable.hpp"
 #include "system/descriptor.hpp"
 #include "system/durable_file.hpp"
 #include "system/file_facts.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 
 namespace isoweave {
 namespace {

@@ -1,8 +1,10 @@
-#include "files/printable.hpp"
+#include "isoweave/printable.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include "files/quoted.hpp"
 
 namespace isoweave {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "files/printable.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/printable.hpp"
 #include "system/descriptor.hpp"
 #include "system/durable_file.hpp"
 #include "system/file_facts.hpp"

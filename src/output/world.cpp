@@ -84,6 +84,14 @@ double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_6
   return to_64_bits ? half_last_place<double>(farthest) : half_last_place<float>(farthest);
 }
 
+std::array<double, 3> output_place(const VolumeInfo& volume, OutputSpace space, const std::array<double, 3>& index) {
+  const StandardFloats floats;
+  const auto& spacing = volume.geometry.spacing;
+  const Vec3 at =
+      World(volume.geometry, space).place({index[0] * spacing[0], index[1] * spacing[1], index[2] * spacing[2]});
+  return {at.x, at.y, at.z};
+}
+
 // An offset is worth it where it removes most of the rounding. Else the volume is large, and not far away.
 std::array<double, 3> mesh_offset(const VolumeInfo& volume, OutputSpace space) {
   const StandardFloats floats;

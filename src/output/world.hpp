@@ -21,9 +21,14 @@ class World {
 
   const std::array<double, 3>& offset() const { return offset_; }
 
+  Vec3 place(Vec3 p) const {
+    return {dot(rows_[0], p) + origin_.x, dot(rows_[1], p) + origin_.y, dot(rows_[2], p) + origin_.z};
+  }
+
+  // The same in 32 bits.
   Point point(Vec3 p) const {
-    return {static_cast<float>(dot(rows_[0], p) + origin_.x), static_cast<float>(dot(rows_[1], p) + origin_.y),
-            static_cast<float>(dot(rows_[2], p) + origin_.z)};
+    const Vec3 at = place(p);
+    return {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)};
   }
 
   // A triangle in the output, turned over where the world mirrors.

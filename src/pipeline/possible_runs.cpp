@@ -1,10 +1,7 @@
 // The features that go together in a run and those that do not, in one table.
-#include <algorithm>
-#include <array>
-#include <stdexcept>
-#include <string>
+#include "isoweave/possible_runs.hpp"
 
-#include "isoweave/pipeline.hpp"
+#include <array>
 
 namespace isoweave {
 namespace {
@@ -28,32 +25,33 @@ constexpr std::array<Refuser, 4> kRefusers{{{kLabels, "labels", "which takes one
 bool saves(const RunControl& control) { return !control.checkpoint.folder.empty() || control.resume.has_value(); }
 
 struct Feature {
+  RunFeature feature;
   const char* name;
   unsigned refused_by;
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
 constexpr std::array<Feature, 11> kFeatures{{
-    {"a CUDA device", kLabels | kComponents | kSimplify,
+    {RunFeature::kDevice, "a CUDA device", kLabels | kComponents | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
-    {"a number of triangles to stop at", kDevice | kLabels,
+    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0; }},
-    {"levels", kDevice | kLabels,
+    {RunFeature::kLevels, "levels", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},
-    {"a guaranteed distance", kDevice,
+    {RunFeature::kMaxDistance, "a guaranteed distance", kDevice,
      [](const MeshOptions& options, const RunControl&) { return options.max_distance.value > 0; }},
-    {"components to be dropped", kDevice | kLabels,
+    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return options.components != nullptr; }},
-    {"normals by quadrics", kDevice,
+    {RunFeature::kQuadricNormals, "normals by quadrics", kDevice,
      [](const MeshOptions& options, const RunControl&) { return options.normals == Normals::kQuadric; }},
-    {"values of another volume", kDevice | kLabels,
+    {RunFeature::kValues, "values of another volume", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return options.values != nullptr; }},
-    {"states to be saved or resumed", kLabels | kSimplify,
+    {RunFeature::kStates, "states to be saved or resumed", kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
-    {"an observer", kDevice | kLabels | kSimplify,
+    {RunFeature::kObserver, "an observer", kDevice | kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
-    {"a cap on memory", kLabels | kSimplify,
+    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
-    {"a schedule other than rounds", kDevice,
+    {RunFeature::kSchedule, "a schedule other than rounds", kDevice,
      [](const MeshOptions&, const RunControl& control) {
        return control.schedule != Schedule::kAutomatic && control.schedule != Schedule::kRounds;
      }},
@@ -66,7 +64,27 @@ unsigned refusers_of(RunKind kind, const RunControl& control) {
   return (kind == RunKind::kSimplify ? kSimplify : 0) | device;
 }
 
+std::string refusal(std::string_view refuser, std::string_view feature, std::string_view reason) {
+  std::string text(refuser);
+  text += ": expected a run without ";
+  text += feature;
+  text += ", ";
+  text += reason;
+  return text;
+}
+
 }  // namespace
+
+ImpossibleRun::ImpossibleRun(RunFeature feature, bool by_device, const std::string& refuser,
+                             const std::string& feature_name, const std::string& reason)
+    : std::invalid_argument(refusal(refuser, feature_name, reason)),
+      feature_(feature),
+      by_device_(by_device),
+      reason_(reason) {}
+
+std::string ImpossibleRun::with_names(std::string_view refuser, std::string_view feature) const {
+  return refusal(refuser, feature, reason_);
+}
 
 void require_possible(RunKind kind, const MeshOptions& options, const RunControl& control) {
   const unsigned refusers = refusers_of(kind, control);
@@ -74,8 +92,7 @@ void require_possible(RunKind kind, const MeshOptions& options, const RunControl
     if (!feature.asked(options, control)) continue;
     for (const Refuser& refuser : kRefusers) {
       if ((refuser.bit & refusers & feature.refused_by) == 0) continue;
-      throw std::invalid_argument(std::string(refuser.name) + ": expected a run without " + feature.name + ", " +
-                                  refuser.reason);
+      throw ImpossibleRun(feature.feature, refuser.bit == kDevice, refuser.name, feature.name, refuser.reason);
     }
   }
 }

@@ -11,6 +11,7 @@
 
 #include "extract/cube_rules.hpp"
 #include "isoweave/pipeline.hpp"
+#include "isoweave/possible_runs.hpp"
 #include "simplify/simplifier.hpp"
 #include "volume/row_source.hpp"
 

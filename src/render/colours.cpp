@@ -1,8 +1,8 @@
 #include "render/colours.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace isoweave::render {
 namespace {
@@ -32,14 +32,6 @@ std::uint8_t byte_of_light(double light) {
   const double x = light > 0 ? std::min(light, 1.0) : 0;  // also where normals of the mesh are no numbers
   const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255 * encoded));
-}
-
-std::array<double, 2> finite_range(std::span<const float> numbers) {
-  std::array<double, 2> range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const float number : numbers) {
-    if (std::isfinite(number)) range = {std::min(range[0], double{number}), std::max(range[1], double{number})};
-  }
-  return range;
 }
 
 Vec3 viridis(double place) {

@@ -5,13 +5,13 @@
 #ifndef ISOWEAVE_HAS_PNG
 namespace isoweave::render {
 
-void require_png(const std::string& path) {
+void require_libpng(const std::string& path) {
   throw CannotWrite(path +
                     ": expected a build with libpng for a picture (CMake option ISOWEAVE_PNG=ON), this one has none");
 }
 
 std::vector<std::byte> png_bytes(const Picture&, const std::string& path) {
-  require_png(path);
+  require_libpng(path);
   return {};
 }
 

@@ -9,8 +9,8 @@
 
 namespace isoweave::render {
 
-// Throws CannotWrite, which names `path`, in builds without libpng. Called before a picture is made in vain.
-void require_png(const std::string& path);
+// Throws CannotWrite, which names `path`, in builds without libpng.
+void require_libpng(const std::string& path);
 
 // The bytes of a PNG file. `path` stands for the file in messages.
 std::vector<std::byte> png_bytes(const Picture& picture, const std::string& path);

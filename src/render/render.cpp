@@ -1,7 +1,9 @@
 // A picture in two passes: which triangle each sample shows, then the mean light of the samples of each pixel.
 #include "isoweave/render.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "lattice/triangles.hpp"
@@ -67,6 +69,14 @@ std::array<std::uint8_t, 4> pixel_at(std::int64_t column, std::int64_t row, cons
 }
 
 }  // namespace
+
+std::array<double, 2> finite_range(std::span<const float> numbers) {
+  std::array<double, 2> range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const float number : numbers) {
+    if (std::isfinite(number)) range = {std::min(range[0], double{number}), std::max(range[1], double{number})};
+  }
+  return range;
+}
 
 Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options, std::span<const float> quality) {
   const StandardFloats floats;

@@ -75,7 +75,7 @@ class PngWriter {
 
 }  // namespace
 
-void require_png(const std::string&) {}
+void require_libpng(const std::string&) {}
 
 std::vector<std::byte> png_bytes(const Picture& picture, const std::string& path) {
   const bool opaque =

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/text_streams.hpp"
 
 namespace isoweave {

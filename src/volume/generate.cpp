@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "files/printable.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/printable.hpp"
 #include "volume/fields.hpp"
 #include "volume/row_source.hpp"
 #include "volume/volume_sizes.hpp"

@@ -8,7 +8,7 @@
 
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "files/whole_input.hpp"
 #include "isoweave/error.hpp"
 #include "parallel/float_environment.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/even_slices.hpp"
 
 namespace isoweave {

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {

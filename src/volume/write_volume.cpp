@@ -7,9 +7,9 @@
 #include "files/atomic_file.hpp"
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
+#include "isoweave/printable.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/size.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "parallel/size.hpp"
 #include "volume/stream_source.hpp"
 

@@ -108,8 +108,7 @@ TEST(CliComponents, WrongUseIsRefused) {
   for (const std::string number : {"0", "-3", "2.5", "many", ""}) {
     refused({"--min-component=" + number}, "--min-component");
   }
-  refused({"--device", "cuda", "--largest"},
-          "a CUDA device: expected a run without components to be dropped, which takes processors");
+  refused({"--device", "cuda", "--largest"}, "--device cuda: expected a run without --largest, which takes processors");
 }
 
 }  // namespace

@@ -111,6 +111,29 @@ TEST(CliUsage, NumbersOfTrianglesAreChecked) {
   expect_failure(folder, mesh(kSmall, {"--ratio", "0.5", "--triangles", "100"}), 2, "excludes");
 }
 
+// By the library's table, with the names of the options, and before any file is looked at.
+TEST(CliUsage, WhatADeviceDoesNotDoIsRefused) {
+  const files::Folder folder;
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--triangles", "9"}, "--triangles"},
+      {{"--ratio", "0.5"}, "--ratio"},
+      {{"--lods", "0.1,0.2"}, "--lods"},
+      {{"--max-distance", "1vox"}, "--max-distance"},
+      {{"--min-component", "9"}, "--min-component"},
+      {{"--normals", "quadric"}, "--normals quadric"},
+      {{"--color-by", "nothing.nrrd"}, "--color-by"},
+      {{"--checkpoint", "run"}, "--checkpoint"},
+      {{"--schedule", "queue"}, "a --schedule other than rounds"}};
+  for (const auto& [more, option] : cases) {
+    std::vector<std::string> arguments = mesh("nothing.nrrd", more);
+    arguments.insert(arguments.end(), {"--device", "cuda"});
+    expect_failure(folder, arguments, 2,
+                   "--device cuda: expected a run without " + option + ", which takes processors");
+  }
+  expect_failure(folder, {"simplify", "nothing.ply", "-o", "b.ply", "--error", "1", "--device", "cuda"}, 2,
+                 "simplify: expected a run without --device cuda, which takes a volume");
+}
+
 TEST(CliUsage, InputsAreNeverWrittenOver) {
   const files::Folder folder;
   ASSERT_EQ(run(folder.path(), mesh(kSmall)).code, 0);

@@ -130,19 +130,35 @@ TEST_F(CliLabels, WrongUseIsRefused) {
   for (const std::string labels : {"", "some", "1,,2", "1,", "1.5", "1,2,1", "99999999999999999999"}) {
     expect_refused(folder_, mesh({"--labels=" + labels}), 2, "--labels");
   }
-  const std::vector<std::vector<std::string>> together{
-      {"--iso", "0.5"},        {"--inside", "below"},    {"--lods", "0.1,0.2"}, {"--triangles", "9"},
-      {"--ratio", "0.5"},      {"--step", "2"},          {"--memory", "1G"},    {"--dry-run"},
-      {"--checkpoint", "run"}, {"--html", "a.html"},     {"--watch"},           {"--color-by", kMap},
-      {"--largest"},           {"--min-component", "9"}, {"--one-file"},        {"--every", "9s"}};
-  for (const std::vector<std::string>& more : together) {
+  const std::vector<std::vector<std::string>> of_the_program{{"--iso", "0.5"}, {"--inside", "below"}, {"--step", "2"},
+                                                             {"--dry-run"},    {"--html", "a.html"},  {"--every", "9s"},
+                                                             {"--one-file"}};
+  for (const std::vector<std::string>& more : of_the_program) {
     expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, "--labels");
   }
-  expect_refused(folder_, mesh({"--labels", "all", "--device", "cuda"}), 2, "labels: expected a run without a CUDA");
   expect_refused(folder_, {"mesh", kMap, "--to-stdout", "ply", "--labels", "3"}, 2, "--labels");
   expect_refused(folder_, mesh({"--labels", "3", "--report", "seg_label3.ply"}), 2, "seg_label3.ply");
   expect_refused(folder_, mesh({"--labels", "3", "--error", "much"}), 2, "much");
   expect_refused(folder_, {"mesh", kMap, "-o", "none/seg.ply", "--labels", "all"}, 4, "none/seg_label1.ply");
+}
+
+// By the library's table, with the names of both options, and before the map is looked at.
+TEST_F(CliLabels, WhatTakesOneSurfaceIsRefused) {
+  const std::vector<std::vector<std::string>> together{
+      {"--lods", "0.1,0.2"}, {"--triangles", "9"},    {"--ratio", "0.5"},
+      {"--memory", "1G"},    {"--checkpoint", "run"}, {"--color-by", kMap},
+      {"--device", "cuda"},  {"--largest"},           {"--min-component", "9"},
+  };
+  for (const std::vector<std::string>& more : together) {
+    const std::string option = more[0] == "--device" ? "--device cuda" : more[0];
+    const std::string says = "--labels: expected a run without " + option + ", which takes one surface";
+    expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, says);
+    expect_refused(folder_, joined({"mesh", "nothing.nrrd", "-o", "a.ply", "--labels", "all"}, more), 2, says);
+  }
+#ifdef ISOWEAVE_HAS_WATCH
+  expect_refused(folder_, mesh({"--labels", "all", "--watch"}), 2,
+                 "--labels: expected a run without --watch, which takes one surface");
+#endif
 }
 
 TEST_F(CliLabels, MapsThatAreNoneAreRefused) {

@@ -338,7 +338,8 @@ TEST(CliWatch, WhatCannotBeWatchedIsRefused) {
   expect_refused({"--watch=port"}, "--watch: expected a port from 1 to 65535, or 0 for any that is free, found 'port'");
   expect_refused({"--watch=70000"}, "--watch: expected a port");
   expect_refused({"--watch=-1"}, "--watch: expected a port");
-  expect_refused({"--watch", "--device", "cuda"}, "--watch: expected a run on processors, found '--device cuda'");
+  expect_refused({"--watch", "--device", "cuda"},
+                 "--device cuda: expected a run without --watch, which takes processors");
   expect_refused({"--watch", "--quiet"}, "--quiet");
   expect_refused({"--watch", "--dry-run"}, "--dry-run");
 }

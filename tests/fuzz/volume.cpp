@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "input_files.hpp"
-#include "volume/histogram.hpp"
 
 namespace {
 

@@ -7,8 +7,10 @@
 #include <limits>
 #include <vector>
 
+#include "isoweave/forecast.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
+#include "isoweave/possible_runs.hpp"
 
 namespace isoweave {
 namespace {
@@ -92,6 +94,31 @@ TEST(BadArguments, OneSinkForTwoMeshes) {
     EXPECT_THROW(mesh_volume(source, sinks, options), std::invalid_argument);
     EXPECT_THROW(simplify_mesh({}, sinks, simplify), std::invalid_argument);
     EXPECT_THROW(mesh_labels(source, labels, usual_options()), std::invalid_argument);
+  }
+}
+
+TEST(BadArguments, ARefusalNamesTheFeatureAndWhoRefusesIt) {
+  MeshOptions options = usual_options();
+  options.triangles = 9;
+  RunControl control;
+  EXPECT_NO_THROW(require_possible(RunKind::kMesh, options, control));
+  try {
+    require_possible(RunKind::kLabels, options, control);
+    FAIL() << "expected a refusal";
+  } catch (const ImpossibleRun& refused) {
+    EXPECT_EQ(refused.feature(), RunFeature::kTriangles);
+    EXPECT_FALSE(refused.is_by_device());
+    EXPECT_STREQ(refused.what(),
+                 "labels: expected a run without a number of triangles to stop at, which takes one surface");
+    EXPECT_EQ(refused.with_names("A", "B"), "A: expected a run without B, which takes one surface");
+  }
+  control.device = Device::kCuda;
+  try {
+    require_possible(RunKind::kMesh, options, control);
+    FAIL() << "expected a refusal";
+  } catch (const ImpossibleRun& refused) {
+    EXPECT_EQ(refused.feature(), RunFeature::kTriangles);
+    EXPECT_TRUE(refused.is_by_device());
   }
 }
 

@@ -2,6 +2,8 @@
 // Threads: none, a forecast is a run that surfaces.cpp has
 #include <gtest/gtest.h>
 
+#include "isoweave/error.hpp"
+#include "isoweave/forecast.hpp"
 #include "pipeline/memory_model.hpp"
 #include "pipeline/slab_plan.hpp"
 #include "surfaces.hpp"
@@ -34,6 +36,41 @@ TEST(Forecast, CountsAreNearWhatTheRunMakes) {
       EXPECT_GT(forecast.peak_bytes, 5u << 20);
     }
   }
+}
+
+TEST(Forecast, MemoryBesideARunCounts) {
+  constexpr std::uint64_t kGiga = 1'000'000'000;
+  Forecast forecast;
+  forecast.peak_bytes = 3 * kGiga;
+  forecast.least_bytes = 5 * kGiga;
+  add_memory_during(forecast, kGiga);
+  EXPECT_EQ(forecast.peak_bytes, 4 * kGiga);
+  EXPECT_EQ(forecast.least_bytes, 6 * kGiga);
+  add_memory_after(forecast, kGiga);
+  EXPECT_EQ(forecast.peak_bytes, 4 * kGiga);
+  EXPECT_EQ(forecast.least_bytes, 6 * kGiga);
+  add_memory_after(forecast, 10 * kGiga);
+  EXPECT_EQ(forecast.peak_bytes, 4 * kGiga);
+  EXPECT_GT(forecast.least_bytes, 10 * kGiga);
+}
+
+// A job after the run is known exactly: a cap that holds it is let through, and one byte less is not.
+TEST(Forecast, ACapThatIsTooSmallIsRefusedWithOneThatDoes) {
+  Forecast forecast;
+  add_memory_after(forecast, 350'000'000);
+  EXPECT_NO_THROW(require_memory(forecast, 0, "a.nrrd")) << "no cap";
+  EXPECT_NO_THROW(require_memory(forecast, 350'000'000, "a.nrrd"));
+  EXPECT_NO_THROW(require_memory(forecast, forecast.least_bytes, "a.nrrd"));
+  const auto message = [&](const std::string& purpose) -> std::string {
+    try {
+      require_memory(forecast, 349'000'000, "a.nrrd", purpose);
+    } catch (const OverMemory& error) {
+      return error.what();
+    }
+    return "let through";
+  };
+  EXPECT_EQ(message(""), "a.nrrd: expected --memory 495M or more, found 349M");
+  EXPECT_EQ(message("a page"), "a.nrrd: expected --memory 495M or more, found 349M (for a page)");
 }
 
 TEST(Forecast, IsTheSameForAnyNumberOfThreads) {

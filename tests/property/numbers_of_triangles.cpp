@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "isoweave/forecast.hpp"
 #include "isoweave/pipeline.hpp"
 #include "meshes.hpp"
 #include "sanitized.hpp"

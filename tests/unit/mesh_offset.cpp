@@ -50,6 +50,17 @@ MeshOptions at_error(double voxels) {
   return options;
 }
 
+// The axes of the ball are turned: i runs along -y of the world, j along x.
+TEST(MeshOffset, PlacesOfSamplesAreThoseOfTheMesh) {
+  testing::MemoryVolume volume = ball(kUtm, 0.5);
+  volume.info().geometry.space = Space::kRas;
+  const VolumeInfo& info = volume.info();
+  EXPECT_EQ(output_place(info, OutputSpace::kAsVolume, {0, 0, 0}), kUtm);
+  EXPECT_EQ(output_place(info, OutputSpace::kAsVolume, {2, 4, -1}), (Offset{kUtm[0] + 2, kUtm[1] - 1, kUtm[2] - 0.5}));
+  EXPECT_EQ(output_place(info, OutputSpace::kLps, {2, 4, -1}), (Offset{-kUtm[0] - 2, -kUtm[1] + 1, kUtm[2] - 0.5}));
+  EXPECT_EQ(output_place(info, OutputSpace::kIndex, {2, 4, -1}), (Offset{1, 2, -0.5}));
+}
+
 TEST(MeshOffset, IsTheOriginOfAVolumeThatIsFarAway) {
   EXPECT_EQ(mesh_offset(ball(kUtm, 0.1).info(), OutputSpace::kAsVolume), kUtm);
   EXPECT_EQ(mesh_offset(ball(kUtm, 0.1).info(), OutputSpace::kIndex), kNone);

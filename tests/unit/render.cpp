@@ -292,10 +292,18 @@ TEST(RenderMesh, NumbersThatAreNotFiniteTakeTheColour) {
   EXPECT_EQ(render_mesh(square(1, 0), front(20, 20), std::vector<float>{none, none, none, none}).pixels, plain.pixels);
 }
 
+TEST(RenderMesh, TheRangeIsThatOfFiniteNumbers) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(finite_range(std::vector<float>{3, kNan, -2, HUGE_VALF, 1}), (std::array<double, 2>{-2, 3}));
+  const std::array<double, 2> none = finite_range(std::vector<float>{kNan, -HUGE_VALF});
+  EXPECT_GT(none[0], none[1]);
+}
+
 TEST(RenderMesh, PicturesThatCannotBeWrittenLeaveNothing) {
   const files::Folder folder;
   const Picture picture = render_mesh(square(1, 0), front(8, 8));
   EXPECT_THROW(write_png(folder / "missing/a.png", picture), CannotWrite);
+  EXPECT_THROW(require_png(folder / "missing/a.png"), CannotWrite);
   EXPECT_TRUE(folder.entries().empty());
 }
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "volume/histogram.hpp"
+#include "volume/histogram_counter.hpp"
 
 namespace isoweave {
 namespace {

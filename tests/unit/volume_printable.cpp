@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
+#include "isoweave/printable.hpp"
 
 namespace isoweave {
 namespace {

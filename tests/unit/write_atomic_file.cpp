@@ -12,6 +12,7 @@
 #include "files.hpp"
 #include "files/atomic_file.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/output_file.hpp"
 #include "meshes.hpp"
 
 namespace isoweave {
@@ -48,6 +49,26 @@ class FileSizeLimit {
   rlimit before_{};
   void (*handler_)(int);
 };
+
+TEST(OutputFile, IsCompleteOrAbsent) {
+  const files::Folder folder;
+  const std::string path = folder / "a.txt";
+  files::write_bytes(path, "before");
+  {
+    OutputFile discarded(path);
+    discarded.write(bytes_of("lost"));
+  }
+  EXPECT_EQ(files::read_bytes(path), "before");
+  OutputFile file(path);
+  file.write(bytes_of("af"));
+  OutputFile moved = std::move(file);
+  moved.write(bytes_of("ter"));
+  EXPECT_EQ(files::read_bytes(path), "before");
+  moved.commit();
+  EXPECT_EQ(files::read_bytes(path), "after");
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.txt"});
+  EXPECT_THROW(OutputFile(folder / "none/a.txt"), CannotWrite);
+}
 
 TEST(AtomicFile, AppearsOnCommitOnly) {
   const files::Folder folder;

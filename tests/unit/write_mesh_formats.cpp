@@ -63,6 +63,15 @@ std::size_t glb_data(const std::string& bytes, const Json& scene, std::size_t vi
   return 20 + word_at(bytes, 12) + 8 + scene["bufferViews"][view]["byteOffset"].get<std::size_t>();
 }
 
+TEST(MeshFormats, AreToldByTheEndingInAnyCase) {
+  EXPECT_EQ(mesh_format("a.b/c.PLY"), MeshFormat::kPly);
+  EXPECT_EQ(mesh_format("a.precomputed/"), MeshFormat::kPrecomputed);
+  for (const char* path : {"", "ply", "a.png", "a.ply/", "a.ply/b"})
+    EXPECT_THROW(mesh_format(path), CannotWrite) << path;
+  EXPECT_TRUE(holds_values(MeshFormat::kVtp));
+  EXPECT_FALSE(holds_values(MeshFormat::kStl));
+}
+
 TEST(WriteOff, HasCountsInALineOfTheirOwn) {
   const files::Folder folder;
   write_one_triangle(folder / "a.off");

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "files/external_files.hpp"
-#include "files/printable.hpp"
 #include "files/whole_input.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/printable.hpp"
 #include "volume/packed_file.hpp"
 
 namespace isoweave::mesh_io {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "files/printable.hpp"
+#include "isoweave/printable.hpp"
 
 namespace isoweave::mesh_io {
 namespace {

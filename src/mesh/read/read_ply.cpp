@@ -2,7 +2,7 @@
 #include <array>
 #include <bit>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "mesh/read/mesh_leftovers.hpp"
 #include "mesh/read/mesh_words.hpp"
 #include "mesh/read/ply_header.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "mesh/read/mesh_input.hpp"
 #include "mesh/read/mesh_place.hpp"
 

@@ -1,4 +1,4 @@
-// The mesh formats: endings, sizes, limits.
+// The limits of the mesh formats: options and counts.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,8 @@
 
 namespace isoweave {
 
-enum class MeshFormat { kPly, kStl, kObj, kOff, kGlb, kVtp, k3mf, kPrecomputed };
-
-// The format of a path, by its ending in any case. Throws CannotWrite when the ending is unknown.
-MeshFormat mesh_format(const std::string& path);
-
-// The format of a path. Throws as well for options that the format does not have.
+// mesh_format() of a path. Throws as well for options that the format does not have.
 MeshFormat checked_mesh_format(const std::string& path, const MeshFileOptions& options);
-
-// Whether the format has a place for numbers at the vertices.
-bool holds_values(MeshFormat format);
 
 // Throws CannotWrite when `have` + `more` is more than the most that a format holds.
 void check_count_fits(const std::string& path, const char* what, std::uint64_t have, std::uint64_t more,

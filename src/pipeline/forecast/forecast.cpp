@@ -1,14 +1,14 @@
 // Forecasts: a few blocks of the volume are meshed, and the rest is assumed to be like them.
+#include "isoweave/forecast.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "extract/cube_rules.hpp"
-#include "isoweave/pipeline.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
-#include "pipeline/forecast/forecast_reader.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
 #include "pipeline/memory_cap.hpp"
@@ -485,7 +485,7 @@ class Forecaster {
 
 }  // namespace
 
-void check_reader(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+void require_memory_to_read(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
   Forecaster(volume, options, control);
 }
 

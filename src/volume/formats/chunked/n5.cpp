@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/chunked/zarr_node.hpp"
 
 namespace isoweave {

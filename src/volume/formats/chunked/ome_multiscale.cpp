@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 
 namespace isoweave {
 namespace {

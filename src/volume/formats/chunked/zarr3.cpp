@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/chunked/zarr_node.hpp"
 
 namespace isoweave {

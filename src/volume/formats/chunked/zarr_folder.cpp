@@ -6,7 +6,7 @@
 
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/chunked/array_places.hpp"
 #include "volume/formats/chunked/ome_multiscale.hpp"
 #include "volume/formats/chunked/zarr_node.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/samples.hpp"
 #include "volume/stream_source.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/dicom/dicom_bare.hpp"
 #include "volume/formats/dicom/dicom_frames.hpp"
 #include "volume/formats/dicom/dicom_packed.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/dicom/dicom_numbers.hpp"
 #include "volume/formats/dicom/dicom_scouts.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/dicom/dicom_numbers.hpp"
 
 namespace isoweave {

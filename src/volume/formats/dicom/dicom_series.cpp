@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/dicom/dicom_file.hpp"
 #include "volume/formats/dicom/dicom_volume.hpp"
 #include "volume/formats/formats.hpp"

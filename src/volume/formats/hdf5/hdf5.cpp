@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "files/length_units.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "files/whole_input.hpp"
 #include "volume/axes.hpp"
 #include "volume/band_stream.hpp"

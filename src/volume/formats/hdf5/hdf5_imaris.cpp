@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/hdf5/hdf5_place.hpp"
 
 namespace isoweave {

@@ -1,5 +1,5 @@
 // ITK's images in HDF5: a group with the samples, the origin, the spacing, and a direction for each axis.
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/hdf5/hdf5_place.hpp"
 
 namespace isoweave {

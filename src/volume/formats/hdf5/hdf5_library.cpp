@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "system/shared_library.hpp"
 #include "volume/formats/chunked/lzf.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/hdf5/hdf5_place.hpp"
 #include "volume/samples.hpp"
 

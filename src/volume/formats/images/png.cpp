@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "isoweave/error.hpp"
 #include "volume/formats/formats.hpp"
 

@@ -9,7 +9,8 @@
 
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
+#include "isoweave/printable.hpp"
 #include "system/file_facts.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/unread_formats.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/images/slice_numbers.hpp"
 

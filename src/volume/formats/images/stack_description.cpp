@@ -7,7 +7,7 @@
 
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "files/xml_tag.hpp"
 
 namespace isoweave {

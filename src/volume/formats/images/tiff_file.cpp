@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "isoweave/error.hpp"
 
 namespace isoweave {

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "files/printable.hpp"
 #include "volume/formats/images/tiff_directory.hpp"
 #include "volume/stream_source.hpp"
 

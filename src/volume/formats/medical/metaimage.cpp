@@ -12,7 +12,7 @@
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/length_units.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/data_files.hpp"
 #include "volume/formats/chunked/array_axes.hpp"

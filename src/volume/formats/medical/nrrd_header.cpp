@@ -5,7 +5,7 @@
 
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 
 namespace isoweave {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "files/header_text.hpp"
 #include "files/length_units.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/run_lengths.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/volumes_in_row.hpp"
 

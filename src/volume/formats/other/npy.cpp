@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/band_stream.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/formats.hpp"

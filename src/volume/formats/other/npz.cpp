@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/printable.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/npy_array.hpp"
 #include "volume/packed_file.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/dds_stream.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "isoweave/printable.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/images/slice_files.hpp"
 #include "volume/formats/images/slice_numbers.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/other/run_lengths.hpp"

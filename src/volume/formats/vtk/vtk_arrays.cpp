@@ -1,7 +1,8 @@
 #include "volume/formats/vtk/vtk_arrays.hpp"
 
 #include "files/input_file.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
+#include "isoweave/printable.hpp"
 
 namespace isoweave {
 namespace {

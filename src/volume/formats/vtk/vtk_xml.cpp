@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/printable.hpp"
+#include "files/quoted.hpp"
 #include "files/xml_tag.hpp"
 #include "volume/stream_source.hpp"
 

@@ -1,0 +1,42 @@
+#include "options/files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+namespace isoweave::cli {
+namespace {
+
+constexpr std::string_view kStandardInput = "-";
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const std::filesystem::path first = std::filesystem::weakly_canonical(a, error);
+  const std::filesystem::path second = std::filesystem::weakly_canonical(b, error);
+  return !error && first == second;
+}
+
+}  // namespace
+
+std::string input_file(const std::string& path) { return path == kStandardInput ? "/dev/stdin" : path; }
+
+bool is_read_once(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  return path == kStandardInput || std::filesystem::is_fifo(status) || std::filesystem::is_socket(status);
+}
+
+void check_different(std::initializer_list<std::string_view> paths) {
+  for (const std::string_view* a = paths.begin(); a != paths.end(); ++a) {
+    for (const std::string_view* b = a + 1; b != paths.end(); ++b) {
+      if (!a->empty() && !b->empty() && same_file(*a, *b)) {
+        throw std::invalid_argument(fmt::format("{}: would be written over {}, expected different files", *b, *a));
+      }
+    }
+  }
+}
+
+}  // namespace isoweave::cli

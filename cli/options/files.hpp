@@ -1,0 +1,19 @@
+// The files that the options of all verbs name.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace isoweave::cli {
+
+// The file that a user names: "-" is standard input.
+std::string input_file(const std::string& path);
+
+// Whether the volume comes out of standard input or another pipe, so that a later process cannot read it again.
+bool is_read_once(const std::string& path);
+
+// Refuses outputs that would write over an input, and two outputs to one file.
+void check_different(std::initializer_list<std::string_view> paths);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,26 @@
+// The volume that mesh and info read.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "isoweave/generate.hpp"
+#include "isoweave/volume.hpp"
+#include "options/cli_app.hpp"
+
+namespace isoweave::cli {
+
+// The origin of a volume: a file, or "generate:KIND:WxHxD[:TYPE[:SEED]]".
+struct InputOptions {
+  std::string path;
+  std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
+  std::string even_spacing;  // empty: resample, but refuse where labels are read
+  bool external = true;      // a header may name other files
+};
+
+void add_input_options(CLI::App& verb, InputOptions& input);
+std::optional<GenerateOptions> generated_input(const InputOptions& input);
+std::unique_ptr<SliceSource> open_input(const InputOptions& input);
+
+}  // namespace isoweave::cli

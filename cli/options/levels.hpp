@@ -1,0 +1,55 @@
+// Levels of detail of mesh and simplify (--lods): several meshes from one sweep, each in a file of its own or all in
+// one.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isoweave/pipeline.hpp"
+#include "options/output_mesh.hpp"
+#include "options/stop.hpp"
+#include "report/report.hpp"
+
+namespace isoweave::cli {
+
+// The errors of all levels but the last one.
+std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit);
+
+// The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ... The output stays as it is where no
+// levels are asked for, and for each level where one file has them all. Refuses formats that cannot hold several
+// levels.
+std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop);
+
+// The folders of the parts of each level's file, for runs that can be resumed: `folder` itself for a single one.
+std::vector<std::string> level_folders(const std::string& folder, std::size_t levels);
+
+// Removes the folders of several levels, which are empty when the run is finished.
+void remove_level_folders(const std::vector<std::string>& folders);
+
+// The files of all levels, open.
+class LevelSinks {
+ public:
+  // options(level): how a level's file is written.
+  LevelSinks(const std::vector<OutputOptions>& outputs, const std::function<MeshFileOptions(std::size_t)>& options);
+
+  std::span<MeshSink* const> pointers() const { return pointers_; }
+  const MeshSink& last() const { return *sinks_.back(); }
+
+ private:
+  std::vector<std::unique_ptr<MeshSink>> sinks_;
+  std::vector<MeshSink*> pointers_;
+};
+
+// The meshes in the files of all levels but the last one.
+std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs);
+
+// The counts of the finer levels for the report, and a line for each.
+Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs);
+void print_levels(const MeshReport& report, const std::vector<OutputOptions>& outputs);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,51 @@
+// The mesh that mesh and simplify write.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+#include "options/cli_app.hpp"
+
+namespace isoweave::cli {
+
+inline constexpr const char* kMeshEndings = ".ply, .stl, .obj, .off, .glb, .vtp, .3mf or .precomputed";
+
+struct OutputOptions {
+  std::string path;
+  std::string to_stdout;  // "ply" or "stl" instead of a path
+  bool compress = false;
+  std::uint64_t segment = 1;
+  bool one_file = false;  // for all levels of detail
+
+  bool given() const { return !path.empty() || !to_stdout.empty(); }
+
+  // The name of the output in messages and reports.
+  std::string name() const { return to_stdout.empty() ? path : "standard output"; }
+};
+
+// The format of the output. Throws CannotWrite where the ending of its name tells none.
+MeshFormat output_format(const OutputOptions& output);
+
+void add_output_options(CLI::App& verb, OutputOptions& output);
+
+// Adds the options of the command line.
+MeshFileOptions mesh_file_options(const OutputOptions& output, MeshFileOptions options);
+
+std::unique_ptr<MeshSink> open_output(const OutputOptions& output, const MeshFileOptions& options);
+
+// mesh_file_bytes and mesh_file_memory for an output.
+std::uint64_t output_bytes(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
+                           const MeshFileOptions& options);
+std::uint64_t output_memory(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
+                            const MeshFileOptions& options);
+
+// The meaning of the output's axes, as far as it is known: "LPS", "RAS", "index" or nothing.
+std::string space_text(const Geometry& geometry, OutputSpace space);
+
+// Prints the notes that the sink has on its mesh.
+void print_notes(const MeshSink& sink);
+
+}  // namespace isoweave::cli

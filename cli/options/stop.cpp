@@ -1,0 +1,98 @@
+#include "options/stop.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "options/values.hpp"
+#include "report/print.hpp"
+
+namespace isoweave::cli {
+
+void add_stop_options(CLI::App& verb, StopOptions& stop) {
+  verb.add_option("--error", stop.error,
+                  "Simplification error: a length in vox, mm, um, nm, in or the input's unit; 0: none");
+  CLI::Option* const triangles = verb.add_option(
+      "--triangles", stop.triangles,
+      "Stop at this number of triangles, or at the error; without --error at a twentieth of the volume's "
+      "diagonal");
+  verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
+      ->excludes(triangles);
+  verb.add_option("--lods", stop.lods,
+                  "Several errors E1,E2,... from one sweep: -o a.ply makes a_lod0.ply, the finest, a_lod1.ply, ...")
+      ->excludes("--error", "--triangles", "--ratio", "--to-stdout");
+  verb.add_option("--max-distance", stop.max_distance,
+                  "Guarantee: no point of the result is farther than this length from the full surface");
+  verb.add_option("--specks", stop.specks,
+                  "keep, or drop: a closed component that has shrunk to a tetrahedron within the error vanishes")
+      ->capture_default_str();
+}
+
+Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
+  if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, unit);
+  if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, unit);
+  if (stop.error.empty() && stop.has_number()) return Length::units(std::numeric_limits<double>::infinity());
+  return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
+}
+
+std::vector<StopOptions> stop_levels(const StopOptions& stop) {
+  if (!stop.has_levels()) return {stop};
+  std::vector<StopOptions> levels;
+  std::istringstream errors(stop.lods + ",");
+  for (std::string error; std::getline(errors, error, ',');)
+    levels.push_back({error, "", "", stop.specks, "", stop.max_distance});
+  return levels;
+}
+
+bool has_metric_length(const StopOptions& stop) {
+  const auto is_metric = [](const std::string& text) {
+    return !text.empty() && text.find_last_not_of("0123456789.") == text.size() - 1 && !text.ends_with("vox");
+  };
+  const std::vector<StopOptions> levels = stop_levels(stop);
+  return is_metric(stop.max_distance) ||
+         std::ranges::any_of(levels, [&](const StopOptions& level) { return is_metric(level.error); });
+}
+
+bool drops_specks(const StopOptions& stop) {
+  return parse_choice<bool>("--specks", stop.specks, {{"keep", false}, {"drop", true}});
+}
+
+Length stop_distance(const StopOptions& stop, std::string_view unit) {
+  if (stop.max_distance.empty()) return {};
+  const Length distance = parse_error_length("--max-distance", stop.max_distance, unit);
+  if (!(distance.value > 0)) wrong_value("--max-distance", "a length above 0", stop.max_distance);
+  return distance;
+}
+
+std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
+  if (!stop.triangles.empty()) return static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
+  if (stop.ratio.empty()) return 0;
+  const double ratio = parse_number("--ratio", stop.ratio);
+  if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
+  return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
+}
+
+void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit) {
+  if (asked == 0) return;
+  const auto text = [&](double length) { return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit); };
+  print_note("error reached: " + text(report.error));
+  if (report.triangles <= asked) return;
+  print_note(
+      fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
+                  "them, or an --error above {}",
+                  allowed.in_voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value)));
+}
+
+std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {
+  const std::string more = (stop.max_distance.empty() ? "" : " distance within " + stop.max_distance) +
+                           (drops_specks(stop) ? " specks drop" : "");
+  const std::string& otherwise = stop.max_distance.empty() ? usual : stop.max_distance;
+  if (!stop.has_number()) return "error " + (stop.error.empty() ? otherwise : stop.error) + more;
+  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles) + more;
+}
+
+}  // namespace isoweave::cli

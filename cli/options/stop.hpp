@@ -1,0 +1,53 @@
+// When the simplification of mesh and simplify stops: at an error, at several, or at a number of triangles.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "isoweave/pipeline.hpp"
+#include "options/cli_app.hpp"
+
+namespace isoweave::cli {
+
+struct StopOptions {
+  std::string error, triangles, ratio;  // as given; empty: not
+  std::string specks = "keep";
+  std::string lods;          // errors with commas between them
+  std::string max_distance;  // empty: none
+
+  // Whether any option says where to stop.
+  bool given() const { return !error.empty() || has_number() || has_levels() || !max_distance.empty(); }
+  bool has_number() const { return !triangles.empty() || !ratio.empty(); }
+  bool has_levels() const { return !lods.empty(); }
+};
+
+void add_stop_options(CLI::App& verb, StopOptions& stop);
+
+// `usual` is the error where no option is given. Where only a guaranteed distance is given, that is the error. Where
+// only a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken.
+Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
+
+// The options of each level of detail, finest first, as they would be for that mesh alone.
+std::vector<StopOptions> stop_levels(const StopOptions& stop);
+
+// Whether a length is given in a metric unit, and not in voxels or without a unit.
+bool has_metric_length(const StopOptions& stop);
+
+bool drops_specks(const StopOptions& stop);
+
+// The guaranteed distance; 0: none is asked for.
+Length stop_distance(const StopOptions& stop, std::string_view unit);
+
+// The number of triangles; 0: none is asked for. count() gives the triangles of the full surface, for a ratio.
+std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);
+
+// Prints how a run to a number of triangles ended: the error that it reached and, where more triangles are left than
+// were asked for, the ways to leave fewer. Prints nothing for a run to an error.
+void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit);
+
+// "error 0.2vox", "triangles 20000", or both; and "specks drop".
+std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles);
+
+}  // namespace isoweave::cli

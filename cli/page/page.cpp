@@ -1,0 +1,117 @@
+// The page in builds with the viewer.
+#include "page/page.hpp"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "isoweave/measure.hpp"
+#include "options/values.hpp"
+#include "page/page_geometry.hpp"
+#include "page/page_script.hpp"
+#include "page/page_surfaces.hpp"
+#include "page/page_template.hpp"
+#include "report/print.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+Json bins_json(const PageErrors& errors) {
+  const auto count = static_cast<double>(errors.counts.size());
+  Json bins = Json::array();
+  for (std::size_t bin = 0; bin < errors.counts.size(); ++bin) {
+    const auto place = static_cast<double>(bin);
+    bins.push_back({{"from", errors.max * place / count},
+                    {"to", errors.max * (place + 1) / count},
+                    {"vertices", errors.counts[bin]}});
+  }
+  return bins;
+}
+
+Json errors_json(const PageErrors& errors) {
+  Json json = {{"vertices", errors.vertices}, {"mean", errors.mean},       {"rms", errors.rms},
+               {"max", errors.max},           {"bins", bins_json(errors)}, {"samples", errors.samples}};
+  json["sampled"] = distances_json(errors.sampled, 1);
+  return json;
+}
+
+Json surfaces_json(const std::vector<PageSurface>& surfaces) {
+  Json json = Json::array();
+  for (const PageSurface& surface : surfaces) {
+    json.push_back({{"name", surface.name},
+                    {"triangles", surface.mesh.triangles.size()},
+                    {"vertices", surface.mesh.vertices.size()}});
+    if (surface.level) json.back()["level"] = *surface.level;
+  }
+  return json;
+}
+
+bool has_stand_in(const std::vector<PageSurface>& surfaces) {
+  for (const PageSurface& surface : surfaces) {
+    if (surface.name == "stand-in") return true;
+  }
+  return false;
+}
+
+// The notes that a reader of the page needs.
+Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& report, const std::string& full_note) {
+  Json notes = Json::array();
+  if (page.surfaces.empty()) notes.push_back("The mesh has no triangles.");
+  if (has_stand_in(page.surfaces)) {
+    notes.push_back(
+        "What is drawn is a stand-in: the mesh has more triangles than a page shows (--page-triangles). "
+        "Counts, checks and distances are those of the mesh.");
+  }
+  if (page.lacks_finer) {
+    notes.push_back("Levels of detail with more triangles than a page shows (--page-triangles) are left out.");
+  }
+  if (!full_note.empty()) notes.push_back(full_note);
+  const auto digest = report.find("digest");
+  if (digest != report.end() && digest->is_string() && *digest != digest_text(check.digest)) {
+    notes.push_back("The mesh in the file has another digest than the run reported: it was rounded, or changed since.");
+  }
+  return notes;
+}
+
+void write_text(OutputFile& file, std::string_view text) { file.write(std::as_bytes(std::span(text))); }
+
+void write_script(OutputFile& file, std::string_view id, const Json& json) {
+  write_text(file, script_start(id));
+  write_text(file, script_text(json));
+  write_text(file, kScriptEnd);
+}
+
+}  // namespace
+
+std::uint64_t page_memory(std::uint64_t triangles) {
+  constexpr std::uint64_t kBytesPerTriangle = 220;
+  constexpr std::uint64_t kElse = 200'000'000;  // the full surface, what it is measured with, the text
+  return triangles * kBytesPerTriangle + kElse;
+}
+
+void write_page(OutputFile& file, const PageOptions& page, Json& report, PageContents contents,
+                const RunControl& control) {
+  const auto most_triangles = static_cast<std::uint64_t>(parse_count("--page-triangles", page.triangles));
+  const MeshCheck check = check_mesh(contents.mesh);
+  const Json place = place_json(contents.mesh);
+  const std::string full_note = std::move(contents.full_note);
+  PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
+  Json& json = report["page"];
+  json["check"] = check_json(check, report["output"]);
+  json["check"].update(place);
+  json["surfaces"] = surfaces_json(shown.surfaces);
+  json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
+  json["notes"] = notes_json(shown, check, report, full_note);
+
+  const std::string_view html = page_template();
+  const std::size_t mark = html.find(kPageMark);
+  write_text(file, html.substr(0, mark));
+  write_script(file, "report", report);
+  for (std::size_t i = 0; i < shown.surfaces.size(); ++i) {
+    write_script(file, fmt::format("surface-{}", i), packed_surface(std::move(shown.surfaces[i])));
+  }
+  write_text(file, html.substr(mark + kPageMark.size()));
+  file.commit();
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,70 @@
+// Facts about volumes, meshes and runs, as JSON and as text.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "isoweave/forecast.hpp"
+#include "isoweave/measure.hpp"
+#include "isoweave/output_file.hpp"
+#include "isoweave/pipeline.hpp"
+#include "isoweave/volume.hpp"
+
+namespace isoweave::cli {
+
+using Json = nlohmann::ordered_json;
+
+// A number, or null where JSON has no number for it.
+Json number_or_null(double value);
+
+// The `input` part: the facts of the header. `path` is the path that the user gave.
+Json volume_json(const VolumeInfo& info, const std::string& path);
+
+// Adds min, max and nan; null where there is no value at all.
+void add_range(Json& input, double min, double max, std::uint64_t nan);
+
+// A label as a number.
+Json label_json(const Label& label);
+
+// A surface as it was written.
+Json surface_json(const SurfaceReport& surface);
+
+// The common part of the reports of all runs. `input` is the first part that differs between runs on volumes and on
+// meshes.
+Json run_json(const MeshReport& report, Json input);
+
+// The forecast of a run.
+Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
+
+// The facts of a mesh, by its triangles alone.
+Json check_json(const MeshCheck& check, const std::string& path);
+
+// The place of a mesh: its unit and space, empty where they are not said, and its offset.
+Json place_json(const TriangleMesh& mesh);
+
+Json self_intersections_json(const SelfIntersections& found);
+
+// Distances between two meshes A and B, in lengths of `unit`.
+Json distances_json(const MeshDistance& distance, double unit);
+
+// JSON text that ends with a line feed. Names that are not UTF-8 do not stop it.
+std::string json_text(const Json& json);
+
+// Writes the report into a file that was opened before the run, so that nothing is computed in vain.
+void write_report(OutputFile& file, const Json& json);
+
+// "closed, manifold", or the properties that a surface lacks.
+std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges, std::uint64_t nonmanifold_vertices);
+
+// A line on standard error about a surface that has been written.
+void print_surface(const SurfaceReport& surface, const std::string& output);
+
+// A few lines about a run that is done.
+void print_summary(const MeshReport& report, const std::string& output, double voxels,
+                   const Forecast* forecast = nullptr);
+
+std::string_view space_name(Space space);
+std::string_view schedule_name(Schedule schedule);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,138 @@
+// isoweave info: the facts of a volume, from one pass over it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "isoweave/histogram.hpp"
+#include "isoweave/printable.hpp"
+#include "options/input_volume.hpp"
+#include "report/print.hpp"
+#include "report/report.hpp"
+#include "signals.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr std::size_t kParts = 16;
+constexpr std::size_t kBarLength = 40;
+
+struct InfoArguments {
+  InputOptions input;
+  bool json = false;
+};
+
+struct Suggestions {
+  std::optional<double> otsu, formula;
+};
+
+Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggestions& suggested,
+               const std::string& path) {
+  Json input = volume_json(info, path);
+  add_range(input, histogram.min, histogram.max, histogram.nan);
+  if (histogram.whole) {
+    input["min"] = label_json((*histogram.whole)[0]);
+    input["max"] = label_json((*histogram.whole)[1]);
+  }
+  input["infinite"] = histogram.infinite;
+  input["labels"] = Json::array();
+  for (const LabelName& label : info.labels) {
+    input["labels"].push_back({{"label", label_json(label.label)}, {"name", label.name}, {"layer", label.layer}});
+  }
+  Json iso = Json::object();
+  iso["otsu"] = suggested.otsu ? Json(*suggested.otsu) : Json(nullptr);
+  if (suggested.formula) iso["formula"] = *suggested.formula;
+  return {{"version", ISOWEAVE_VERSION},
+          {"input", input},
+          {"histogram", {{"low", input["min"]}, {"high", input["max"]}, {"counts", coarser_bins(histogram, kParts)}}},
+          {"suggested_iso", iso}};
+}
+
+// The histogram. The length of a bar is the square root of its count: else air would hide everything.
+std::string histogram_text(const Histogram& histogram) {
+  const std::vector<std::uint64_t> counts = coarser_bins(histogram, kParts);
+  const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
+  std::string text = "histogram  (bars: square roots of the counts)\n";
+  const double step = histogram.max / kParts - histogram.min / kParts;
+  for (std::size_t n = 0; n < kParts; ++n) {
+    const double length = std::sqrt(static_cast<double>(counts[n]) / most) * static_cast<double>(kBarLength);
+    text += fmt::format("  from {:>12.6g} {:>16} {}\n", histogram.min + step * static_cast<double>(n),
+                        grouped(counts[n]), std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
+  }
+  return text;
+}
+
+std::string axes_text(const Geometry& geometry) {
+  std::string text;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    text += fmt::format("({:.6g} {:.6g} {:.6g}) ", geometry.direction[axis], geometry.direction[3 + axis],
+                        geometry.direction[6 + axis]);
+  }
+  return text + "space " + std::string(space_name(geometry.space));
+}
+
+std::string range_text(const Histogram& histogram) {
+  if (histogram.empty()) return "no finite value";
+  if (histogram.whole) return fmt::format("{} to {}", (*histogram.whole)[0].text(), (*histogram.whole)[1].text());
+  return fmt::format("{} to {}", histogram.min, histogram.max);
+}
+
+std::string info_text(const VolumeInfo& info, const Histogram& histogram, const Suggestions& suggested,
+                      const std::string& path) {
+  const Geometry& geometry = info.geometry;
+  const auto slices = static_cast<std::uint64_t>(info.dims[2]);
+  const std::uint64_t samples = static_cast<std::uint64_t>(info.slice_samples()) * slices;
+  std::string text = fmt::format("volume     {}, {}\n", printable(path), info.format);
+  if (!info.part.empty()) text += fmt::format("part       {}\n", printable(info.part));
+  text += fmt::format("size       {} x {} x {} {}, {} samples, {}\n", info.dims[0], info.dims[1], info.dims[2],
+                      sample_type_name(info.type), grouped(samples), byte_text(info.slice_bytes() * slices));
+  text += fmt::format("spacing    {:.6g} x {:.6g} x {:.6g} {}\n", geometry.spacing[0], geometry.spacing[1],
+                      geometry.spacing[2], geometry.unit.empty() ? "(no unit)" : printable(geometry.unit));
+  text +=
+      fmt::format("origin     {:.6g}, {:.6g}, {:.6g}\n", geometry.origin[0], geometry.origin[1], geometry.origin[2]);
+  text += fmt::format("axes       {}\n", axes_text(geometry));
+  if (info.slope != 1 || info.intercept != 0) {
+    text += fmt::format("scaling    value = {} * stored + {}\n", info.slope, info.intercept);
+  }
+  text += "values     " + range_text(histogram);
+  text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
+  if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
+  if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
+  for (const LabelName& label : info.labels) {
+    text += fmt::format("label      {} {}\n", label.label.text(), printable(label.name));
+  }
+  for (const std::string& note : info.notes) text += fmt::format("note       {}\n", printable(note));
+  if (!histogram.empty()) text += histogram_text(histogram);
+  return text;
+}
+
+void run_info(const InfoArguments& arguments) {
+  if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
+  exit_on_signal();
+  const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
+  const Histogram histogram = read_histogram(*volume);
+  Suggestions suggested{otsu_threshold(histogram), std::nullopt};
+  if (const std::optional<GenerateOptions> generated = generated_input(arguments.input)) {
+    suggested.formula = suggested_iso(generated->kind, generated->type);
+  }
+  const VolumeInfo& info = volume->info();
+  const std::string& path = arguments.input.path;
+  if (arguments.json) return print_out(json_text(info_json(info, histogram, suggested, path)));
+  print_to_reader(info_text(info, histogram, suggested, path));
+}
+
+}  // namespace
+
+void add_info_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("info", "What a volume is, its histogram and suggested iso-values");
+  const auto arguments = std::make_shared<InfoArguments>();
+  add_input_options(*verb, arguments->input);
+  verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->callback([arguments] { run_info(*arguments); });
+}
+
+}  // namespace isoweave::cli

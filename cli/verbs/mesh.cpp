@@ -1,0 +1,139 @@
+// isoweave mesh: volume in, simplified surface out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "report/print.hpp"
+#include "verbs/mesh_arguments.hpp"
+#include "verbs/mesh_job.hpp"
+#include "verbs/mesh_state.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave mesh ct.nii.gz -o bone.ply --iso 300
+  isoweave mesh foot_256x256x256_uint8.raw -o foot.stl --iso auto --error 0.5vox
+  isoweave mesh scan.raw --raw 512x512x300:int16:big --spacing 0.7,0.7,1.5 -o scan.obj --iso 226 --error 0.1mm
+  isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
+  isoweave mesh --resume gyroid.run
+  isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
+  isoweave mesh brain.nii.gz -o brain.ply --iso 40 --lods 0.1vox,0.3vox,1vox
+  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
+  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --watch
+  isoweave mesh segmentation.nii.gz -o seg.ply --labels all --smooth
+
+Without --error, --lods, --max-distance, --triangles and --ratio the error is 0.2vox. The result does not depend on
+--threads, --schedule and --slab.)";
+
+void run_mesh(MeshArguments arguments) {
+  if (arguments.resume.empty()) {
+    if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
+    if (!arguments.output.given()) throw CLI::RequiredError("--output");
+    if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
+    if (arguments.slab.empty()) arguments.slab = "auto";
+    if (arguments.every.empty()) arguments.every = "5min";
+    // Labels are not resampled, as a value between two labels is no label.
+    const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
+    if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
+    return run_mesh_job(arguments, std::nullopt, nullptr);
+  }
+  // A path that is no folder cannot be locked and holds no state.
+  std::shared_ptr<const CheckpointLock> lock;
+  if (std::filesystem::is_directory(arguments.resume)) lock = std::make_shared<CheckpointLock>(arguments.resume);
+  const Checkpoint checkpoint = read_checkpoint(arguments.resume);
+  arguments = resumed_arguments(arguments, checkpoint);
+  if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
+  run_mesh_job(arguments, checkpoint, std::move(lock));
+}
+
+void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
+  verb.add_option("--iso", arguments.iso, "Value of the surface, or auto (Otsu's threshold)");
+  CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
+  verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
+  verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
+  // --smooth is a flag, as a value that stands apart would be taken for the volume.
+  verb.add_flag(fmt::format("--smooth{{{}}}", kUsualSmoothing), arguments.smooth,
+                "Smooth the mask of what is inside, each vertex within its edge of the lattice; --smooth=N: passes");
+  add_component_options(verb, arguments.components, "full surface; a volume is read twice");
+}
+
+void add_label_options(CLI::App& verb, MeshArguments& arguments) {
+  verb.add_option(
+      "--labels", arguments.labels,
+      "Labels of a label map by number or name, such as 1,2,5, or all: one surface each, in a file of its own");
+  verb.add_option("--label-names", arguments.label_names,
+                  "Names of labels for files and reports: a FreeSurfer, ITK-SNAP or BIDS table")
+      ->needs("--labels");
+}
+
+// The options of the task, which a saved state holds.
+void add_task_options(CLI::App& verb, MeshArguments& arguments) {
+  add_input_options(verb, arguments.input);
+  add_output_options(verb, arguments.output);
+  add_surface_options(verb, arguments);
+  add_stop_options(verb, arguments.stop);
+  verb.add_option("--quality", arguments.quality, "fast, normal or fine")->capture_default_str();
+  verb.add_option("--normals", arguments.normals,
+                  "none, gradient, or quadric: gradients that the simplification keeps as well as the places")
+      ->capture_default_str();
+  verb.add_option("--color-by", arguments.color_by,
+                  "Volume of the same size whose values the vertices get: 'quality' in PLY, 'value' in VTP");
+  verb.add_option("--space", arguments.space, "Coordinates of the output: lps, ras or index (default: the volume's)");
+  add_label_options(verb, arguments);
+  verb.add_flag("--dry-run", arguments.dry_run, "Say what the run would take, from a sample of the volume");
+  verb.add_option("--checkpoint", arguments.checkpoint,
+                  "Save the state of the run in this folder, to go on with after whatever ends it")
+      ->excludes("--to-stdout");
+}
+
+// The options of the way to run, which may change when a run is resumed.
+void add_way_options(CLI::App& verb, MeshArguments& arguments) {
+  verb.add_option("--slab", arguments.slab, "Layers per slab: a number, auto or whole; never changes the result")
+      ->default_str("auto");
+  verb.add_option("--memory", arguments.memory, "Cap on the memory of the process, such as 800M or 2G");
+  verb.add_option("--every", arguments.every,
+                  "How often --checkpoint saves: a number of layers or a time: 16layers, 90s, 5min, 2h")
+      ->default_str("5min");
+  add_run_options(verb, arguments.run);
+  add_page_options(verb, arguments.page);
+  add_watch_option(verb, arguments.watch);
+}
+
+// Excludes what only the command line knows of and labels do not have. The library refuses the rest: see
+// require_possible.
+void exclude_from_labels(CLI::App& verb) {
+  verb.get_option("--labels")
+      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--one-file", "--dry-run", "--every", "--html",
+                 "--page-triangles");
+}
+
+}  // namespace
+
+void add_mesh_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("mesh", "Volume to simplified surface");
+  const auto arguments = std::make_shared<MeshArguments>();
+  add_task_options(*verb, *arguments);
+  const std::vector<CLI::Option*> task = verb->get_options();
+  add_way_options(*verb, *arguments);
+  exclude_from_labels(*verb);
+  CLI::Option* resume =
+      verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
+  for (CLI::Option* option : task) {
+    if (option != verb->get_help_ptr()) resume->excludes(option);
+  }
+  verb->footer(kExamples);
+  verb->callback([arguments, verb] {
+    arguments->numbered = verb->count("--segment") > 0;
+    run_mesh(*arguments);
+  });
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,86 @@
+#include "verbs/mesh_forecast.hpp"
+
+#include <fmt/format.h>
+
+#include "options/input_volume.hpp"
+#include "report/print.hpp"
+#include "report/report.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr const char* kPageOption = "--html";
+
+// The smallest cap that should do, as --memory takes it.
+std::string cap_text(std::uint64_t bytes) { return fmt::format("{}M", (bytes + 999'999) / 1'000'000); }
+
+// The most triangles of all levels: no level has more than the finest. Forecast only where memory depends on it.
+std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOptions& options,
+                                  const MeshFileOptions& file, const RunControl& control, const Forecast& last) {
+  const bool matters = arguments.page.given() || output_memory(arguments.output, 1, 1, file) > 0;
+  if (options.levels.empty() || !matters) return last.triangles;
+  MeshOptions finest = options;
+  finest.error = options.levels.front();
+  finest.levels.clear();
+  const Forecast forecast = forecast_mesh(*open_input(arguments.input), finest, control);
+  return last.triangles + options.levels.size() * forecast.triangles;
+}
+
+}  // namespace
+
+std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
+  return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
+}
+
+std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads) {
+  const bool out_of_reach = asked > 0 && forecast.triangles > asked;
+  return fmt::format(
+      "triangles  about {}, {} of them left{}\noutput     about {}\nmemory     about {}, with --memory at least {}\n"
+      "time       about {:.2g} s on {} thread{}\n",
+      short_count(static_cast<double>(forecast.triangles_extracted)),
+      short_count(static_cast<double>(forecast.triangles)),
+      out_of_reach ? fmt::format(": small components and the error keep more than the {} asked for",
+                                 short_count(static_cast<double>(asked)))
+                   : "",
+      byte_text(bytes), byte_text(forecast.peak_bytes), cap_text(forecast.least_bytes), forecast.seconds, threads,
+      threads == 1 ? "" : "s");
+}
+
+CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options,
+                                 const MeshFileOptions& file, const RunControl& control) {
+  Forecast forecast = forecast_mesh(*open_input(arguments.input), options, control);
+  output_bytes(forecast, arguments, file);
+  const std::uint64_t triangles = triangles_of_levels(arguments, options, file, control, forecast);
+  const std::uint64_t files = output_memory(arguments.output, triangles / 2, triangles, file);
+  add_memory_during(forecast, files + watch_memory(arguments.watch));
+  const std::uint64_t of_run = forecast.least_bytes;
+  if (arguments.page.given()) add_memory_after(forecast, page_memory(triangles));
+  const bool page_decides = forecast.least_bytes > of_run;
+  require_memory(forecast, control.memory, arguments.input.path, page_decides ? kPageOption : "");
+  return {forecast, files};
+}
+
+void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles) {
+  if (!arguments.page.given()) return;
+  Forecast of_page;
+  add_memory_after(of_page, page_memory(triangles));
+  require_memory(of_page, cap, arguments.input.path, kPageOption);
+}
+
+void check_finer(const MeshArguments& arguments, const MeshOptions& options, const MeshFileOptions& file,
+                 const RunControl& control, const Forecast& last) {
+  Forecast sum;
+  if (arguments.output.one_file) sum = last;
+  for (const Length& error : options.levels) {
+    MeshOptions level = options;
+    level.error = error;
+    level.levels.clear();
+    const Forecast forecast = forecast_mesh(*open_input(arguments.input), level, control);
+    sum.vertices += forecast.vertices;
+    sum.triangles += forecast.triangles;
+    output_bytes(sum, arguments, file);
+    if (!arguments.output.one_file) return;
+  }
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,358 @@
+#include "verbs/mesh_job.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "isoweave/error.hpp"
+#include "isoweave/forecast.hpp"
+#include "isoweave/generate.hpp"
+#include "isoweave/printable.hpp"
+#include "options/files.hpp"
+#include "options/levels.hpp"
+#include "options/possible.hpp"
+#include "options/values.hpp"
+#include "report/evidence.hpp"
+#include "report/print.hpp"
+#include "report/report.hpp"
+#include "signals.hpp"
+#include "verbs/mesh_forecast.hpp"
+#include "verbs/mesh_labels.hpp"
+#include "verbs/mesh_options.hpp"
+#include "verbs/mesh_state.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
+                 const MeshOptions& options, const MeshFileOptions& file, const std::optional<Forecast>& forecast) {
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
+  Json input = volume_json(info, arguments.input.path);
+  add_range(input, report.min, report.max, report.nan);
+  Json json = run_json(report, std::move(input));
+  if (forecast) {
+    json["memory"]["predicted_bytes"] = forecast->peak_bytes;
+    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, file));
+  }
+  json["iso"] = options.iso;
+  json["inside"] = arguments.inside;
+  json["closed"] = options.closed;
+  json["smooth"] = options.smooth;
+  if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
+  json["quality"] = arguments.quality;
+  json["normals"] = arguments.normals;
+  if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
+  json["output"] = outputs.back().name();
+  if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
+  json["space"] = space_text(info.geometry, options.space);
+  json["offset"] = file.offset;
+  return json;
+}
+
+// The contents of the page: the mesh as it is in the file, and the surface before simplification, from a second pass
+// over the volume.
+PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
+                           const RunControl& control) {
+  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
+  PageContents contents{read_mesh(outputs.back().path)};
+  contents.finer = read_finer(outputs);
+  if (report.collapses == 0) {
+    contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
+  } else if (report.triangles_extracted - report.triangles_dropped > kMostFullTriangles) {
+    contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
+  } else {
+    MeshOptions full = full_surface(options);
+    full.space = options.space;
+    const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
+    MeshInMemory surface(mesh_offset(volume->info(), options.space));
+    mesh_volume(*volume, surface, full, control);
+    contents.full = surface.copy();
+  }
+  return contents;
+}
+
+// Refuses options that do not go with --labels, before any file is looked at.
+void check_labels(const MeshArguments& arguments) {
+  if (arguments.labels.empty()) return;
+  parse_labels(arguments.labels);
+  if (arguments.input.even_spacing == "resample") {
+    wrong_value("--even-spacing", "mean or refuse with --labels, as nothing lies between two labels", "resample");
+  }
+}
+
+// Makes one mesh for each label.
+void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info,
+                 const RunControl& control) {
+  Evidence evidence(arguments.run, arguments.page);
+  LabelsTask task{arguments.input,
+                  arguments.output,
+                  arguments.run,
+                  options,
+                  parse_labels(arguments.labels),
+                  arguments.label_names,
+                  arguments.numbered,
+                  {},
+                  {}};
+  task.file = [&](const LabelName& label) {
+    MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
+    file.comments = {"isoweave " ISOWEAVE_VERSION,
+                     fmt::format("label {} {} {} quality {}{}", label.label.text(), options.closed ? "closed" : "open",
+                                 stop_text(arguments.stop, kUsualError, 0), arguments.quality, smooth_text(options))};
+    if (!label.name.empty()) file.comments.push_back("name " + printable(label.name));
+    return file;
+  };
+  task.describe = [&](Json& json) {
+    json["closed"] = options.closed;
+    json["smooth"] = options.smooth;
+    json["quality"] = arguments.quality;
+    json["space"] = space_text(info.geometry, options.space);
+  };
+  mesh_label_files(task, info, control, evidence);
+}
+
+// Stands for the page that will watch the run.
+class NoObserver final : public SweepObserver {
+ public:
+  void add_final(std::span<const TriangleCorners>) override {}
+  void end_slab(const Progress&, const SlabRecord&, const std::function<void(const Visitor&)>&) override {}
+};
+
+// One run, step by step.
+class MeshJob {
+ public:
+  // resume: the saved state to continue from, if there is one. lock: that of its folder, or null.
+  MeshJob(const MeshArguments& arguments, std::optional<Checkpoint> resume, std::shared_ptr<const CheckpointLock> lock)
+      : arguments_(arguments),
+        resume_(std::move(resume)),
+        lock_(std::move(lock)),
+        rule_(component_rule(arguments.components)),
+        outputs_(level_outputs(arguments.output, arguments.stop)),
+        options_(mesh_options(arguments)),
+        control_(run_control(arguments.run)) {
+    if (!arguments.memory.empty()) control_.memory = parse_bytes("--memory", arguments.memory);
+  }
+
+  void run() {
+    const ProgressMode mode = progress_mode(arguments_.run.progress, quiet());
+    check();
+    open();
+    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, info_, control_);
+    Evidence evidence(arguments_.run, arguments_.page);
+    if (arguments_.iso == "auto") find_iso();
+    find_target();
+    file_ = file_options(arguments_, arguments_.stop, options_, info_);
+    if (!resume_) foresee();
+    if (arguments_.dry_run) return tell_forecast(evidence);
+    choose();
+    prepare_states();
+    sweep(mode, evidence);
+  }
+
+ private:
+  bool quiet() const { return arguments_.run.quiet; }
+
+  // Checks all options that need no file.
+  void check() const {
+    parse_slab(arguments_.slab, 1);
+    check_watch(arguments_.watch);
+    check_possible();
+    check_labels(arguments_);
+    if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
+      throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
+    }
+    for (const OutputOptions& output : outputs_) {
+      check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
+      check_different({arguments_.color_by, output.path});
+    }
+    check_page(arguments_.page, arguments_.output);
+  }
+
+  // Refuses options that do not go together, before any file is looked at. A volume and an observer that are not the
+  // real ones stand for those that are opened later: only their presence counts.
+  void check_possible() const {
+    MeshOptions asked = options_;
+    RunControl control = control_;
+    if (!arguments_.color_by.empty()) asked.values = generate_volume({});
+    if (arguments_.watch.given()) control.observer = std::make_shared<NoObserver>();
+    control.checkpoint.folder = arguments_.checkpoint;
+    control.resume = resume_;
+    const RunKind kind = arguments_.labels.empty() ? RunKind::kMesh : RunKind::kLabels;
+    require_possible({kind, "--labels", asked, control, arguments_.stop, arguments_.components});
+  }
+
+  // The volumes, and the options that depend on their units and sizes.
+  void open() {
+    volume_ = open_input(arguments_.input);
+    info_ = volume_->info();
+    options_.values = open_values(arguments_);
+    options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
+    if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
+    options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
+    if (!quiet() && info_.geometry.unit.empty() && has_metric_length(arguments_.stop)) {
+      print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm");
+    }
+    options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
+    control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
+    control_.stop = borrow(stop_on_signal());
+  }
+
+  void find_iso() {
+    // Opens the file and discards it: an error that would stop the run after the first pass is found now.
+    open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
+    require_memory_to_read(*volume_, options_, control_);
+    options_.iso = automatic_iso(arguments_.input, *control_.stop);
+    if (!quiet()) print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
+  }
+
+  // Chooses the components, once, in a pass of its own.
+  void choose() {
+    if (rule_.keeps_all() || options_.components != nullptr) return;
+    options_.components =
+        std::make_shared<ComponentChoice>(choose_components(*open_input(arguments_.input), options_, rule_, control_));
+  }
+
+  // Finds the number of triangles to stop at. For a share, all triangles are counted first.
+  void find_target() {
+    if (control_.memory > 0 && !arguments_.stop.ratio.empty()) foresee_share();
+    options_.triangles = stop_triangles(arguments_.stop, [&] {
+      choose();
+      if (options_.components != nullptr) return options_.components->triangles;
+      return count_triangles(*open_input(arguments_.input), options_, control_);
+    });
+  }
+
+  // Refuses a cap that is too small for a share of all triangles, before they are counted.
+  void foresee_share() {
+    const std::uint64_t all = forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
+    const MeshFileOptions file = file_options(arguments_, arguments_.stop, options_, info_);
+    const auto check_with = [&](std::uint64_t triangles) {
+      options_.triangles = stop_triangles(arguments_.stop, [&] { return triangles; });
+      checked_forecast(arguments_, options_, file, control_);
+    };
+    try {
+      check_with(all);
+    } catch (const OverMemory&) {
+      check_with(all + all / 2);  // the cap that is named has to do with more triangles, too
+      throw;
+    }
+    options_.triangles = 0;
+  }
+
+  void foresee() {
+    const CheckedForecast checked = checked_forecast(arguments_, options_, file_, control_);
+    forecast_ = checked.run;
+    files_bytes_ = checked.files;
+    check_finer(arguments_, options_, file_, control_, *forecast_);
+  }
+
+  void tell_forecast(Evidence& evidence) const {
+    const std::uint64_t bytes = output_bytes(*forecast_, arguments_, file_);
+    const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
+    if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
+    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
+  }
+
+  void prepare_states() {
+    control_.resume = resume_;
+    if (resume_ && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
+    if (arguments_.checkpoint.empty()) return;
+    parse_every(arguments_.every, control_.checkpoint);
+    if (!resume_) lock_ = std::make_shared<CheckpointLock>(make_checkpoint_folder(arguments_.checkpoint));
+    control_.checkpoint.folder = arguments_.checkpoint;
+    control_.checkpoint.lock = lock_;
+    control_.checkpoint.note = task_json(arguments_, options_).dump();
+  }
+
+  // The options of a level's file, with its unfinished parts in a folder if there is one.
+  MeshFileOptions level_file(std::size_t level, const std::string& folder) const {
+    MeshFileOptions file = file_options(arguments_, stop_levels(arguments_.stop)[level], options_, info_);
+    file.parts = folder;
+    if (resume_) {
+      file.mark = resume_->marks[level];
+    } else if (!folder.empty()) {
+      make_part_folder(folder);
+    }
+    return file;
+  }
+
+  void sweep(ProgressMode mode, Evidence& evidence) {
+    control_.memory_elsewhere = watch_memory(arguments_.watch) + files_bytes_;
+    const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
+    const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
+    print_volume_notes();
+    const std::shared_ptr<Watch> watch =
+        start_watch(arguments_.watch,
+                    {info_, options_, arguments_.input.path, outputs_.back().name(), !resume_ ? 0 : resume_->layer});
+    ProgressPrinter printer(mode);
+    control_.progress = [&](const Progress& progress) { printer.show(progress); };
+    control_.observer = watch;
+    const MeshReport report = mesh_volume(*volume_, sinks.pointers(), options_, control_);
+    remove_level_folders(folders);
+    if (watch) watch->complete(report);
+    printer.finish();
+    write_evidence(report, sinks, evidence);
+    if (quiet()) return;
+    print_result(report, sinks);
+    if (watch) watch->deliver(*control_.stop);
+  }
+
+  void print_volume_notes() const {
+    if (quiet()) return;
+    for (const std::string& note : info_.notes) print_note("warning: " + note);
+    if (options_.values == nullptr) return;
+    for (const std::string& note : options_.values->info().notes) print_note("warning: " + note);
+  }
+
+  void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
+    Json json = report_json(report, info_, arguments_, options_, file_, forecast_);
+    json["notes"] = sinks.last().notes();
+    evidence.write(std::move(json), control_, [&](const RunControl& control) {
+      std::uint64_t triangles = report.triangles;
+      for (const SurfaceReport& level : report.levels) triangles += level.triangles;
+      check_page_memory(arguments_, control_.memory, triangles);
+      return page_contents(arguments_, options_, report, control);
+    });
+  }
+
+  void print_result(const MeshReport& report, const LevelSinks& sinks) const {
+    for (const std::string& warning : report.warnings) print_note("warning: " + warning);
+    print_notes(sinks.last());
+    print_dropped(report);
+    print_levels(report, outputs_);
+    print_target(report, options_.triangles, options_.error, info_.geometry.unit);
+    const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
+    print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
+  }
+
+  const MeshArguments& arguments_;
+  const std::optional<Checkpoint> resume_;
+  std::shared_ptr<const CheckpointLock> lock_;
+  const ComponentRule rule_;
+  const std::vector<OutputOptions> outputs_;
+  MeshOptions options_;
+  RunControl control_;
+  std::unique_ptr<SliceSource> volume_;
+  VolumeInfo info_;
+  MeshFileOptions file_;
+  std::optional<Forecast> forecast_;  // of a run that is not resumed
+  std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold
+};
+
+}  // namespace
+
+void run_mesh_job(const MeshArguments& arguments, std::optional<Checkpoint> resume,
+                  std::shared_ptr<const CheckpointLock> lock) {
+  MeshJob(arguments, std::move(resume), std::move(lock)).run();
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,269 @@
+#include "verbs/mesh_labels.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "isoweave/error.hpp"
+#include "isoweave/label_names.hpp"
+#include "options/files.hpp"
+#include "options/input_volume.hpp"
+#include "options/run.hpp"
+#include "options/values.hpp"
+#include "report/print.hpp"
+#include "report/progress.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+// Raises the limit of open files, as hundreds of labels are hundreds of files.
+void allow_many_files() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+// Whether labels are the numbers of their objects in the file.
+bool numbers_objects(const LabelsTask& task) {
+  return !task.numbered && output_format(task.output) == MeshFormat::kPrecomputed;
+}
+
+// A label that is meshed.
+struct MeshedLabel {
+  LabelName name;
+  LabelExtent extent;
+};
+
+// A map of labels that do not overlap: a layer of a segmentation, or the whole map.
+struct LabelLayer {
+  InputOptions input;
+  std::vector<MeshedLabel> labels;
+};
+
+// The output of a label: a.ply becomes a_Name.ply.
+OutputOptions label_output(const OutputOptions& output, const std::string& name) {
+  const std::filesystem::path path(output.path);
+  OutputOptions of_label = output;
+  of_label.path = (path.parent_path() / (path.stem().string() + "_" + name + path.extension().string())).string();
+  return of_label;
+}
+
+// A sink that passes on everything but the end, which comes when all layers are done.
+class UnfinishedSink final : public MeshSink {
+ public:
+  explicit UnfinishedSink(MeshSink& sink) : sink_(sink) {}
+
+  void append(const MeshPiece& piece) override { sink_.append(piece); }
+  void finish() override {}
+
+ private:
+  MeshSink& sink_;
+};
+
+// The files of all labels, open.
+struct LabelFiles {
+  std::vector<OutputOptions> outputs;
+  std::vector<std::unique_ptr<MeshSink>> files;
+  std::vector<UnfinishedSink> sinks;
+
+  LabelFiles(const LabelsTask& task, std::span<const LabelLayer> layers) {
+    std::vector<LabelName> names;
+    for (const LabelLayer& layer : layers) {
+      for (const MeshedLabel& label : layer.labels) names.push_back(label.name);
+    }
+    const std::vector<std::string> file_names = label_file_names(names);
+    sinks.reserve(names.size());
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      OutputOptions output = label_output(task.output, file_names[n]);
+      check_different({task.input.path, output.path, task.run.report, task.names});
+      MeshFileOptions options = task.file(names[n]);
+      if (numbers_objects(task)) options.segment = names[n].label.bits();
+      files.push_back(open_output(output, options));
+      sinks.emplace_back(*files.back());
+      outputs.push_back(std::move(output));
+    }
+  }
+
+  void finish() {
+    for (const std::unique_ptr<MeshSink>& file : files) file->finish();
+  }
+};
+
+void check_numbers(const LabelsTask& task, std::span<const LabelName> labels) {
+  if (!numbers_objects(task)) return;
+  for (const LabelName& label : labels) {
+    if (!label.label.is_negative()) continue;
+    wrong_value("--labels", "labels of 0 or more as numbers of objects in .precomputed", label.label.text());
+  }
+}
+
+// Refuses a map whose labels look like the values of a grey image.
+void check_is_label_map(const LabelsTask& task, std::span<const LabelExtent> labels) {
+  constexpr std::size_t kFew = 16;
+  const std::size_t scattered = count_scattered(labels);
+  if (task.choice.insists || labels.size() < kFew || 2 * scattered <= labels.size()) return;
+  throw BadInput(
+      fmt::format("{}: --labels all expects a label map, found {} values of which {} are scattered like those "
+                  "of a grey image (--iso meshes one; --labels all! takes them for labels)",
+                  task.input.path, labels.size(), scattered));
+}
+
+// All labels that occur, and the segments that do not.
+std::vector<MeshedLabel> all_labels(const LabelsTask& task, const LabelBook& book, const InputOptions& input,
+                                    std::int64_t layer, const std::atomic<bool>* stop) {
+  const std::vector<LabelExtent> extents = find_labels(*open_input(input), {}, stop);
+  if (book.segments(layer).empty()) check_is_label_map(task, extents);
+  std::vector<MeshedLabel> labels;
+  labels.reserve(extents.size());
+  for (const LabelExtent& extent : extents) labels.push_back({book.entry(extent.label, layer), extent});
+  for (LabelName& segment : book.segments(layer)) {
+    const bool occurs = std::ranges::find(extents, segment.label, &LabelExtent::label) != extents.end();
+    if (!occurs) labels.push_back({segment, LabelExtent{segment.label, 0, {}}});
+  }
+  return labels;
+}
+
+std::vector<MeshedLabel> chosen_labels(std::span<const LabelName> chosen, const InputOptions& input, std::int64_t layer,
+                                       const std::atomic<bool>* stop) {
+  std::vector<LabelName> here;
+  std::vector<Label> wanted;
+  for (const LabelName& name : chosen) {
+    if (name.layer != layer) continue;
+    here.push_back(name);
+    wanted.push_back(name.label);
+  }
+  if (here.empty()) return {};
+  const std::vector<LabelExtent> extents = find_labels(*open_input(input), wanted, stop);
+  std::vector<MeshedLabel> labels;
+  for (std::size_t n = 0; n < here.size(); ++n) labels.push_back({std::move(here[n]), extents[n]});
+  return labels;
+}
+
+std::vector<LabelLayer> find_layers(const LabelsTask& task, const LabelBook& book, std::span<const LabelName> chosen,
+                                    const std::atomic<bool>* stop) {
+  std::vector<LabelLayer> layers;
+  for (const std::int64_t number : book.layers()) {
+    LabelLayer layer{task.input, {}};
+    if (number > 0 || book.layers().size() > 1) layer.input.channel = std::to_string(number);
+    layer.labels = task.choice.all ? all_labels(task, book, layer.input, number, stop)
+                                   : chosen_labels(chosen, layer.input, number, stop);
+    if (!layer.labels.empty()) layers.push_back(std::move(layer));
+  }
+  if (layers.empty()) throw BadInput(task.input.path + ": --labels all expects a label other than 0, found none");
+  return layers;
+}
+
+LabelsReport mesh_layers(const LabelsTask& task, std::span<const LabelLayer> layers, LabelFiles& files,
+                         const RunControl& control) {
+  LabelsReport report;
+  std::size_t first = 0;
+  for (const LabelLayer& layer : layers) {
+    std::vector<LabelSink> sinks;
+    for (const MeshedLabel& label : layer.labels) {
+      sinks.push_back({label.name.label, &files.sinks[first + sinks.size()], label.extent.box});
+    }
+    LabelsReport of_layer = mesh_labels(*open_input(layer.input), sinks, task.options, control);
+    if (first == 0) {
+      report = std::move(of_layer);
+    } else {
+      add_layer(report, std::move(of_layer));
+    }
+    first += sinks.size();
+  }
+  return report;
+}
+
+std::string color_text(const std::array<double, 3>& color) {
+  const auto byte = [](double part) { return static_cast<int>(std::lround(255 * std::clamp(part, 0.0, 1.0))); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]));
+}
+
+Json entry_json(const MeshedLabel& label, const MeshReport& report, const std::string& output) {
+  Json json = {{"label", label_json(label.name.label)},
+               {"name", label.name.name},
+               {"color", label.name.color ? Json(color_text(*label.name.color)) : Json(nullptr)},
+               {"layer", label.name.layer},
+               {"samples", label.extent.samples},
+               {"output", output},
+               {"cells_crossed", report.cells_crossed},
+               {"triangles_extracted", report.triangles_extracted},
+               {"vertices_extracted", report.vertices_extracted},
+               {"collapses", report.collapses},
+               {"postponed", report.postponed},
+               {"rekeyed", report.rekeyed},
+               {"specks", report.specks},
+               {"warnings", report.warnings}};
+  json.update(surface_json(report));
+  return json;
+}
+
+Json report_json(const LabelsTask& task, const VolumeInfo& info, const LabelsReport& report,
+                 std::span<const LabelLayer> layers, const LabelFiles& files) {
+  Json input = volume_json(info, task.input.path);
+  add_range(input, report.total.min, report.total.max, report.total.nan);
+  Json json = run_json(report.total, std::move(input));
+  task.describe(json);
+  Json labels = Json::array();
+  for (const LabelLayer& layer : layers) {
+    for (const MeshedLabel& label : layer.labels) {
+      const std::size_t n = labels.size();
+      labels.push_back(entry_json(label, report.labels[n], files.outputs[n].name()));
+      labels.back()["notes"] = files.files[n]->notes();
+    }
+  }
+  json["labels"] = std::move(labels);
+  return json;
+}
+
+void print_labels(const LabelsTask& task, const VolumeInfo& info, const LabelsReport& report, const LabelFiles& files,
+                  std::size_t layers) {
+  for (const std::string& warning : report.total.warnings) print_note("warning: " + warning);
+  for (std::size_t n = 0; n < report.labels.size(); ++n) {
+    for (const std::string& warning : report.labels[n].warnings) print_note("warning: " + warning);
+    print_notes(*files.files[n]);
+    print_surface(report.labels[n], files.outputs[n].name());
+  }
+  const auto voxels = static_cast<double>(info.slice_samples()) * static_cast<double>(info.dims[2]);
+  print_summary(report.total, fmt::format("{}: {} labels", task.output.name(), report.labels.size()),
+                voxels * static_cast<double>(layers));
+}
+
+}  // namespace
+
+void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl control, Evidence& evidence) {
+  const RunOptions& run = task.run;
+  allow_many_files();
+  const LabelBook book(task.names, info, task.input.channel);
+  const std::vector<LabelName> chosen = book.chosen(task.choice);
+  check_numbers(task, chosen);
+  const LabelName any = chosen.empty() ? LabelName{1, {}, {}, 0} : chosen.front();
+  // Opens the file and discards it: an error that would stop the run after the first pass is found now.
+  std::unique_ptr<MeshSink> any_file =
+      open_output(label_output(task.output, label_file_names(std::span(&any, 1))[0]), task.file(any));
+  const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop.get());
+  any_file.reset();
+  for (const LabelLayer& layer : layers) {
+    for (const MeshedLabel& label : layer.labels) check_numbers(task, std::span(&label.name, 1));
+  }
+  LabelFiles files(task, layers);
+  if (!run.quiet) {
+    const std::unique_ptr<SliceSource> first = open_input(layers.front().input);
+    for (const std::string& note : first->info().notes) print_note("warning: " + note);
+  }
+  ProgressPrinter printer(progress_mode(run.progress, run.quiet));
+  control.progress = [&](const Progress& progress) { printer.show(progress); };
+  const LabelsReport report = mesh_layers(task, layers, files, control);
+  files.finish();
+  printer.finish();
+  evidence.write(report_json(task, info, report, layers, files), control, {});
+  if (!run.quiet) print_labels(task, info, report, files, layers.size());
+}
+
+}  // namespace isoweave::cli

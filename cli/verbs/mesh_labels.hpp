@@ -1,0 +1,34 @@
+// mesh --labels: a mesh for each label, each in a file of its own.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "isoweave/pipeline.hpp"
+#include "options/input_volume.hpp"
+#include "options/output_mesh.hpp"
+#include "options/run.hpp"
+#include "report/evidence.hpp"
+#include "report/report.hpp"
+#include "verbs/mesh_label_choice.hpp"
+
+namespace isoweave::cli {
+
+struct LabelsTask {
+  const InputOptions& input;
+  const OutputOptions& output;
+  const RunOptions& run;
+  const MeshOptions& options;
+  LabelChoice choice;
+  std::string names;      // a file of names, or none
+  bool numbered = false;  // --segment is given: else a label is the number of its object
+  // Gives the options of a label's file, and the task for the report.
+  std::function<MeshFileOptions(const LabelName& label)> file;
+  std::function<void(Json& report)> describe;
+};
+
+// Finds the labels in a first pass over the volume, and meshes them in a second one. A segmentation takes both passes
+// for each of its layers.
+void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl control, Evidence& evidence);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,102 @@
+#include "verbs/mesh_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "isoweave/error.hpp"
+#include "isoweave/histogram.hpp"
+#include "options/input_volume.hpp"
+#include "options/values.hpp"
+#include "report/report.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+Normals parse_normals(std::string_view text) {
+  return parse_choice<Normals>(
+      "--normals", text,
+      {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
+}
+
+OutputSpace parse_space(std::string_view text) {
+  if (text.empty()) return OutputSpace::kAsVolume;
+  return parse_choice<OutputSpace>(
+      "--space", text, {{"lps", OutputSpace::kLps}, {"ras", OutputSpace::kRas}, {"index", OutputSpace::kIndex}});
+}
+
+// Passes of --smooth, 0 where it is not given.
+int parse_smooth(std::string_view text) {
+  if (text.empty()) return 0;
+  const std::int64_t passes = parse_count("--smooth", text);
+  if (passes > kMostSmoothing) wrong_value("--smooth", fmt::format("at most {} passes", kMostSmoothing), text);
+  return static_cast<int>(passes);
+}
+
+std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
+  return {"isoweave " ISOWEAVE_VERSION,
+          fmt::format("iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside,
+                      options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
+                      arguments.quality, smooth_text(options) + component_text(component_rule(arguments.components)))};
+}
+
+}  // namespace
+
+std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
+  const std::int64_t whole = slices + 2;
+  if (text == "auto") return 0;
+  if (text == "whole") return whole;
+  return std::min(parse_count("--slab", text), whole);
+}
+
+MeshOptions mesh_options(const MeshArguments& arguments) {
+  MeshOptions options;
+  const bool known = arguments.iso != "auto" && arguments.labels.empty();
+  if (known) options.iso = parse_number("--iso", arguments.iso);
+  options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
+  options.closed = !arguments.open;
+  options.smooth = parse_smooth(arguments.smooth);
+  options.quality = parse_quality(arguments.quality);
+  options.normals = parse_normals(arguments.normals);
+  options.drop_specks = drops_specks(arguments.stop);
+  options.space = parse_space(arguments.space);
+  return options;
+}
+
+std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
+  if (arguments.color_by.empty()) return nullptr;
+  InputOptions input;
+  input.path = arguments.color_by;
+  input.roi = arguments.input.roi;
+  input.step = arguments.input.step;
+  input.even_spacing = arguments.input.even_spacing;
+  input.external = arguments.input.external;
+  return open_input(input);
+}
+
+double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
+  const std::optional<double> iso = otsu_threshold(read_histogram(*open_input(input), &stop));
+  if (!iso) throw BadInput(input.path + ": --iso auto expects at least two different values, found one or none");
+  return *iso;
+}
+
+std::string smooth_text(const MeshOptions& options) {
+  return options.smooth > 0 ? fmt::format(" smooth {}", options.smooth) : "";
+}
+
+MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
+                             const VolumeInfo& volume) {
+  MeshFileOptions file;
+  file.normals = options.normals != Normals::kAbsent;
+  file.values = !arguments.color_by.empty();
+  file.comments = comments(arguments, stop, options);
+  file.unit = volume.geometry.unit;
+  file.space = space_text(volume.geometry, options.space);
+  file.offset = mesh_offset(volume, options.space);
+  return mesh_file_options(arguments.output, std::move(file));
+}
+
+}  // namespace isoweave::cli

@@ -1,0 +1,36 @@
+// Turns the command line of isoweave mesh into the options of the library.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
+#include "options/input_volume.hpp"
+#include "verbs/mesh_arguments.hpp"
+
+namespace isoweave::cli {
+
+// Layers per slab; 0: chosen by the run. A whole volume is one layer thicker than its slices when it is closed.
+std::int64_t parse_slab(std::string_view text, std::int64_t slices);
+
+// The options that need no volume.
+MeshOptions mesh_options(const MeshArguments& arguments);
+
+// The volume whose values the vertices get, opened with the choices made for the first volume; or null.
+std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
+
+// Otsu's threshold. Reads the volume once more, by itself, as slices cannot be read twice.
+double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop);
+
+// " smooth 4", for the comments of a mesh file; empty where nothing is smoothed.
+std::string smooth_text(const MeshOptions& options);
+
+// The options of a level's mesh file.
+MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options,
+                             const VolumeInfo& volume);
+
+}  // namespace isoweave::cli

@@ -1,0 +1,173 @@
+// isoweave render: a picture of a mesh as PNG.
+#include "isoweave/render.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "isoweave/error.hpp"
+#include "options/files.hpp"
+#include "options/input_mesh.hpp"
+#include "options/values.hpp"
+#include "report/print.hpp"
+#include "signals.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave render bone.ply -o bone.png
+  isoweave render bone.ply -o side.png --view right --size 1920x1080 --background transparent
+  isoweave render small.ply -o mesh.png --wireframe --shading flat --view 150,10
+  isoweave render distances.ply -o error.png --color-by quality --range 0,0.5
+At --view 0,0 (front) the camera looks along +y with z up; azimuth turns it to the side of +x (right), elevation up.)";
+
+constexpr std::int64_t kMostPixels = 16384;
+constexpr std::int64_t kMostSamples = 8;
+
+struct RenderArguments {
+  ReadMeshOptions reading;
+  std::string path, output, size = "1200x900", view = "35,20", background = "white", colour = "#decdb4", colour_by,
+                            range;
+  std::string shading = "smooth", samples = "3", threads = "all";
+  bool wireframe = false, quiet = false;
+};
+
+int parse_limited(std::string_view option, std::string_view text, std::int64_t most) {
+  const std::int64_t count = parse_count(option, text);
+  if (count > most) wrong_value(option, fmt::format("at most {}", most), text);
+  return static_cast<int>(count);
+}
+
+// The two parts around a separator; the second one is empty without it.
+std::pair<std::string_view, std::string_view> halves(std::string_view text, char separator) {
+  const std::size_t at = std::min(text.find(separator), text.size());
+  return {text.substr(0, at), text.substr(std::min(at + 1, text.size()))};
+}
+
+View parse_view(std::string_view text) {
+  constexpr std::pair<std::string_view, View> kNamed[] = {
+      {"front", {0, 0}}, {"right", {90, 0}},   {"back", {180, 0}},   {"left", {-90, 0}},
+      {"top", {0, 90}},  {"bottom", {0, -90}}, {"iso", {45, 35.264}}};
+  for (const auto& [name, view] : kNamed) {
+    if (text == name) return view;
+  }
+  constexpr std::string_view kExpected =
+      "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees, the second from -90 to 90";
+  const auto [azimuth, elevation] = halves(text, ',');
+  if (elevation.empty()) wrong_value("--view", kExpected, text);
+  const View view{parse_number("--view", azimuth), parse_number("--view", elevation)};
+  if (view.elevation < -90 || view.elevation > 90) wrong_value("--view", kExpected, text);
+  return view;
+}
+
+Colour parse_colour(std::string_view option, std::string_view text) {
+  if (text == "white") return {255, 255, 255};
+  if (text == "black") return {0, 0, 0};
+  unsigned bits = 0;
+  const char* const end = text.data() + text.size();
+  const bool is_colour =
+      text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, bits, 16).ptr == end;
+  if (!is_colour) wrong_value(option, "a colour #rrggbb, white or black", text);
+  return {static_cast<std::uint8_t>(bits >> 16U), static_cast<std::uint8_t>(bits >> 8U & 255U),
+          static_cast<std::uint8_t>(bits & 255U)};
+}
+
+std::array<double, 2> parse_range(std::string_view text) {
+  const auto [low, high] = halves(text, ',');
+  const std::array<double, 2> range{parse_number("--range", low), parse_number("--range", high)};
+  if (!(range[0] < range[1])) wrong_value("--range", "LOW,HIGH, the second larger", text);
+  return range;
+}
+
+RenderOptions parse_options(const RenderArguments& arguments) {
+  RenderOptions options;
+  const auto [width, height] = halves(arguments.size, 'x');
+  options.width = parse_limited("--size", width, kMostPixels);
+  options.height = parse_limited("--size", height, kMostPixels);
+  options.view = parse_view(arguments.view);
+  options.background.reset();
+  if (arguments.background != "transparent") options.background = parse_colour("--background", arguments.background);
+  options.colour = parse_colour("--color", arguments.colour);
+  options.shading =
+      parse_choice<Shading>("--shading", arguments.shading, {{"smooth", Shading::kSmooth}, {"flat", Shading::kFlat}});
+  options.wireframe = arguments.wireframe;
+  options.samples = parse_limited("--samples", arguments.samples, kMostSamples);
+  options.threads = parse_threads(arguments.threads);
+  if (!arguments.colour_by.empty()) parse_choice<int>("--color-by", arguments.colour_by, {{"quality", 0}});
+  if (!arguments.range.empty()) {
+    if (arguments.colour_by.empty()) throw std::invalid_argument("--range goes with --color-by");
+    options.range = parse_range(arguments.range);
+  }
+  return options;
+}
+
+// A text for the numbers at the ends of the colours.
+std::string colours_text(const RenderOptions& options, std::span<const float> quality) {
+  const auto [low, high] = options.range ? *options.range : finite_range(quality);
+  return low <= high ? fmt::format(", colours from {:.6g} to {:.6g}", low, high) : "";
+}
+
+// Finds an error that would keep the picture from being written, before the picture is made.
+void check_output(const std::string& path) {
+  if (!path.ends_with(".png")) throw CannotWrite(path + ": expected a name that ends with .png");
+  require_png(path);
+}
+
+void run_render(const RenderArguments& arguments) {
+  const RenderOptions options = parse_options(arguments);
+  check_different({arguments.path, arguments.output});
+  check_output(arguments.output);
+  exit_on_signal();
+  TriangleMesh mesh = read_named_mesh(arguments.path, arguments.reading);
+  if (mesh.triangles.empty()) throw BadInput(arguments.path + ": expected a mesh with triangles, found none");
+  if (!arguments.quiet) print_mesh_warnings(arguments.path, mesh);
+  if (arguments.colour_by.empty()) {
+    mesh.values.clear();
+  } else if (mesh.values.empty()) {
+    throw BadInput(arguments.path + ": expected a PLY file with a number such as 'quality' at each vertex, found none");
+  }
+  write_png(arguments.output, render_mesh(mesh, options, mesh.values));
+  if (!arguments.quiet) {
+    print_note(fmt::format("{}: {} x {} pixels, {} triangles{}", arguments.output, options.width, options.height,
+                           grouped(mesh.triangles.size()), colours_text(options, mesh.values)));
+  }
+}
+
+}  // namespace
+
+void add_render_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("render", "A picture of a mesh as PNG, without a display");
+  const auto arguments = std::make_shared<RenderArguments>();
+  verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
+  verb->add_option("-o,--output", arguments->output, "Picture to write: .png")->required();
+  verb->add_option("--size", arguments->size, "Pixels: WxH")->capture_default_str();
+  verb->add_option("--view", arguments->view, "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION")
+      ->capture_default_str();
+  verb->add_option("--background", arguments->background, "#rrggbb, white, black or transparent")
+      ->capture_default_str();
+  verb->add_option("--color", arguments->colour, "Of the surface: #rrggbb, white or black")->capture_default_str();
+  verb->add_option(
+      "--color-by", arguments->colour_by,
+      "quality: by the number at each vertex that mesh --color-by and compare --distances write, dark to bright");
+  verb->add_option("--range", arguments->range,
+                   "LOW,HIGH: numbers at the ends of the colours (default: all there are)");
+  verb->add_option("--shading", arguments->shading, "smooth or flat")->capture_default_str();
+  verb->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the triangles");
+  verb->add_option("--samples", arguments->samples, "Samples along each side of a pixel")->capture_default_str();
+  add_external_option(*verb, arguments->reading);
+  verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
+  verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  verb->footer(kExamples);
+  verb->callback([arguments] { run_render(*arguments); });
+}
+
+}  // namespace isoweave::cli

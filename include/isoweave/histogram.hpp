@@ -1,0 +1,49 @@
+// The distribution of a volume's values, and an iso-value from it.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "isoweave/label.hpp"
+#include "isoweave/volume.hpp"
+
+#pragma GCC visibility push(default)
+namespace isoweave {
+
+// The distribution of the values of a volume: slope and intercept are applied. Infinities are counted, but lie outside
+// the range.
+struct Histogram {
+  static constexpr std::size_t kBins = 256;
+
+  double min = 1;  // of the finite values; min > max when there are none
+  double max = 0;
+  std::uint64_t nan = 0;                      // samples
+  std::uint64_t infinite = 0;                 // samples
+  std::optional<std::array<Label, 2>> whole;  // min and max without rounding, of integers of 64 bits without a scaling
+  std::array<std::uint64_t, kBins> bins{};    // samples in equal parts of [min, max], the last one closed
+
+  bool empty() const { return min > max; }
+};
+
+// Reads the whole volume once, some rows at a time. Nothing is read where all samples are known to be one value.
+// @pre The volume has not been read.
+// @throws Interrupted when `stop` is set, and what the source throws
+// @cost Memory: about 4 MB, or a slice where the source has no rows.
+// @determinism Depends on the samples only.
+Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop = nullptr);
+
+// Otsu's threshold: the value that splits the histogram into the two classes with the largest variance between them
+// (Otsu, "A threshold selection method from gray-level histograms", 1979); the middle one of equally good values. As an
+// iso-value it parts bright from dark. Nothing when there are not two different values.
+std::optional<double> otsu_threshold(const Histogram& histogram);
+
+// The counts of the histogram in fewer equal parts of its range.
+// @throws std::invalid_argument unless `parts` divides kBins
+std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts);
+
+}  // namespace isoweave
+#pragma GCC visibility pop

@@ -1,0 +1,12 @@
+// Text of others in our messages, told from ours by quotes.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace isoweave {
+
+// The first characters of a text, printable, in single quotes.
+std::string quoted(std::string_view text);
+
+}  // namespace isoweave

@@ -1,0 +1,24 @@
+// What a forecast of a run says of the memory of the whole process.
+#include <algorithm>
+
+#include "isoweave/forecast.hpp"
+#include "pipeline/memory_cap.hpp"
+#include "system/process_memory.hpp"
+
+namespace isoweave {
+
+void add_memory_during(Forecast& forecast, std::uint64_t bytes) {
+  forecast.peak_bytes += bytes;
+  forecast.least_bytes = std::max(forecast.least_bytes + bytes, with_slack(system::peak_bytes()));
+}
+
+void add_memory_after(Forecast& forecast, std::uint64_t bytes) {
+  forecast.least_bytes = std::max(forecast.least_bytes, with_slack(bytes));
+}
+
+void require_memory(const Forecast& forecast, std::uint64_t cap, const std::string& where, const std::string& purpose) {
+  if (cap == 0 || without_slack(forecast.least_bytes) <= cap) return;
+  refuse_cap(where, forecast.least_bytes, cap, purpose.empty() ? "" : " (for " + purpose + ")");
+}
+
+}  // namespace isoweave
