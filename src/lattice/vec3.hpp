@@ -3,6 +3,7 @@
 // Real is double, or several doubles at once (simplify/lanes.hpp): the maths is written once for both.
 #pragma once
 
+#include <cmath>
 #include <type_traits>
 
 #include "parallel/annotations.hpp"
@@ -44,6 +45,11 @@ ISOWEAVE_HD inline Real dot(const BasicVec3<Real>& a, const BasicVec3<Real>& b) 
 template <class Real>
 ISOWEAVE_HD inline BasicVec3<Real> cross(const BasicVec3<Real>& a, const BasicVec3<Real>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Whether p lies no farther from 0 than the limits say along each axis.
+inline bool lies_within(const Vec3& p, const Vec3& limits) {
+  return std::abs(p.x) <= limits.x && std::abs(p.y) <= limits.y && std::abs(p.z) <= limits.z;
 }
 
 }  // namespace isoweave

@@ -15,6 +15,11 @@ PartShape part_shape(const SimplifyTask& task) {
   shape.normal_quadrics = task.zone.normals_count;
   shape.values = task.values;
   shape.retire = task.zone.retire;
+  // A vertex may leave the volume by a little. In numbers as large as these, searches still end.
+  constexpr double kFar = 1 << 20;
+  const auto& dims = task.zone.numbering.lattice.dims;
+  const auto far = [&](std::size_t n, double cell) { return kFar * static_cast<double>(dims[n] + 2) * cell; };
+  shape.farthest = {far(0, task.zone.cell.x), far(1, task.zone.cell.y), far(2, task.zone.cell.z)};
   return shape;
 }
 

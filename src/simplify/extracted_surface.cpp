@@ -32,11 +32,6 @@ Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
 // The number of a cell. It is clamped, as mesh files may lie anywhere.
 std::int64_t cell_number(double cells) { return static_cast<std::int64_t>(std::floor(std::clamp(cells, -1e15, 1e15))); }
 
-bool is_finite(const ExtractedSurface::Corners& corners) {
-  const Vector sum = corners[0] + corners[1] + corners[2];
-  return std::isfinite(sum[0] + sum[1] + sum[2]);
-}
-
 // Puts the longest side first.
 void turn_longest_side_first(ExtractedSurface::Corners& t) {
   std::array<double, 3> squared{};
@@ -361,13 +356,15 @@ void ExtractedSurface::serialize(StateWriter& state) const {
 }
 
 // Grids are made anew. An answer does not depend on them, nor on pieces that have been forgotten.
-void ExtractedSurface::serialize(StateReader& state) {
+void ExtractedSurface::serialize(StateReader& state, const Vec3& farthest) {
   const std::size_t pieces = state.count(sizeof(std::uint64_t));
   state.value(complete_below_);
   Array<Corners> triangles;
   for (std::size_t n = 0; n < pieces; ++n) {
     state.list(triangles);
-    for (const Corners& corners : triangles) state.require(is_finite(corners), "a surface whose places are finite");
+    for (const auto& [a, b, c] : triangles) {
+      for (const Vector& p : {a, b, c}) state.require(lies_within({p[0], p[1], p[2]}, farthest), "a surface nearby");
+    }
     append(triangles, complete_below_);
   }
 }

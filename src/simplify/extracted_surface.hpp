@@ -49,9 +49,10 @@ class ExtractedSurface {
 
   std::uint64_t bytes() const;
 
-  // The triangles between two appends: written, and read into an empty surface. Throws BadInput.
+  // The triangles between two appends: written, and read into an empty surface. Throws BadInput for corners farther
+  // away from 0 than `farthest` along an axis.
   void serialize(StateWriter& state) const;
-  void serialize(StateReader& state);
+  void serialize(StateReader& state, const Vec3& farthest);
 
  private:
   using Cell = std::array<std::int64_t, 3>;

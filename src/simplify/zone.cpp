@@ -76,7 +76,7 @@ void Zone::serialize(StateReader& state, const PartShape& shape) {
   ZonePart part = read_part(state, shape);
   state.value(limit);
   state.require(limit <= options.retire, "a limit of costs that the run has");
-  if (extracted_surface_) extracted_surface_->serialize(state);
+  if (extracted_surface_) extracted_surface_->serialize(state, shape.farthest);
   vertex_array_ = std::move(part.vertices);
   state_array_ = std::move(part.states);
   normal_array_ = std::move(part.normals);

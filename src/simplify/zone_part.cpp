@@ -104,7 +104,7 @@ class PartReader {
       part_.vertices[n].id = id;
     });
     state_.each<Vec3>(count, [&](std::size_t n, const Vec3& position) {
-      state_.require(is_finite(position), "positions that are finite");
+      state_.require(lies_within(position, shape_.farthest), "positions that are not far away from the volume");
       part_.vertices[n].position = position;
     });
     state_.each<Quadric>(count, [&](std::size_t n, const Quadric& quadric) {
