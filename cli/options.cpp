@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 
+#include "files/from_chars.hpp"
 #include "isoweave/error.hpp"
 #include "output.hpp"
 
@@ -32,7 +32,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 template <class T>
 std::optional<T> to_number(std::string_view text) {
   T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = number_from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
