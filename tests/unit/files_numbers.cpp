@@ -97,6 +97,19 @@ TEST(Numbers, AStreamKnowsTheEndsOfTheRange) {
   }
 }
 
+// Where the standard library has no function of its own, both are the stream.
+TEST(Numbers, TheLeastOnesAreReadAndSmallerOnesRefused) {
+  EXPECT_EQ(parse<double>("5e-324", number_from_chars).bits, 1U);
+  EXPECT_EQ(parse<double>("-4e-320x", number_from_chars), (Parsed{std::errc{}, 7, 0x8000000000001fa0U}));
+  EXPECT_EQ(parse<float>("1e-45", number_from_chars).bits, 1U);
+  for (const std::string_view text : {"2e-324", "-1e-999", "2e308"}) {
+    EXPECT_EQ(parse<double>(text, number_from_chars).error, std::errc::result_out_of_range) << text;
+  }
+  for (const std::string_view text : {"5e-46", "3.5e38"}) {
+    EXPECT_EQ(parse<float>(text, number_from_chars).error, std::errc::result_out_of_range) << text;
+  }
+}
+
 template <class Real>
 void expect_read_back(std::uint64_t random) {
   const auto value = std::bit_cast<Real>(static_cast<Bits<Real>>(random));
