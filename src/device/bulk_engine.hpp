@@ -18,6 +18,7 @@
 #include "device/extract_passes.hpp"
 #include "extract/front_bits.hpp"
 #include "isoweave/error.hpp"
+#include "parallel/size.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -25,7 +26,9 @@ namespace isoweave {
 template <class Device>
 class BulkEngine final : public DeviceEngine {
  public:
-  BulkEngine(Device device, const BulkOptions& options) : device_(std::move(device)), options_(options) {
+  // Throws OverMemory, before it takes memory, where one layer is too many for a slab.
+  BulkEngine(Device device, const BulkOptions& options)
+      : device_(std::move(device)), options_(options), most_layers_(most_layers_of(options.volume)) {
     const std::array<std::int64_t, 3>& dims = options.volume.dims;
     bits_.numbering = VertexNumbering::of_cube_edges(dims);
     bits_.closed = options.rule.closed;
@@ -50,15 +53,7 @@ class BulkEngine final : public DeviceEngine {
     return {next_layer_ - margin, next_layer_ + layers + 1 + margin};
   }
 
-  std::int64_t most_layers() const override {
-    constexpr std::int64_t kMostSamples = std::int64_t{1} << 29;
-    const std::int64_t samples = (options_.volume.dims[0] + 2) * (options_.volume.dims[1] + 2);
-    if (samples > kMostSamples) {
-      throw OverMemory(options_.volume.path + ": a slice has " + std::to_string(samples) +
-                       " samples, expected at most 2^29 on a device: use the processor");
-    }
-    return std::max<std::int64_t>(kMostSamples / samples, 1);
-  }
+  std::int64_t most_layers() const override { return most_layers_; }
 
   void upload(const SliceWindow& window, std::int64_t layers) override {
     auto [first, end] = slices_for(layers);
@@ -68,7 +63,7 @@ class BulkEngine final : public DeviceEngine {
     if (end - first > room_) {
       room_ = end - first;
       device_.await_uploads();  // to where the ring has been
-      ring_.resize(static_cast<std::size_t>(room_) * bytes);
+      ring_.resize(to_size(room_, bytes));
       uploaded_ = first;
       device_.order_uploads();
     }
@@ -223,7 +218,19 @@ class BulkEngine final : public DeviceEngine {
 
   enum List : std::size_t { kChanged, kCandidates, kMinima, kUnkeyed, kLists };
 
-  std::size_t plane_words() const { return static_cast<std::size_t>(bits_.plane()); }
+  // A point of the lattice has at most three vertices and five triangles to count, so sums over 2^29 points stay below
+  // 2^32.
+  static std::int64_t most_layers_of(const VolumeInfo& volume) {
+    constexpr std::int64_t kMostSamples = std::int64_t{1} << 29;
+    const std::int64_t samples = (volume.dims[0] + 2) * (volume.dims[1] + 2);
+    if (samples > kMostSamples) {
+      throw OverMemory(volume.path + ": a slice has " + std::to_string(samples) +
+                       " samples, expected at most 2^29 on a device: use the processor");
+    }
+    return kMostSamples / samples;
+  }
+
+  std::size_t plane_words() const { return to_size(bits_.plane()); }
   std::int64_t plane() const { return bits_.plane(); }
   std::int64_t front_count() const { return signed_count(front_.size()); }
   std::int64_t side_count() const { return unkeyed_count_ + 3 * signed_count(counts_.triangles); }
@@ -410,6 +417,7 @@ class BulkEngine final : public DeviceEngine {
 
   Device device_;
   BulkOptions options_;
+  std::int64_t most_layers_;
   SlabBits bits_;
   std::int64_t next_layer_ = -1;
   std::int64_t end_layer_ = 0;

@@ -32,8 +32,7 @@ class DeviceEngine : public FinalSource {
   // Slices [first, end) that the next `layers` layers read, unclipped.
   virtual std::pair<std::int64_t, std::int64_t> slices_for(std::int64_t layers) const = 0;
 
-  // The most layers of a slab whose vertices and triangles can be counted in 32 bits, whatever its samples are. Throws
-  // OverMemory when one layer is too many.
+  // The most layers of a slab whose vertices and triangles can be counted in 32 bits, whatever its samples are.
   virtual std::int64_t most_layers() const = 0;
 
   // Starts to send the slices that the next `layers` layers read, and returns before they are there. The window holds

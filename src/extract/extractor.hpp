@@ -40,7 +40,7 @@ class Extractor {
   virtual SlabCounts extract(const SliceWindow& window, std::int64_t layers, std::uint64_t most_vertices,
                              SurfacePiece& piece) = 0;
 
-  // The most layers of a slab.
+  // The most layers of a slab, however many are left.
   virtual std::int64_t most_layers() const { return layers_left(); }
 
   // New vertices that memory other than the process's has room for, where no more than `cap` bytes may be held (0:

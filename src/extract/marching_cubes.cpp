@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "extract/classify.hpp"
 #include "extract/front_bits.hpp"
 #include "isoweave/error.hpp"
+#include "parallel/size.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -31,25 +33,23 @@ void for_each_bit(std::uint64_t word, std::size_t w, Visit&& visit) {
   for (; word != 0; word &= word - 1) visit(static_cast<std::int64_t>(64 * w) + std::countr_zero(word));
 }
 
-// Replaces a count by the sum of those before it.
-void scan_one(std::uint32_t& count, std::uint64_t& sum) {
-  const std::uint32_t own = count;
-  count = static_cast<std::uint32_t>(sum);
-  sum += own;
+const std::array<std::int64_t, 3>& checked_dims(const VolumeInfo& volume) {
+  if (volume.dims[0] <= kMostRowSamples) return volume.dims;
+  throw OverMemory(volume.path + ": a row has " + std::to_string(volume.dims[0]) + " samples, expected at most 2^29");
 }
 
 }  // namespace
 
 MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor)
-    : dims_(volume.dims),
+    : dims_(checked_dims(volume)),
       numbering_(VertexNumbering::of_cube_edges(options.part_of.value_or(PartOfLattice{volume.dims, {}}).dims)),
       first_(options.part_of.value_or(PartOfLattice{}).first),
       type_(volume.type),
       spacing_(volume.geometry.spacing),
       options_(options),
       executor_(executor),
-      rows_(static_cast<std::size_t>(volume.dims[1]) + 2),
-      words_((static_cast<std::size_t>(volume.dims[0]) + 2 + 63) / 64),
+      rows_(to_size(volume.dims[1] + 2)),
+      words_(to_size((volume.dims[0] + 2 + 63) / 64)),
       end_layer_(options.rule.closed ? volume.dims[2] : volume.dims[2] - 1),
       slices_(1) {
   const std::int64_t nx = volume.dims[0];
@@ -59,7 +59,7 @@ MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& opt
   end_mask_.assign(words_, 0);
   for (const std::int64_t bit : {std::int64_t{1}, nx})
     end_mask_[static_cast<std::size_t>(bit >> 6)] |= 1ULL << (bit & 63);
-  const std::size_t size = rows_ * words_;
+  const std::size_t size = to_size(rows_, words_);
   slices_[0] = {std::vector<std::uint64_t>(size, 0), std::vector<std::uint64_t>(size, 0),
                 std::vector<std::uint64_t>(size, 0), std::vector<std::uint32_t>(size, 0)};
 }
@@ -73,7 +73,7 @@ SlabCounts MarchingCubes::extract(const SliceWindow& window, std::int64_t layers
                                   SurfacePiece& piece) {
   piece.clear();
   piece.inherited = front_size_;
-  auto count = static_cast<std::size_t>(layers);
+  auto count = to_size(layers);
   slices_.resize(count + 1);
   layers_.resize(count);
   for (std::size_t n = 0; n < count; ++n) {
@@ -174,9 +174,9 @@ std::uint32_t MarchingCubes::crossings_on_border(std::size_t n, std::size_t row)
 
 // Finds the crossings of every row, and counts them and the triangles.
 void MarchingCubes::count_rows(std::size_t layers) {
-  rows_of_slab_.resize(layers * rows_);
+  rows_of_slab_.resize(to_size(layers, rows_));
   for_rows(layers, [&](std::size_t n, std::size_t row, std::size_t number) {
-    Row counts;
+    RowCounts counts;
     counts.vertices = find_crossings(n, row);
     if (!options_.rule.closed) counts.on_border = crossings_on_border(n, row);
     find_cells(n, row, counts);
@@ -194,31 +194,17 @@ std::size_t MarchingCubes::layers_within(std::size_t layers, std::uint64_t most_
   return layers;
 }
 
-// Throws OverMemory where numbers of 32 bits are not enough for a slab.
-void require_numbers(std::size_t layers, std::uint64_t count, const char* what) {
-  if (count < std::numeric_limits<std::uint32_t>::max()) return;
-  throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
-                   ", expected fewer than 2^32: choose thinner slabs");
-}
-
 // Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.
 void MarchingCubes::make_room(std::size_t layers, SurfacePiece& piece) {
   rows_of_slab_.resize(layers * rows_);
   rows_of_slab_.emplace_back();
-  std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;
-  for (Row& row : rows_of_slab_) {
-    piece.cells_crossed += row.cells;
-    piece.open_edges += row.on_border;
-    scan_one(row.vertices, vertices);
-    scan_one(row.triangles, triangles);
-  }
-  require_numbers(layers, vertices + front_size_, "vertices");
-  require_numbers(layers, triangles, "triangles");
-  piece.positions.resize(vertices);
-  piece.ids.resize(vertices);
-  piece.normals.resize(options_.normals ? vertices : 0);
-  piece.triangles.resize(triangles);
+  const RowSums sums = place_rows(rows_of_slab_, layers, front_size_);
+  piece.cells_crossed = sums.cells;
+  piece.open_edges = sums.on_border;
+  piece.positions.resize(to_size(sums.vertices));
+  piece.ids.resize(to_size(sums.vertices));
+  piece.normals.resize(options_.normals ? to_size(sums.vertices) : 0);
+  piece.triangles.resize(to_size(sums.triangles));
 }
 
 // Numbers the crossings of a row word by word: z below the slice, then x and y on it.
@@ -304,7 +290,7 @@ std::array<const std::uint64_t*, 4> MarchingCubes::rows_around(std::size_t n, st
 }
 
 // Finds the cells of a row that the surface crosses, and counts them and their triangles.
-void MarchingCubes::find_cells(std::size_t n, std::size_t row, Row& counts) {
+void MarchingCubes::find_cells(std::size_t n, std::size_t row, RowCounts& counts) {
   const std::span crossed(&layers_[n].crossed[row * words_], words_);
   if (!has_cells(next_layer_ + static_cast<std::int64_t>(n), row)) {
     std::fill(crossed.begin(), crossed.end(), 0);

@@ -14,6 +14,7 @@
 #include "extract/cell_kernels.hpp"
 #include "extract/cube_rules.hpp"
 #include "extract/extractor.hpp"
+#include "extract/row_counts.hpp"
 #include "extract/row_kernels.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
@@ -33,6 +34,7 @@ struct ExtractOptions {
 
 class MarchingCubes final : public Extractor {
  public:
+  // Throws OverMemory for rows of more than kMostRowSamples.
   MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor);
 
   // The first layer is -1, in the pad, and empty in open mode.
@@ -61,14 +63,6 @@ class MarchingCubes final : public Extractor {
     std::vector<std::uint32_t> base;
   };
 
-  // The counts of one row of a layer; for vertices and triangles they become the sums over the rows before it. One more
-  // entry follows the last row.
-  struct Row {
-    std::uint32_t vertices = 0, triangles = 0;
-    std::uint32_t cells = 0;      // crossed
-    std::uint32_t on_border = 0;  // crossings, of an open volume
-  };
-
   template <class T, int Axis>
   struct EdgeRow;
 
@@ -93,7 +87,7 @@ class MarchingCubes final : public Extractor {
   template <class Visit>
   void for_rows(std::size_t layers, const Visit& visit) const;
   std::array<const std::uint64_t*, 4> rows_around(std::size_t n, std::size_t row) const;
-  void find_cells(std::size_t n, std::size_t row, Row& counts);
+  void find_cells(std::size_t n, std::size_t row, RowCounts& counts);
   CellRow cell_row(std::size_t n, std::size_t row) const;
 
   std::array<std::int64_t, 3> dims_;
@@ -112,7 +106,7 @@ class MarchingCubes final : public Extractor {
   std::int64_t end_layer_;
   std::vector<Slice> slices_;  // slices_[0] is the front left by the slab before
   std::vector<Layer> layers_;
-  std::vector<Row> rows_of_slab_;
+  std::vector<RowCounts> rows_of_slab_;  // one more follows the last row
   std::vector<std::uint64_t> end_mask_;  // per word: the first and the last sample of a row
   std::uint32_t front_size_ = 0;
 };

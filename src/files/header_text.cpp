@@ -11,20 +11,13 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
-std::from_chars_result parse(const char* first, const char* last, std::int64_t& value) {
-  return std::from_chars(first, last, value);
-}
-std::from_chars_result parse(const char* first, const char* last, double& value) {
-  return double_from_chars(first, last, value);
-}
-
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   // from_chars takes no plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   Number value{};
   const char* end = text.data() + text.size();
-  const auto [stop, error] = parse(text.data(), end, value);
+  const auto [stop, error] = number_from_chars(text.data(), end, value);
   if (error != std::errc{} || stop != end) return std::nullopt;
   return value;
 }

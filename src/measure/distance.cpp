@@ -92,7 +92,7 @@ OneWayDistance one_way(const TriangleMesh& from, const TriangleMesh& to, const D
   const AreaSampler sampler(from, options);
   const measure::TriangleTree tree(to, executor);
   const std::int64_t samples = static_cast<std::int64_t>(options.samples);
-  std::vector<Sums> blocks(static_cast<std::size_t>((samples + kSamplesPerBlock - 1) / kSamplesPerBlock));
+  std::vector<Sums> blocks(to_size((samples + kSamplesPerBlock - 1) / kSamplesPerBlock));
   distances.resize(options.bins > 0 ? to_size(options.samples) : 0);
   executor.for_blocks(samples, kSamplesPerBlock, [&](std::int64_t begin, std::int64_t end) {
     blocks[static_cast<std::size_t>(begin / kSamplesPerBlock)] =

@@ -26,7 +26,7 @@ std::optional<double> converted(double value, std::string_view suffix, std::stri
 
 Length parse_length(std::string_view text, std::string_view unit) {
   double value = 0;
-  const auto [end, failed] = double_from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, failed] = number_from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
   const bool plain = suffix.empty() || suffix == "vox";
   const std::optional<double> length = plain ? value : converted(value, suffix, unit);

@@ -26,7 +26,8 @@ SlabPlanner::SlabPlanner(const Task& task, const RunControl& control, const Volu
 SlabPlan SlabPlanner::next(const Held& held, std::int64_t ring) const {
   const SlabGoal goal = beside_zone(slab_goal(task_.simplify.needed, on_device_), static_cast<double>(held.triangles));
   SlabPlan plan;
-  plan.layers = std::min(next_slab(field_, goal, asked_, recent_layers_, per_layer()), extractor_.most_layers());
+  plan.layers = std::min({next_slab(field_, goal, asked_, recent_layers_, per_layer()), extractor_.most_layers(),
+                          extractor_.layers_left()});
   plan.ahead = slices_ahead(field_, goal, plan.layers);
   plan.most_vertices = asked_ > 0 ? ~std::uint64_t{0} : goal.most_vertices;
   plan.most_vertices = std::min(plan.most_vertices, extractor_.room_for_vertices(cap_));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "parallel/size.hpp"
+
 namespace isoweave {
 
 BandStream::BandStream(std::int64_t slices, std::size_t slice_bytes, std::int64_t depth)
@@ -29,7 +31,7 @@ void BandStream::advance(std::uint64_t bytes) {
 std::size_t BandStream::read(std::span<std::byte> out) {
   std::size_t done = 0;
   while (done < out.size() && band_bytes(band_) > 0) {
-    const auto whole = static_cast<std::size_t>(band_bytes(band_));
+    const std::size_t whole = to_size(band_bytes(band_));
     const std::size_t step = std::min(out.size() - done, whole - static_cast<std::size_t>(used_));
     if (!filled_ && step == whole) {
       fill_band(out.subspan(done, whole));

@@ -9,6 +9,7 @@
 
 #include "isoweave/error.hpp"
 #include "isoweave/printable.hpp"
+#include "parallel/size.hpp"
 #include "volume/fields.hpp"
 #include "volume/row_source.hpp"
 #include "volume/volume_sizes.hpp"
@@ -89,7 +90,7 @@ class GeneratedSource final : public RowSource {
       : info_(std::move(info)),
         field_(kind.make(info_.dims, seed)),
         mapping_(mapping_of(kind, info_.type)),
-        row_(static_cast<std::size_t>(info_.dims[0])) {}
+        row_(to_size(info_.dims[0])) {}
 
   const VolumeInfo& info() const override { return info_; }
 

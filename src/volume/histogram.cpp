@@ -5,6 +5,7 @@
 
 #include "isoweave/error.hpp"
 #include "parallel/float_environment.hpp"
+#include "parallel/size.hpp"
 #include "volume/histogram_counter.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
@@ -26,7 +27,7 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
   }
   const std::int64_t row = info.dims[0] * static_cast<std::int64_t>(sample_bytes(info.type));
   const std::int64_t rows = std::clamp<std::int64_t>(kBlockBytes / row, 1, info.dims[1]);
-  std::vector<std::byte> block(static_cast<std::size_t>(rows * row));
+  std::vector<std::byte> block(to_size(rows * row));
   RowReader reader(volume);
   for (std::int64_t k = 0; k < info.dims[2]; ++k) {
     for (std::int64_t j = 0; j < info.dims[1]; j += rows) {

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include "parallel/size.hpp"
+
 namespace isoweave {
 
 ValueNoise::ValueNoise(std::int64_t width, std::int64_t height, std::int64_t pitch, std::uint64_t seed)
     : pitch_(pitch),
       seed_(mix_bits(seed + static_cast<std::uint64_t>(pitch))),
-      columns_(static_cast<std::size_t>(width / pitch + 2)),
-      rows_(static_cast<std::size_t>(height / pitch + 2)),
-      plane_(columns_ * rows_),
+      columns_(to_size(width / pitch + 2)),
+      rows_(to_size(height / pitch + 2)),
+      plane_(to_size(rows_, columns_)),
       line_(columns_) {
   for (std::int64_t offset = 0; offset < pitch; ++offset) {
     // Half a sample off the random values, so that no sample sits where the noise is flat.

@@ -63,8 +63,8 @@ class CroppedVolume final : public RowSource {
   // Reads some rows of the whole at a time.
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const std::size_t sample = sample_bytes(info_.type);
-    const std::size_t row = static_cast<std::size_t>(info_.dims[0]) * sample;
-    const std::size_t whole_row = static_cast<std::size_t>(whole_->info().dims[0]) * sample;
+    const std::size_t row = to_size(info_.dims[0], sample);
+    const std::size_t whole_row = to_size(whole_->info().dims[0], sample);
     const auto most = static_cast<std::int64_t>(std::max<std::size_t>(kBlockBytes / whole_row, 1));
     std::byte* to = out.data();
     for (std::int64_t j = first; j < first + count; j += most) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "parallel/size.hpp"
 #include "volume/samples.hpp"
 #include "volume/stream_source.hpp"
 
@@ -22,7 +23,7 @@ ScaledStream::ScaledStream(std::unique_ptr<ByteStream> stored, const VolumeInfo&
       swap_(swap_bytes),
       scaling_(std::move(scaling)),
       samples_(info.slice_bytes()),
-      values_(static_cast<std::size_t>(info.slice_samples()) * sample_bytes(type_of_values(info.type))) {}
+      values_(to_size(info.slice_samples(), sample_bytes(type_of_values(info.type)))) {}
 
 template <class Sample, class Value>
 void ScaledStream::convert() {

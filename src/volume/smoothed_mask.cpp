@@ -62,7 +62,7 @@ SmoothedMask::SmoothedMask(SliceSource& source, const SmoothedMaskOptions& optio
                                 std::to_string(options.passes));
   }
   passes_.resize(static_cast<std::size_t>(options.passes));
-  if (options.measure) ranges_.resize(static_cast<std::size_t>(info_.dims[2]));
+  if (options.measure) ranges_.resize(to_size(info_.dims[2]));
 }
 
 VolumeInfo SmoothedMask::info_of(const VolumeInfo& volume) {
@@ -95,13 +95,13 @@ void SmoothedMask::read(std::int64_t first, std::int64_t count, std::span<std::b
 // Makes slice `first`, or one before it, the next one that comes out. Slices farther below than the reach of all passes
 // need not be read.
 void SmoothedMask::start_at(std::int64_t first) {
-  const auto nx = static_cast<std::size_t>(info_.dims[0]);
+  const std::size_t nx = to_size(info_.dims[0]);
   if (stored_.empty()) {
     stored_.resize(source_.info().slice_bytes());
     constant_rows_ = {std::vector<float>(nx, -1.0F), std::vector<float>(nx, 1.0F)};
     const auto make_room = [&](Slice& slice) {
       slice.samples.resize(to_size(info_.slice_samples()));
-      slice.marks.resize(static_cast<std::size_t>(info_.dims[1]));
+      slice.marks.resize(to_size(info_.dims[1]));
     };
     make_room(last_);
     for (Pass& pass : passes_) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "parallel/size.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -60,9 +62,9 @@ void StreamSource::read(std::int64_t first, std::int64_t count, std::span<std::b
 
 void StreamSource::read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
   const VolumeInfo& info = volume_.info;
-  const std::size_t row = static_cast<std::size_t>(info.dims[0]) * sample_bytes(info.type);
+  const std::size_t row = to_size(info.dims[0], sample_bytes(info.type));
   const bool inside = k >= 0 && k < info.dims[2] && first >= 0 && count >= 0 && count <= info.dims[1] - first;
-  if (!inside || out.size() / row < static_cast<std::size_t>(count)) {
+  if (!inside || out.size() / row < static_cast<std::uint64_t>(count)) {
     throw std::invalid_argument(std::to_string(count) + " rows from " + std::to_string(first) + " of slice " +
                                 std::to_string(k) + " are not all in the volume, or not in the memory given");
   }

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "files/from_chars.hpp"
 #include "files/quoted.hpp"
 #include "volume/samples.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 template <class Number>
 bool parse(std::string_view word, Number& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [stop, error] = number_from_chars(word.data(), word.data() + word.size(), value);
   if (stop != word.data() + word.size()) return false;
   if constexpr (std::is_same_v<Number, float>) {
     double wide = 0;

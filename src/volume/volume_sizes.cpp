@@ -24,7 +24,7 @@ void check_slice_range(const VolumeInfo& info, std::int64_t next, std::int64_t f
     throw std::invalid_argument(std::to_string(count) + " slices from " + std::to_string(first) +
                                 " are not all in a volume of " + std::to_string(info.dims[2]));
   }
-  if (count > 0 && out_bytes / info.slice_bytes() < static_cast<std::size_t>(count)) {
+  if (count > 0 && out_bytes / info.slice_bytes() < static_cast<std::uint64_t>(count)) {
     throw std::invalid_argument("the memory given holds fewer than " + std::to_string(count) + " slices");
   }
 }

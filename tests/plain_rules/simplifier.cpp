@@ -1,29 +1,20 @@
 #include "plain_rules/simplifier.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 
+#include "plain_rules/connectivity.hpp"
 #include "plain_rules/distance.hpp"
+#include "plain_rules/edge_queue.hpp"
 #include "plain_rules/riders.hpp"
 
 namespace isoweave::plain {
 namespace {
 
-constexpr float kLeastCost = 1e-20F;
-constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr std::size_t kMostNeighbours = 24;
-
-float cost_of(double error) {
-  const auto cost = static_cast<float>(error);
-  if (cost != cost) return kNever;
-  return cost <= kLeastCost ? kLeastCost : cost;
-}
-
-float step_above(float cost) { return std::nextafter(cost, kNever); }
 
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -40,22 +31,6 @@ Factors factors_of(Quality quality) {
   return quality == Quality::kNormal ? Factors{2, 1, 2} : Factors{2, 0.5F, 1.1F};
 }
 
-using Key = std::pair<float, std::uint64_t>;  // cost and tie
-using Edge = std::pair<std::size_t, std::size_t>;
-
-Edge edge_between(std::size_t a, std::size_t b) { return {std::min(a, b), std::max(a, b)}; }
-
-// The neighbours of a corner, counter-clockwise. Between two that follow each other lies a face; in a closed ring there
-// is one between the last and the first as well.
-struct Ring {
-  std::vector<std::size_t> around{};
-  bool open = false;
-
-  std::size_t faces() const { return around.size() - (open ? 1 : 0); }
-  std::size_t after(std::size_t n) const { return around[(n + 1) % around.size()]; }
-  bool has(std::size_t corner) const { return std::find(around.begin(), around.end(), corner) != around.end(); }
-};
-
 struct FaceSums {
   Quadric planes{};
   Vector normal{};
@@ -69,29 +44,24 @@ class Simplifier {
         factors_(factors_of(options.quality)),
         memory_(options.normals_count ? 1 : 0.125),
         face_weight_(1 / (6 * surface.face * surface.face)),
-        retire_(std::isinf(options.error) ? std::numeric_limits<float>::max()
-                                          : cost_of(options.error * options.error / surface.face)),
-        triangles_(surface.triangles),
-        alive_(surface.triangles.size(), true),
-        left_(surface.triangles.size()),
-        around_(surface.corners.size()),
-        locked_(surface.corners.size(), false),
+        queue_(std::isinf(options.error) ? std::numeric_limits<float>::max()
+                                         : cost_of(options.error * options.error / surface.face)),
+        connectivity_(surface),
         quadrics_(surface.corners.size()),
         normal_quadrics_(surface.corners.size()) {
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      for (const std::size_t v : triangles_[t]) around_[v].insert(t);
-    }
     if (options.most_distance > 0) extracted_.emplace(surface, options.most_distance);
   }
 
   Outcome run() {
     if (options_.error > 0) {
       lock_corners();
-      for (std::size_t v = 0; v < around_.size(); ++v) {
-        if (!around_[v].empty() && !locked_[v]) give_quadric(v);
+      for (std::size_t v = 0; v < locked_.size(); ++v) {
+        if (connectivity_.uses(v) && !locked_[v]) give_quadric(v);
       }
       give_first_keys();
-      while (!queue_.empty() && !(options_.triangles > 0 && left_ <= options_.triangles)) decide(*queue_.begin());
+      while (!queue_.empty() && !(options_.triangles > 0 && connectivity_.left() <= options_.triangles)) {
+        decide(queue_.first());
+      }
     }
     return outcome();
   }
@@ -100,58 +70,8 @@ class Simplifier {
   const Vector& place(std::size_t v) const { return surface_.corners[v].place; }
   std::uint64_t id(std::size_t v) const { return surface_.corners[v].id; }
 
-  // The two corners that follow v in a triangle.
-  std::array<std::size_t, 2> others(std::size_t t, std::size_t v) const {
-    const auto& corners = triangles_[t];
-    const std::size_t n = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
-    return {corners[(n + 1) % 3], corners[(n + 2) % 3]};
-  }
-
-  // Begins at `first`, an open one where no face lies before it.
-  Ring ring_of(std::size_t v, std::size_t first) const {
-    std::map<std::size_t, std::size_t> next;
-    std::set<std::size_t> targets;
-    for (const std::size_t t : around_[v]) {
-      const auto [a, b] = others(t, v);
-      next[a] = b;
-      targets.insert(b);
-    }
-    Ring ring;
-    for (const auto& [a, b] : next) {
-      if (targets.contains(a)) continue;
-      ring.open = true;
-      first = a;
-    }
-    ring.around.push_back(first);
-    for (std::size_t w = first; next.contains(w) && next[w] != first;) {
-      w = next[w];
-      ring.around.push_back(w);
-    }
-    return ring;
-  }
-
-  // A closed ring begins at the corner with the smallest id.
-  Ring ring_of(std::size_t v) const {
-    std::size_t first = others(*around_[v].begin(), v)[0];
-    for (const std::size_t t : around_[v]) {
-      const std::size_t corner = others(t, v)[0];
-      if (id(corner) < id(first)) first = corner;
-    }
-    return ring_of(v, first);
-  }
-
-  // Where an edge has more than one face on a side, or the faces of a corner are more than one fan.
   void lock_corners() {
-    std::map<Edge, std::size_t> sides;
-    for (const auto& corners : triangles_) {
-      for (std::size_t n = 0; n < 3; ++n) ++sides[{corners[n], corners[(n + 1) % 3]}];
-    }
-    for (const auto& [side, count] : sides) {
-      if (count > 1) locked_[side.first] = locked_[side.second] = true;
-    }
-    for (std::size_t v = 0; v < around_.size(); ++v) {
-      if (!locked_[v] && !around_[v].empty() && ring_of(v).faces() != around_[v].size()) locked_[v] = true;
-    }
+    locked_ = connectivity_.locked_corners();
     outcome_.locked = static_cast<std::uint64_t>(std::count(locked_.begin(), locked_.end(), true));
   }
 
@@ -188,7 +108,7 @@ class Simplifier {
   }
 
   void give_quadric(std::size_t v) {
-    const Ring ring = ring_of(v);
+    const Ring ring = connectivity_.ring_of(v);
     Quadric& q = quadrics_[v];
     q = sum_faces(v, ring, face_weight_, v).planes;
     if (ring.open) {
@@ -251,47 +171,32 @@ class Simplifier {
   }
 
   void give_first_keys() {
-    for (const auto& corners : triangles_) {
+    for (const auto& corners : surface_.triangles) {
       for (std::size_t n = 0; n < 3; ++n) {
         const Edge edge = edge_between(corners[n], corners[(n + 1) % 3]);
-        if (keys_.contains(edge)) continue;
+        if (queue_.has(edge)) continue;
         const bool stays = locked_[edge.first] || locked_[edge.second];
-        set_key(edge, {stays ? kNever : factors_.first * quadric_cost(edge), tie_of(edge)});
+        queue_.set(edge, {stays ? kNever : factors_.first * quadric_cost(edge), tie_of(edge)});
       }
     }
   }
 
-  void set_key(const Edge& edge, const Key& key) {
-    forget_key(edge);
-    keys_[edge] = key;
-    if (key.first <= retire_) queue_.insert({key, edge});
-  }
-
-  void forget_key(const Edge& edge) {
-    const auto found = keys_.find(edge);
-    if (found == keys_.end()) return;
-    queue_.erase({found->second, edge});
-    keys_.erase(found);
-  }
-
-  void raise(const Edge& edge, float cost) { set_key(edge, {cost, keys_.at(edge).second}); }
-
   void postpone(const Edge& edge) {
     ++outcome_.postponed;
-    raise(edge, std::max(16 * keys_.at(edge).first, 2.4e-4F));
+    queue_.raise(edge, std::max(16 * queue_.key(edge).first, 2.4e-4F));
   }
 
   void send_back(const Edge& edge, float cost) {
     ++outcome_.rekeyed;
-    raise(edge, cost);
+    queue_.raise(edge, cost);
   }
 
   void decide(std::pair<Key, Edge> first) {
     const Edge edge = first.second;
     const float key = first.first.first;
     std::tie(u_, v_) = in_order(edge);
-    u_ring_ = ring_of(u_, v_);
-    v_ring_ = ring_of(v_, u_);
+    u_ring_ = connectivity_.ring_of(u_, v_);
+    v_ring_ = connectivity_.ring_of(v_, u_);
     if (options_.drop_specks && is_tetrahedron()) return decide_tetrahedron(edge, key);
     if (!topology_allows()) return postpone(edge);
     along_ = place(v_) - place(u_);
@@ -375,11 +280,9 @@ class Simplifier {
     if (cost > key) return send_back(edge, cost);
     ++outcome_.specks;
     note_cost(cost);
-    for (const std::size_t end : {u_, v_}) {
-      while (!around_[end].empty()) remove_triangle(*around_[end].begin());
-    }
+    for (const std::size_t end : {u_, v_}) connectivity_.remove_around(end);
     for (const std::size_t a : corners) {
-      for (const std::size_t b : corners) forget_key(edge_between(a, b));
+      for (const std::size_t b : corners) queue_.forget(edge_between(a, b));
     }
   }
 
@@ -445,32 +348,17 @@ class Simplifier {
     return false;
   }
 
-  void remove_triangle(std::size_t t) {
-    for (const std::size_t v : triangles_[t]) around_[v].erase(t);
-    alive_[t] = false;
-    --left_;
-  }
-
   // Merges both ends into u.
   void collapse(const Edge& edge, const Vector& x) {
-    forget_key(edge);
+    queue_.forget(edge);
     for (const std::size_t w : v_ring_.around) {
       if (w == u_) continue;
-      const Key key = keys_.at(edge_between(v_, w));
-      forget_key(edge_between(v_, w));
-      const auto beside = keys_.find(edge_between(u_, w));
-      if (beside == keys_.end() || key < beside->second) set_key(edge_between(u_, w), key);
+      const Key key = queue_.key(edge_between(v_, w));
+      queue_.forget(edge_between(v_, w));
+      const Edge beside = edge_between(u_, w);
+      if (!queue_.has(beside) || key < queue_.key(beside)) queue_.set(beside, key);
     }
-    const std::set<std::size_t> faces = around_[v_];
-    for (const std::size_t t : faces) {
-      if (around_[u_].contains(t)) {
-        remove_triangle(t);
-        continue;
-      }
-      std::ranges::replace(triangles_[t], v_, u_);
-      around_[u_].insert(t);
-    }
-    around_[v_].clear();
+    connectivity_.merge(v_, u_);
     quadrics_[u_] = moved(quadrics_[u_], x) + moved(quadrics_[v_], x - along_);
     merge_riders(x);
     surface_.corners[u_].place = place(u_) + x;
@@ -492,20 +380,18 @@ class Simplifier {
 
   // Those around the merged corner.
   void update_keys(float collapsed_at) {
-    const Ring ring = ring_of(u_);
+    const Ring ring = connectivity_.ring_of(u_);
     for (const std::size_t w : ring.around) {
       const Edge edge = edge_between(u_, w);
-      const float before = keys_.at(edge).first;
-      if (before > retire_) continue;
-      raise(edge, std::max({before, step_above(collapsed_at), factors_.merged * quadric_cost(edge)}));
+      const float before = queue_.key(edge).first;
+      if (before > queue_.retire()) continue;
+      queue_.raise(edge, std::max({before, step_above(collapsed_at), factors_.merged * quadric_cost(edge)}));
     }
   }
 
   Outcome outcome() {
     outcome_.dearest = dearest_ > kLeastCost ? std::sqrt(surface_.face) * std::sqrt(double{dearest_}) : 0;
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      if (alive_[t]) outcome_.surface.triangles.push_back(triangles_[t]);
-    }
+    outcome_.surface.triangles = connectivity_.triangles();
     outcome_.surface.corners = std::move(surface_.corners);
     return std::move(outcome_);
   }
@@ -515,16 +401,11 @@ class Simplifier {
   const Factors factors_;
   const double memory_;
   const double face_weight_;
-  const float retire_;
-  std::vector<std::array<std::size_t, 3>> triangles_;
-  std::vector<bool> alive_;
-  std::size_t left_;
-  std::vector<std::set<std::size_t>> around_;  // triangles of each corner
+  EdgeQueue queue_;
+  Connectivity connectivity_;
   std::vector<bool> locked_;
   std::vector<Quadric> quadrics_;
   std::vector<NormalQuadric> normal_quadrics_;
-  std::map<Edge, Key> keys_;
-  std::set<std::pair<Key, Edge>> queue_;  // of the edges that are not retired
   std::optional<Distances> extracted_;
   std::size_t u_ = 0, v_ = 0;  // the ends of the edge in question, that with the smaller id first
   Ring u_ring_, v_ring_;       // an open one begins at its border, a closed one at the other end

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "files/crc32.hpp"
@@ -22,10 +25,22 @@ struct Parsed {
   bool operator==(const Parsed&) const = default;
 };
 
-Parsed parse(std::string_view text, decltype(double_from_chars)* by) {
-  double value = 5;
+template <class Real>
+using Parser = std::from_chars_result (*)(const char*, const char*, Real&);
+
+template <class Real>
+using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
+
+template <class Real>
+Parsed parse(std::string_view text, Parser<Real> by) {
+  Real value = 5;
   const auto [end, error] = by(text.data(), text.data() + text.size(), value);
-  return {error, static_cast<std::size_t>(end - text.data()), std::bit_cast<std::uint64_t>(value)};
+  return {error, static_cast<std::size_t>(end - text.data()), std::bit_cast<Bits<Real>>(value)};
+}
+
+template <class Real>
+void expect_same(std::string_view text) {
+  EXPECT_EQ(parse<Real>(text, number_from_chars_by_stream), parse<Real>(text, number_from_chars)) << text;
 }
 
 TEST(Numbers, AStreamReadsThemAsTheLibraryDoes) {
@@ -65,16 +80,49 @@ TEST(Numbers, AStreamReadsThemAsTheLibraryDoes) {
                                       "1e5.5",
                                       "..5",
                                       "5e-"}) {
-    EXPECT_EQ(parse(text, double_from_chars_by_stream), parse(text, double_from_chars)) << text;
+    expect_same<double>(text);
+    expect_same<float>(text);
   }
+}
+
+// The least numbers and the largest ones, beside those that are none; a number that is no float when a double is
+// rounded.
+TEST(Numbers, AStreamKnowsTheEndsOfTheRange) {
+  for (const std::string_view text :
+       {"0e-999", "0.000e999", "-0", "1e-999", "-1e-999", "5e-324", "2e-324", "-4e-320", "1e-310", "1e-40", "1e-45",
+        "1e-46", "1.7976931348623157e308", "1.7976931348623159e308", "3.4028235e38", "3.4028236e38", "1e39",
+        "1.00000017881393432617187499"}) {
+    expect_same<double>(text);
+    expect_same<float>(text);
+  }
+}
+
+// Where the standard library has no function of its own, both are the stream.
+TEST(Numbers, TheLeastOnesAreReadAndSmallerOnesRefused) {
+  EXPECT_EQ(parse<double>("5e-324", number_from_chars).bits, 1U);
+  EXPECT_EQ(parse<double>("-4e-320x", number_from_chars), (Parsed{std::errc{}, 7, 0x8000000000001fa0U}));
+  EXPECT_EQ(parse<float>("1e-45", number_from_chars).bits, 1U);
+  for (const std::string_view text : {"2e-324", "-1e-999", "2e308"}) {
+    EXPECT_EQ(parse<double>(text, number_from_chars).error, std::errc::result_out_of_range) << text;
+  }
+  for (const std::string_view text : {"5e-46", "3.5e38"}) {
+    EXPECT_EQ(parse<float>(text, number_from_chars).error, std::errc::result_out_of_range) << text;
+  }
+}
+
+template <class Real>
+void expect_read_back(std::uint64_t random) {
+  const auto value = std::bit_cast<Real>(static_cast<Bits<Real>>(random));
+  if (std::isnan(value)) return;
+  const std::string text = number_text(value);
+  EXPECT_EQ(parse<Real>(text, number_from_chars_by_stream).bits, std::bit_cast<Bits<Real>>(value)) << text;
 }
 
 TEST(Numbers, AStreamReadsBackWhatIsWritten) {
   std::mt19937_64 random(3);
   for (int n = 0; n < 2000; ++n) {
-    const auto value = std::bit_cast<double>(random() & 0xffefffffffffffffULL);
-    const std::string text = number_text(value);
-    EXPECT_EQ(parse(text, double_from_chars_by_stream).bits, std::bit_cast<std::uint64_t>(value)) << text;
+    expect_read_back<double>(random());
+    expect_read_back<float>(random());
   }
 }
 

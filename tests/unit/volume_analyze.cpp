@@ -74,7 +74,7 @@ TEST(Analyze, ReadsItsTypesBehindAnOffset) {
     EXPECT_EQ(source->info().type, type);
     EXPECT_EQ(read_all(*source), std::vector<std::byte>(30 * sample_bytes(type), std::byte{'x'}));
   }
-  for (const auto& [code, name] : {std::pair{1, "1 bit"}, {32, "complex"}, {128, "RGB"}, {77, "code 77"}}) {
+  for (const auto& [code, name] : {std::pair{1, "1 bit"}, {32, "complex64"}, {128, "RGB"}, {77, "code 77"}}) {
     fields.type = code;
     EXPECT_TRUE(contains(refusal(put_pair(folder, fields)), name));
   }

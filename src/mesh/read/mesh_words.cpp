@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "files/from_chars.hpp"
+
 namespace isoweave::mesh_io {
 namespace {
 
@@ -15,7 +17,7 @@ bool is_number(std::string_view word) {
 // A number that even a double cannot hold, because it is too small.
 bool is_tiny_number(std::string_view word) {
   double ignored = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
+  const auto [end, error] = number_from_chars(word.data(), word.data() + word.size(), ignored);
   const bool whole = end == word.data() + word.size() && error == std::errc::result_out_of_range;
   return whole && (word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos);
 }

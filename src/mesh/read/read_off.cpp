@@ -3,6 +3,7 @@
 #include "mesh/read/mesh_leftovers.hpp"
 #include "mesh/read/mesh_words.hpp"
 #include "mesh/read/polygons.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -48,8 +49,8 @@ class OffReader {
 
   TriangleMesh read() {
     read_header();
-    points_.reserve(vertices_);
-    mesh_.normals.reserve(has_normals_ ? vertices_ : 0);
+    points_.reserve(to_size(vertices_));
+    mesh_.normals.reserve(has_normals_ ? to_size(vertices_) : 0);
     for (std::uint64_t n = 0; n < vertices_; ++n) read_vertex();
     for (std::uint64_t n = 0; n < faces_; ++n) read_face();
     if (words_.next_line()) {

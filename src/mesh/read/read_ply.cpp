@@ -7,6 +7,7 @@
 #include "mesh/read/mesh_words.hpp"
 #include "mesh/read/ply_header.hpp"
 #include "mesh/read/polygons.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -151,8 +152,8 @@ class PlyReader {
   void read_vertices(const PlyElement& element) {
     const std::vector<int> slots = coordinate_slots(element);
     is_wide_ = has_wide_coordinates(element);
-    is_wide_ ? points_.reserve(element.count) : mesh_.vertices.reserve(element.count);
-    if (header_.has_normals) mesh_.normals.reserve(element.count);
+    is_wide_ ? points_.reserve(to_size(element.count)) : mesh_.vertices.reserve(to_size(element.count));
+    if (header_.has_normals) mesh_.normals.reserve(to_size(element.count));
     for (std::uint64_t vertex = read_plain_vertices(element); vertex < element.count; ++vertex) {
       std::array<double, 6> values{};
       for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -234,7 +235,7 @@ class PlyReader {
   }
 
   void read_faces(const PlyElement& element) {
-    mesh_.triangles.reserve(element.count);
+    mesh_.triangles.reserve(to_size(element.count));
     for (std::uint64_t face = 0; face < element.count; ++face) {
       face += read_plain_triangles(element, element.count - face);
       if (face == element.count) break;

@@ -7,6 +7,7 @@
 #include "mesh/read/mesh_leftovers.hpp"
 #include "mesh/read/mesh_place.hpp"
 #include "mesh/read/welder.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -103,7 +104,7 @@ bool looks_like_text(std::string_view head) {
 TriangleMesh read_stl_binary(MeshInput& input) {
   TriangleMesh mesh;
   const std::uint64_t count = read_count(input, mesh);
-  mesh.triangles.reserve(count);
+  mesh.triangles.reserve(to_size(count));
   Welder welder(mesh.vertices);
   std::uint64_t attributes = 0;
   for (std::uint64_t triangle = 0; triangle < count; ++triangle) {

@@ -9,6 +9,7 @@
 #include "extract/cube_rules.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
+#include "parallel/size.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
 #include "pipeline/memory_cap.hpp"
@@ -155,7 +156,7 @@ class Forecaster {
   double end_cap(std::int64_t k) {
     double cap = 0;
     const std::size_t row = info_.slice_bytes() / static_cast<std::size_t>(info_.dims[1]);
-    std::vector<std::byte> band(static_cast<std::size_t>(band_rows_) * row);
+    std::vector<std::byte> band(to_size(band_rows_, row));
     for (std::int64_t j = 0; j < info_.dims[1]; j += band_rows_) {
       const std::int64_t rows = std::min(band_rows_, info_.dims[1] - j);
       rows_.read(k, j, rows, band);

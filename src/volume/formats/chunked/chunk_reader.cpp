@@ -7,6 +7,7 @@
 
 #include "files/external_files.hpp"
 #include "files/input_file.hpp"
+#include "parallel/size.hpp"
 #include "volume/formats/chunked/chunked_array.hpp"
 
 namespace isoweave {
@@ -67,7 +68,7 @@ std::vector<std::int64_t> take_block_shape(std::vector<std::byte>& stored, const
 
 std::size_t count_of(const std::vector<std::int64_t>& shape) {
   std::size_t count = 1;
-  for (const std::int64_t size : shape) count *= static_cast<std::size_t>(size);
+  for (const std::int64_t size : shape) count = to_size(size, count);
   return count;
 }
 
@@ -85,7 +86,7 @@ struct ChunkReader::Shard {
 };
 
 ChunkReader::ChunkReader(ChunkedArray array) : array_(std::move(array)) {
-  chunk_bytes_ = count_of(array_.chunk) * sample_bytes(array_.type);
+  chunk_bytes_ = to_size(count_of(array_.chunk), sample_bytes(array_.type));
 }
 
 ChunkReader::~ChunkReader() = default;
@@ -114,7 +115,7 @@ std::optional<std::vector<std::byte>> ChunkReader::from_shard(const std::vector<
     shard->file = open_if_there(path, array_.root);
     if (shard->file) {
       const std::size_t count = count_of(shards.chunks);
-      const std::size_t bytes = count * sizeof(Shard::Place) + (shards.index_sum ? sizeof(std::uint32_t) : 0);
+      const std::size_t bytes = to_size(count, sizeof(Shard::Place)) + (shards.index_sum ? sizeof(std::uint32_t) : 0);
       const std::uint64_t size = shard->file->size();
       if (size < bytes) bad_input(path, "an index of " + std::to_string(bytes) + " bytes", std::to_string(size));
       std::vector<std::byte> stored = bytes_of(*shard->file, shards.index_at_end ? size - bytes : 0, bytes);

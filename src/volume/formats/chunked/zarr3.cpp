@@ -42,7 +42,7 @@ void transpose(ChunkedArray& array, const Named& codec) {
   const std::vector<std::int64_t> order = integers_member(codec.configuration, "order", array.header);
   std::vector<std::size_t> axes;
   for (const std::int64_t entry : order) {
-    const bool known = entry >= 0 && static_cast<std::size_t>(entry) < array.stored_order.size();
+    const bool known = entry >= 0 && std::cmp_less(entry, array.stored_order.size());
     if (known) axes.push_back(array.stored_order[static_cast<std::size_t>(entry)]);
   }
   std::vector<std::size_t> sorted = axes;

@@ -96,7 +96,7 @@ ZarrNode node_at(const std::string& root, const std::string& name, const std::st
 }
 
 void check_level(const std::optional<std::int64_t>& level, std::size_t levels, const std::string& path) {
-  if (level && (*level < 0 || static_cast<std::size_t>(*level) >= levels)) {
+  if (level && (*level < 0 || std::cmp_greater_equal(*level, levels))) {
     bad_input(path, "--level below " + std::to_string(levels), std::to_string(*level));
   }
 }

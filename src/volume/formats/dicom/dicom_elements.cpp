@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "files/header_text.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 
@@ -52,7 +53,7 @@ std::uint32_t DicomElementWalk::number(std::uint64_t at, std::size_t bytes) cons
 
 std::string DicomElementWalk::text(const DicomElement& element, std::size_t longest) const {
   const std::uint64_t left = file_.size() - std::min(element.value, file_.size());
-  std::string result(std::min({std::size_t{element.length}, longest, static_cast<std::size_t>(left)}), '\0');
+  std::string result(to_size(std::min<std::uint64_t>({element.length, longest, left})), '\0');
   result.resize(file_.read_at(element.value, std::as_writable_bytes(std::span(result))));
   return std::string(trimmed(std::string_view(result).substr(0, result.find('\0'))));
 }

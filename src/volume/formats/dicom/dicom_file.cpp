@@ -9,6 +9,7 @@
 
 #include "files/header_text.hpp"
 #include "files/quoted.hpp"
+#include "parallel/size.hpp"
 #include "volume/formats/dicom/dicom_bare.hpp"
 #include "volume/formats/dicom/dicom_frames.hpp"
 #include "volume/formats/dicom/dicom_packed.hpp"
@@ -163,7 +164,7 @@ void clean(std::span<std::byte> samples, const DicomSlice& slice, SampleType typ
 }
 
 std::vector<std::byte> bytes_at(DicomBytes& file, const DicomRange& range) {
-  std::vector<std::byte> bytes(static_cast<std::size_t>(range.second));
+  std::vector<std::byte> bytes(to_size(range.second));
   if (file.read_at(range.first, bytes) < bytes.size()) {
     bad_input(file.path(), std::to_string(range.second) + " bytes of samples", "fewer");
   }

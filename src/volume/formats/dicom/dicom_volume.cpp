@@ -9,6 +9,7 @@
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
 #include "files/quoted.hpp"
+#include "parallel/size.hpp"
 #include "volume/even_slices.hpp"
 #include "volume/formats/dicom/dicom_numbers.hpp"
 #include "volume/formats/dicom/dicom_places.hpp"
@@ -145,7 +146,7 @@ std::unique_ptr<ByteStream> samples_of(const VolumeInfo& info, const std::shared
     return series->slices.at(static_cast<std::size_t>(n));
   };
   const SampleType stored = series->facts.type;
-  const std::size_t stored_bytes = static_cast<std::size_t>(info.slice_samples()) * sample_bytes(stored);
+  const std::size_t stored_bytes = to_size(info.slice_samples(), sample_bytes(stored));
   const auto open = [slice_of, stored, stored_bytes, type = info.type](std::int64_t n) {
     return std::make_unique<DecodedStream>(
         [slice_of, n, stored, stored_bytes, type] { return decoded(slice_of(n), stored, stored_bytes, type); });
@@ -204,7 +205,7 @@ void note_header(VolumeInfo& info, const DicomSlice& slice) {
 // One slice is looked at, as notes are read before samples are: the one in the middle, where most is to be seen.
 void note_bits(VolumeInfo& info, const PlacedSeries& series) {
   const DicomSlice& slice = series.slices[series.slices.size() / 2].slice;
-  const std::size_t bytes = static_cast<std::size_t>(info.slice_samples()) * sample_bytes(series.facts.type);
+  const std::size_t bytes = to_size(info.slice_samples(), sample_bytes(series.facts.type));
   if (!has_bits_above(slice, series.facts.type, bytes)) return;
   info.notes.push_back("samples have bits above the " + std::to_string(slice.stored) +
                        " that are said to be stored (Bits Stored), as in " + quoted(slice.name()) +

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "parallel/size.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {
@@ -11,7 +12,7 @@ namespace isoweave {
 TiffPageStream::TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages)
     : tiff_(std::move(tiff)), kind_(kind), pages_(std::move(pages)) {
   sample_bytes_ = sample_bytes(kind.type.type);
-  row_bytes_ = static_cast<std::size_t>(kind.width) * sample_bytes_;
+  row_bytes_ = to_size(kind.width, sample_bytes_);
 }
 
 std::size_t TiffPageStream::read(std::span<std::byte> out) {
@@ -71,7 +72,7 @@ void TiffPageStream::enter_page() {
 }
 
 std::size_t TiffPageStream::band_bytes() const {
-  return static_cast<std::size_t>(std::min(band_rows_, kind_.height - row_)) * row_bytes_;
+  return to_size(std::min(band_rows_, kind_.height - row_), row_bytes_);
 }
 
 void TiffPageStream::advance(std::size_t bytes) {
@@ -134,7 +135,7 @@ void TiffPageStream::decode_tile(std::uint32_t tile) {
     bad_input(tiff_->file()->path(), "tiles of fewer than 2^63 bytes", "larger ones");
   }
   check_plausible(tiff_->file()->path(), bytes, TIFFGetStrileByteCount(tiff_->handle(), tile), ratio_);
-  tile_.resize(static_cast<std::size_t>(bytes));
+  tile_.resize(to_size(bytes));
   const auto got = TIFFReadEncodedTile(tiff_->handle(), tile, tile_.data(), static_cast<tmsize_t>(tile_.size()));
   check_decoded(got, tile_.size(), tile);
 }

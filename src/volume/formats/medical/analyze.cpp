@@ -8,6 +8,7 @@
 #include "files/header_text.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/formats.hpp"
+#include "volume/formats/medical/type_codes.hpp"
 #include "volume/formats/other/header_fields.hpp"
 #include "volume/volumes_in_row.hpp"
 
@@ -15,6 +16,11 @@ namespace isoweave {
 namespace {
 
 constexpr std::int32_t kHeaderBytes = 348;
+
+// SPM's.
+constexpr std::array<TypeCode, 3> kAddedTypes{
+    {{130, SampleType::kInt8}, {132, SampleType::kUint16}, {136, SampleType::kUint32}}};
+constexpr TypeCodes kTypes{"Analyze", "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", kAddedTypes};
 
 struct AnalyzeHeader {
   bool swapped = false;
@@ -44,34 +50,6 @@ std::optional<AnalyzeHeader> parse_header(std::string_view bytes) {
     return header;
   }
   return std::nullopt;
-}
-
-SampleType sample_type_of(std::int64_t code, std::string_view path) {
-  switch (code) {
-    case 2:
-      return SampleType::kUint8;
-    case 4:
-      return SampleType::kInt16;
-    case 8:
-      return SampleType::kInt32;
-    case 16:
-      return SampleType::kFloat32;
-    case 64:
-      return SampleType::kFloat64;
-    case 130:  // this and those below: SPM's additions
-      return SampleType::kInt8;
-    case 132:
-      return SampleType::kUint16;
-    case 136:
-      return SampleType::kUint32;
-    default:
-      break;
-  }
-  std::string name = "code " + std::to_string(code);
-  if (code == 1) name = "1 bit";
-  if (code == 32) name = "complex";
-  if (code == 128) name = "RGB";
-  bad_input(path, "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", "Analyze type " + name);
 }
 
 // Returns how many volumes there are.
@@ -141,7 +119,7 @@ OpenedVolume open_analyze(const FilePtr& file, const OpenOptions& options) {
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "analyze";
-  info.type = sample_type_of(header->type, info.path);
+  info.type = type_of_code(header->type, kTypes, info.path);
   const std::int64_t volumes = set_dims(*header, info);
   const std::uint64_t before = choose_in_row(info, volumes, options);
   set_axes(*header, info);

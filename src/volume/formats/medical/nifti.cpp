@@ -17,6 +17,7 @@
 #include "volume/axes.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/formats.hpp"
+#include "volume/formats/medical/type_codes.hpp"
 #include "volume/formats/other/header_fields.hpp"
 #include "volume/packed_file.hpp"
 #include "volume/picked_stream.hpp"
@@ -26,6 +27,17 @@ namespace {
 
 constexpr std::int32_t kHeader1 = 348;
 constexpr std::int32_t kHeader2 = 540;
+
+constexpr std::array<TypeCode, 9> kAddedTypes{{{256, SampleType::kInt8},
+                                               {512, SampleType::kUint16},
+                                               {768, SampleType::kUint32},
+                                               {1024, SampleType::kInt64},
+                                               {1280, SampleType::kUint64},
+                                               {1536, std::nullopt, "float128"},
+                                               {1792, std::nullopt, "complex128"},
+                                               {2048, std::nullopt, "complex256"},
+                                               {2304, std::nullopt, "RGBA"}}};
+constexpr TypeCodes kTypes{"NIfTI", "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats", kAddedTypes};
 
 // The fields of both versions in one form.
 struct NiftiHeader {
@@ -106,45 +118,6 @@ std::optional<NiftiHeader> parse_header(std::string_view bytes) {
     }
   }
   return std::nullopt;
-}
-
-SampleType sample_type_of(const NiftiHeader& header, std::string_view path) {
-  switch (header.type) {
-    case 2:
-      return SampleType::kUint8;
-    case 4:
-      return SampleType::kInt16;
-    case 8:
-      return SampleType::kInt32;
-    case 16:
-      return SampleType::kFloat32;
-    case 64:
-      return SampleType::kFloat64;
-    case 256:
-      return SampleType::kInt8;
-    case 512:
-      return SampleType::kUint16;
-    case 768:
-      return SampleType::kUint32;
-    case 1024:
-      return SampleType::kInt64;
-    case 1280:
-      return SampleType::kUint64;
-    default:
-      break;
-  }
-  constexpr std::array<std::pair<int, std::string_view>, 7> kUnsupported{{{1, "1 bit"},
-                                                                          {32, "complex64"},
-                                                                          {128, "RGB"},
-                                                                          {1536, "float128"},
-                                                                          {1792, "complex128"},
-                                                                          {2048, "complex256"},
-                                                                          {2304, "RGBA"}}};
-  std::string name = "code " + std::to_string(header.type);
-  for (const auto& [code, text] : kUnsupported) {
-    if (code == header.type) name = text;
-  }
-  bad_input(path, "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats", "NIfTI type " + name);
 }
 
 // The axes from the slowest to the fastest: channels (dimensions 5 to 7 as one), time, z, y, x.
@@ -313,7 +286,7 @@ VolumeInfo read_info(const NiftiHeader& header, const std::vector<ArrayAxis>& ax
   VolumeInfo info;
   info.path = path;
   info.format = "nifti";
-  info.type = sample_type_of(header, path);
+  info.type = type_of_code(header.type, kTypes, path);
   info.dims = choice.dims(axes);
   info.notes = choice.notes;
   info.part = choice.part;

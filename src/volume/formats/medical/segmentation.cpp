@@ -1,6 +1,5 @@
 #include "volume/formats/medical/segmentation.hpp"
 
-#include <charconv>
 #include <optional>
 
 #include "files/header_text.hpp"

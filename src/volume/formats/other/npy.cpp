@@ -9,6 +9,7 @@
 
 #include "files/header_text.hpp"
 #include "files/quoted.hpp"
+#include "parallel/size.hpp"
 #include "volume/band_stream.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/formats.hpp"
@@ -174,7 +175,7 @@ class SlowestFirst final : public BandStream {
  private:
   void fill(std::int64_t first, std::int64_t count, std::span<std::byte> band) override {
     const auto span = (dims_[1] - 1) * strides_[1] + (count - 1) * strides_[2] + 1;
-    plane_.resize(static_cast<std::size_t>(span) * each_);
+    plane_.resize(to_size(span, each_));
     const BlockCopy copy{{1, dims_[1], count}, {0, strides_[1], strides_[2]}, {1, dims_[0], dims_[0] * dims_[1]}};
     for (std::int64_t i = 0; i < dims_[0]; ++i) {
       const auto at = static_cast<std::uint64_t>(i * strides_[0] + first * strides_[2]);

@@ -1,6 +1,5 @@
 // Headerless files: the layout comes from the caller or from the file's name.
 #include <bit>
-#include <charconv>
 #include <stdexcept>
 #include <string>
 #include <utility>

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "parallel/size.hpp"
 #include "volume/formats/vtk/vtk_streams.hpp"
 #include "volume/stream_source.hpp"
 
@@ -13,8 +14,8 @@ namespace {
 
 std::vector<std::byte> decoded(ByteStream& input, std::uint64_t stored, std::uint64_t bytes, const std::string& path) {
   constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 28;
-  std::vector<std::byte> packed(static_cast<std::size_t>(stored));
-  std::vector<std::byte> out(static_cast<std::size_t>(bytes));
+  std::vector<std::byte> packed(to_size(stored));
+  std::vector<std::byte> out(to_size(bytes));
   std::uint64_t memory = kMostMemory;
   std::size_t read = 0;
   std::size_t written = 0;

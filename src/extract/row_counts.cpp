@@ -1,0 +1,39 @@
+#include "extract/row_counts.hpp"
+
+#include <limits>
+#include <string>
+
+#include "isoweave/error.hpp"
+
+namespace isoweave {
+namespace {
+
+// Replaces a count by the sum of those before it.
+void scan_one(std::uint32_t& count, std::uint64_t& sum) {
+  const std::uint32_t own = count;
+  count = static_cast<std::uint32_t>(sum);
+  sum += own;
+}
+
+void require_numbers(std::size_t layers, std::uint64_t count, const char* what) {
+  if (count <= std::numeric_limits<std::uint32_t>::max()) return;
+  throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
+                   ", expected fewer than 2^32: choose thinner slabs");
+}
+
+}  // namespace
+
+RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited) {
+  RowSums sums;
+  for (RowCounts& row : rows) {
+    sums.cells += row.cells;
+    sums.on_border += row.on_border;
+    scan_one(row.vertices, sums.vertices);
+    scan_one(row.triangles, sums.triangles);
+  }
+  require_numbers(layers, sums.vertices + inherited, "vertices");
+  require_numbers(layers, sums.triangles, "triangles");
+  return sums;
+}
+
+}  // namespace isoweave
