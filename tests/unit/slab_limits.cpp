@@ -169,7 +169,7 @@ TEST(SlabLimits, SlabsOfADeviceEndWithTheVolume) {
   DeviceExtractor extractor(engine);
   const World world(run.task.volume.geometry, run.task.space, run.task.offset);
   MeshInMemory mesh;
-  DeviceBackEnd back_end(engine, false, world, mesh, sweep.executor(), true);
+  DeviceBackEnd back_end(engine, run.task.simplify, world, mesh, sweep.executor(), true);
   sweep.begin(extractor, {}, &back_end);
   run.step_through(sweep);
   back_end.wait_for_sinks();
