@@ -46,8 +46,8 @@ class Stretch {
     task.zone = kSurface.zone();
     control_.schedule = holder.schedule;
     if (holder.on_device) {
-      engine_ = std::make_unique<BulkEngine<HostDevice>>(HostDevice(executor_),
-                                                         BulkOptions{source_->info(), kSurface.rule(), false, task.zone});
+      engine_ = std::make_unique<BulkEngine<HostDevice>>(
+          HostDevice(executor_), BulkOptions{source_->info(), kSurface.rule(), false, task.zone});
       extractor_ = std::make_unique<DeviceExtractor>(*engine_);
       back_end_ = std::make_unique<DeviceBackEnd>(*engine_, task, world, sink, executor_, true);
     } else {
