@@ -122,7 +122,6 @@ TEST(CliUsage, WhatADeviceDoesNotDoIsRefused) {
       {{"--min-component", "9"}, "--min-component"},
       {{"--normals", "quadric"}, "--normals quadric"},
       {{"--color-by", "nothing.nrrd"}, "--color-by"},
-      {{"--checkpoint", "run"}, "--checkpoint"},
       {{"--schedule", "queue"}, "a --schedule other than rounds"}};
   for (const auto& [more, option] : cases) {
     std::vector<std::string> arguments = mesh("nothing.nrrd", more);
@@ -281,7 +280,7 @@ TEST(CliDevice, WithoutOneARunByCudaEndsWithItsOwnCode) {
 TEST(CliDevice, WhatTakesProcessorsIsRefused) {
   const files::Folder folder;
   for (const std::vector<std::string>& more :
-       std::vector<std::vector<std::string>>{{"--triangles", "9"}, {"--checkpoint", "run"}, {"--schedule", "queue"}}) {
+       std::vector<std::vector<std::string>>{{"--triangles", "9"}, {"--lods", "0.1,0.2"}, {"--schedule", "queue"}}) {
     std::vector<std::string> arguments = mesh(kSmall, {"--device", "cuda"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Result result = run(folder.path(), arguments);
