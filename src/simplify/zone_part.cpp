@@ -9,7 +9,7 @@
 namespace isoweave {
 namespace {
 
-// Triangles from their first vertices on, by half-edges, in the order of a part.
+// The vertices and triangles that a zone holds, in the order of a part.
 class PartOrder {
  public:
   PartOrder(const ZoneView& zone, std::span<const Index> front) : zone_(zone), place_(zone.vertices.size(), kNone) {
@@ -22,6 +22,11 @@ class PartOrder {
   Index place(Index v) const { return place_[v]; }
 
  private:
+  struct NamedVertex {
+    std::uint64_t id;
+    Index vertex;
+  };
+
   // Lists the vertices that are held: those of triangles, and those to which later pieces add.
   void list_vertices(std::span<const Index> front) {
     for (const Index v : front) place_[v] = 0;
@@ -29,34 +34,52 @@ class PartOrder {
       if (triangle.sides[0].vertex == kNone) continue;
       for (const HalfEdge& side : triangle.sides) place_[side.vertex] = 0;
     }
+    std::vector<NamedVertex> held;
+    held.reserve(place_.size() - static_cast<std::size_t>(std::count(place_.begin(), place_.end(), kNone)));
     for (Index v = 0; v < place_.size(); ++v) {
-      if (place_[v] != kNone) vertices_.push_back(v);
+      if (place_[v] != kNone) held.push_back({zone_.vertices[v].id, v});
     }
-    std::sort(vertices_.begin(), vertices_.end(),
-              [&](Index a, Index b) { return zone_.vertices[a].id < zone_.vertices[b].id; });
-    for (std::size_t n = 0; n < vertices_.size(); ++n) place_[vertices_[n]] = static_cast<Index>(n);
+    std::sort(held.begin(), held.end(), [](const NamedVertex& a, const NamedVertex& b) { return a.id < b.id; });
+    vertices_.resize(held.size());
+    for (std::size_t n = 0; n < held.size(); ++n) {
+      vertices_[n] = held[n].vertex;
+      place_[held[n].vertex] = static_cast<Index>(n);
+    }
   }
 
+  // Groups the triangles by their first vertices, and sorts the few of each by the second one. No two triangles have
+  // both in common, in this order.
   void list_triangles() {
+    std::vector<Index> end(vertices_.size() + 1, 0);
+    each_triangle([&](Index first) { ++end[place(zone_.origin(first)) + 1]; });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    triangles_.resize(end.back());
+    each_triangle([&](Index first) { triangles_[end[place(zone_.origin(first))]++] = first; });
+    Index begin = 0;
+    for (const Index group_end : std::span(end).first(vertices_.size())) {
+      std::sort(triangles_.begin() + begin, triangles_.begin() + group_end,
+                [&](Index a, Index b) { return place(zone_.destination(a)) < place(zone_.destination(b)); });
+      begin = group_end;
+    }
+  }
+
+  // Calls visit(half-edge from the first vertex) for all triangles.
+  template <class Visit>
+  void each_triangle(const Visit& visit) const {
     for (Index t = 0; t < zone_.triangle_count(); ++t) {
       if (!zone_.alive(half_edge(t, 0))) continue;
       Index first = half_edge(t, 0);
       for (Index c = 1; c < 3; ++c) {
         if (place(zone_.origin(half_edge(t, c))) < place(zone_.origin(first))) first = half_edge(t, c);
       }
-      triangles_.push_back(first);
+      visit(first);
     }
-    // No two triangles have the first two vertices in common, in this order.
-    std::sort(triangles_.begin(), triangles_.end(), [&](Index a, Index b) {
-      return std::pair(place(zone_.origin(a)), place(zone_.destination(a))) <
-             std::pair(place(zone_.origin(b)), place(zone_.destination(b)));
-    });
   }
 
   const ZoneView& zone_;
   std::vector<Index> place_;      // per vertex of the zone; kNone: it is not held
   std::vector<Index> vertices_;   // of the zone
-  std::vector<Index> triangles_;  // half-edges
+  std::vector<Index> triangles_;  // by the half-edges from their first vertices
 };
 
 // The three half-edges of a triangle from one of them on.
@@ -201,6 +224,9 @@ class PartReader {
   ZonePart part_;
 };
 
+// The most triangles around a vertex. Extraction makes fewer, and kMaxValence bounds what is merged.
+constexpr Index kMostFaces = 256;
+
 // Links a part: twins, and where the fans of vertices start. Refuses a surface that no zone could hold.
 class PartLinker {
  public:
@@ -208,12 +234,11 @@ class PartLinker {
       : state_(state), part_(part), retire_(retire), zone_(part.view()) {}
 
   void link() {
-    list_sides();
-    for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
-      while (end < sides_.size() && sides_[end].edge == sides_[begin].edge) ++end;
-      link_edge({sides_.data() + begin, end - begin});
+    list_leaving();
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      for (Index c = 0; c < 3; ++c) link_side(half_edge(t, c));
     }
-    sides_ = {};
+    leaving_ = {};
     for (Index t = 0; t < zone_.triangle_count(); ++t) {
       for (Index c = 0; c < 3; ++c) settle(half_edge(t, c));
     }
@@ -221,35 +246,40 @@ class PartLinker {
   }
 
  private:
-  struct Side {
-    std::uint64_t edge;  // its smaller vertex, and its larger one
-    Index half_edge;
-  };
-
-  void list_sides() {
-    sides_.reserve(3 * part_.triangles.size());
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) {
-        const Index h = half_edge(t, c);
-        const Index a = zone_.origin(h);
-        const Index b = zone_.destination(h);
-        sides_.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), h});
-      }
+  // Lists the half-edges that leave each vertex.
+  void list_leaving() {
+    std::vector<Index> end(part_.vertices.size() + 1, 0);
+    for (const Triangle& triangle : part_.triangles) {
+      for (const HalfEdge& side : triangle.sides) ++end[side.vertex + 1];
     }
-    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
-      return std::pair(a.edge, a.half_edge) < std::pair(b.edge, b.half_edge);
-    });
+    state_.require(*std::max_element(end.begin(), end.end()) <= kMostFaces, "stars as small as they are in volumes");
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    first_leaving_ = end;
+    leaving_.resize(end.back());
+    for (Index t = 0; t < zone_.triangle_count(); ++t) {
+      for (Index c = 0; c < 3; ++c) leaving_[end[part_.triangles[t].sides[c].vertex]++] = half_edge(t, c);
+    }
   }
 
-  void link_edge(std::span<const Side> sides) {
-    if (sides.size() == 1) return;
-    const Index a = sides[0].half_edge;
-    const Index b = sides[1].half_edge;
-    const bool good = sides.size() == 2 && zone_.origin(a) == zone_.destination(b) && zone_.twin(a) == kNone &&
-                      zone_.twin(b) == kNone && zone_.key(a) == zone_.key(b) && zone_.tie_low(a) == zone_.tie_low(b);
-    state_.require(good, "edges whose two sides fit together");
-    zone_.set_twin(a, b);
-    zone_.set_twin(b, a);
+  // The only half-edge from one vertex to another, or kNone.
+  Index find_side(Index from, Index to) const {
+    Index found = kNone;
+    for (Index n = first_leaving_[from]; n < first_leaving_[from + 1]; ++n) {
+      if (zone_.destination(leaving_[n]) != to) continue;
+      state_.require(found == kNone, "edges of one triangle or two");
+      found = leaving_[n];
+    }
+    return found;
+  }
+
+  void link_side(Index h) {
+    static_cast<void>(find_side(zone_.origin(h), zone_.destination(h)));  // refuses two
+    const Index back = find_side(zone_.destination(h), zone_.origin(h));
+    if (back == kNone) return;
+    const bool fits = zone_.twin(h) != kWritten && zone_.twin(back) != kWritten && zone_.key(h) == zone_.key(back) &&
+                      zone_.tie_low(h) == zone_.tie_low(back);
+    state_.require(fits, "edges whose two sides fit together");
+    zone_.set_twin(h, back);
   }
 
   bool is_incomplete(Index v) const { return zone_.states[v] == VertexState::kIncomplete; }
@@ -269,7 +299,7 @@ class PartLinker {
     }
   }
 
-  // A fan starts where a vertex lies on a border, or anywhere.
+  // Starts the fan of a vertex on a border at that border, and any other fan anywhere.
   void start_fans() {
     std::vector<std::uint32_t> corners(part_.vertices.size(), 0);
     for (Index t = 0; t < zone_.triangle_count(); ++t) {
@@ -303,7 +333,8 @@ class PartLinker {
   ZonePart& part_;
   const CostBits retire_;
   ZoneView zone_;
-  std::vector<Side> sides_;
+  std::vector<Index> first_leaving_;  // per vertex, and one more
+  std::vector<Index> leaving_;
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 // A part of the undecided surface by itself: what a zone hands to a later run, or to another zone.
 //
-// Everything in a part goes by ids. So a surface makes the same part, byte by byte, whatever held it: pieces of any
-// size, any number of threads, processors or a device. A state file has it as lists of numbers, one for each field:
+// Everything in a part goes by ids. So a surface makes the same part, byte by byte but for receipts, whatever held it:
+// pieces of any size, any number of threads, processors or a device. A state file has lists of numbers, one for each
+// field:
 //
 //   vertices by ascending ids: ids; positions; quadrics; whether each is final; numbers and labels of the receipts;
 //     normals, quadrics of normals, values, where the run has them; for each finer level whether final, numbers, labels
@@ -53,12 +54,13 @@ struct PartShape {
   std::vector<Receipt> ends;  // of each level, the last one included: receipts have smaller numbers and labels
 };
 
-// Writes the part that a zone holds, where no vertex is locked. Memory: 12 bytes for each triangle, and 8 for each
-// vertex.
+// Writes the part that a zone holds, where no vertex is locked. Memory: 24 bytes for each vertex, or 12 and 4 for each
+// triangle.
 void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<LevelVertex>> levels,
                 std::span<const Index> front);
 
 // Reads a part, and links it. Throws BadInput when it is not one of that shape, or no part that a zone could hold.
+// Memory besides the part: 12 bytes for each triangle, and 8 for each vertex.
 ZonePart read_part(StateReader& state, const PartShape& shape);
 
 }  // namespace isoweave
