@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "input_files.hpp"
+#include "isoweave/histogram.hpp"
 
 namespace {
 
