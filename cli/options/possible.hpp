@@ -1,4 +1,4 @@
-// What goes together in a run of mesh or simplify: the library's table (possible_runs.hpp), with the names of options.
+// The options that go together in a run of mesh or simplify: the table of possible_runs.hpp, with their names here.
 #pragma once
 
 #include <string_view>

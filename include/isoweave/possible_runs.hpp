@@ -1,4 +1,4 @@
-// What goes together in a run, and what does not.
+// The options that go together in a run, and those that do not.
 #pragma once
 
 #include <cstdint>

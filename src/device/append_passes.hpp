@@ -67,8 +67,8 @@ struct AppendPasses {
     link_sorted({sides + begin, end - begin}, link, [](Index) {});
   }
 
-  // Settles the vertices that were incomplete, and those beside them; all that may have a turn, where turns are
-  // unknown.
+  // Settles the vertices that were incomplete (settle_front) and the vertices beside them (settle_ends); where no turn
+  // is known, every complete vertex (settle_held); and the new vertices.
   ISOWEAVE_HD void settle_front(std::int64_t n, const Index* old_front) { settle_old(old_front[n]); }
   ISOWEAVE_HD void settle_ends(std::int64_t n) {
     settle_old(zone.origin(unkeyed[n]));

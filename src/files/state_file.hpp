@@ -1,8 +1,8 @@
 // The file that the state of a run is saved in: fields one after another, little-endian, and a CRC-32 of all that
 // stands before it. Anyone may have written such a file: what is read is checked before it is used.
 //
-// A class with a state has a member template `serialize(archive)`. It names the fields once, for a StateWriter to write
-// and for a StateReader to read.
+// A class with a state has members serialize(StateWriter&) and serialize(StateReader&), or one template for both where
+// nothing has to be checked.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,6 @@ static_assert(std::endian::native == std::endian::little, "a state has the bytes
 
 class StateWriter {
  public:
-  static constexpr bool kReads = false;
-
   // The file appears on commit(). Throws CannotWrite, as all members do.
   explicit StateWriter(const std::string& path) : file_(path) {}
 
@@ -68,8 +66,6 @@ class StateWriter {
 
 class StateReader {
  public:
-  static constexpr bool kReads = true;
-
   // Reads the whole file once, for its CRC. Throws BadInput, as all members do.
   explicit StateReader(const std::string& path);
 

@@ -30,7 +30,7 @@ class FinalOutput {
   // Returns when the sink has received everything. Throws what it threw.
   void wait() { output_.wait(); }
 
-  // What comes after all receipts given so far.
+  // The receipt of the next new vertex: its number and label are above those of all receipts given so far.
   Receipt end() const { return {output_.next_number(), output_.next_label()}; }
 
   // The counts between two pieces of a manifold surface: written, and read before the first one. Throws BadInput.

@@ -22,7 +22,7 @@ SlabRecord Loop::step() {
   record.bytes = source_.bytes();
   record.live_triangles = piece_.triangles.size();
   const bool complete = source_.complete();
-  // What fails to be read for the next piece does so once this one is done, so that a state can be saved then.
+  // An error of reading for the next piece is thrown once this piece is done, so that a state can be saved then.
   std::exception_ptr failure;
   if (source_.reads_early() && !complete) failure = try_to_read();
   if (back_end_ != nullptr) simplify(complete, record);

@@ -36,7 +36,7 @@ class SlabPlanner {
   // Notes how much memory the zone took with a slab.
   void weigh_zone(const SlabRecord& record, const Held& held);
 
-  // What is known of the last slab: written, and read. Throws BadInput.
+  // The counts of the last slab: written to a state, and read from it. Throws BadInput.
   void serialize(StateWriter& state) const;
   void serialize(StateReader& state);
 

@@ -38,12 +38,6 @@ struct FinalPiece {
   Array<std::array<std::uint32_t, 3>> triangles;
   Array<std::uint8_t> locked;    // per vertex: 1 if it is locked; or none, where no vertex of the surface is
   std::uint64_t open_edges = 0;  // edges of one triangle, without those that have a locked end
-
-  std::uint64_t bytes() const {
-    return known.capacity() * sizeof(KnownVertex) + positions.capacity() * sizeof(Vec3) +
-           normals.capacity() * sizeof(Point) + values.capacity() * sizeof(float) +
-           triangles.capacity() * sizeof(triangles[0]) + locked.capacity();
-  }
 };
 
 // The seam between what simplifies and what writes.

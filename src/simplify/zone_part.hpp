@@ -46,7 +46,7 @@ struct ZonePart {
   ZoneView view();
 };
 
-// What a part must be like to belong to a run.
+// The properties that a part must have to belong to a run.
 struct PartShape {
   bool normals = false, normal_quadrics = false, values = false;
   CostBits retire = 0;

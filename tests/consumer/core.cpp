@@ -1,4 +1,4 @@
-// What the core gives by itself: the mesh in memory of a volume in memory, and exceptions that are caught by their
+// A program that links the core by itself: it meshes a volume in memory into memory, and catches exceptions by their
 // base.
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// What a forecast of a run says of the memory of the whole process.
+// The memory of the whole process in the forecast of a run.
 #include <algorithm>
 
 #include "isoweave/forecast.hpp"
