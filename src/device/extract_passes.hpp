@@ -35,6 +35,8 @@ struct SliceRing {
   std::array<std::int64_t, 3> dims{};
   std::int64_t room = 1;  // slices; slice k lies at k % room
 
+  ISOWEAVE_HD bool reaches(std::size_t axis, std::int64_t at) const { return at >= 0 && at < dims[axis]; }
+
   ISOWEAVE_HD SampleRow<T> row(std::int64_t j, std::int64_t k) const {
     if (j < 0 || k < 0 || j >= dims[1] || k >= dims[2]) return {};
     return {samples + ((k % room) * dims[1] + j) * dims[0], dims[0]};
@@ -252,7 +254,8 @@ struct ExtractPasses {
       zone.turn_keys[v] = 0;
       zone.turns[v] = Turn();
       if (!zone.normals.empty()) {
-        const Crossing crossing{{i, edges.j, edges.k}, static_cast<std::size_t>(edges.axis), f0, f1, t, low_inside};
+        const Crossing crossing{
+            {i, edges.j, edges.k}, static_cast<std::uint8_t>(1 << edges.axis), f0, f1, t, low_inside};
         zone.normals[v] = normal_at(ring, crossing, spacing, rule.above);
       }
     }

@@ -12,13 +12,16 @@ namespace isoweave {
 
 struct FrontBits {
   std::int64_t next_layer = -1;  // which begins at this slice
-  // Of the points of the padded slice, row by row: bit n of a row tells whether sample n - 1 is inside.
+  // Of the points of one or more padded slices, row by row, the last of which is that one: bit n of a row tells whether
+  // sample n - 1 is inside.
   std::vector<std::uint64_t> inside;
 
   void write(StateWriter& state) const;
 
-  // Throws BadInput where no extraction of a volume of such dims could stand there. Layers end at `end_layer`.
-  static FrontBits read(StateReader& state, const std::array<std::int64_t, 3>& dims, std::int64_t end_layer);
+  // Throws BadInput where no extraction of a volume of such dims that keeps so many slices could stand there. Layers
+  // end at `end_layer`.
+  static FrontBits read(StateReader& state, const std::array<std::int64_t, 3>& dims, std::int64_t end_layer,
+                        std::size_t slices = 1);
 };
 
 }  // namespace isoweave

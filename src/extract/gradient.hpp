@@ -79,23 +79,40 @@ ISOWEAVE_HD inline Point unit_point(Vec3 v) {
           static_cast<float>(scaled.z / length)};
 }
 
-// A crossing between two samples: f0 at `low`, and f1 one step further along an axis.
+// A crossing between two samples: f0 at `low`, and f1 one step further along the axes of a direction.
 struct Crossing {
   std::array<std::int64_t, 3> low;
-  std::size_t axis;
+  std::uint8_t direction;  // bits x, y, z
   double f0, f1;
   double t;  // where, from low on
   bool low_inside;
+
+  ISOWEAVE_HD bool along(std::size_t axis) const { return (direction >> axis & 1) != 0; }
+  ISOWEAVE_HD std::array<std::int64_t, 3> high() const {
+    return {low[0] + (direction & 1), low[1] + (direction >> 1 & 1), low[2] + (direction >> 2)};
+  }
 };
 
 // The gradient at a crossing, of the samples times `scale`.
 template <class Samples>
 ISOWEAVE_HD inline Vec3 crossing_gradient(const Samples& samples, const Crossing& crossing,
                                           const std::array<double, 3>& spacing, double scale) {
-  std::array<std::int64_t, 3> high = crossing.low;
-  ++high[crossing.axis];
   const Vec3 g0 = gradient_at(samples, crossing.low, spacing, scale);
-  return g0 + crossing.t * (gradient_at(samples, high, spacing, scale) - g0);
+  return g0 + crossing.t * (gradient_at(samples, crossing.high(), spacing, scale) - g0);
+}
+
+// The normal of a cap, where the surface hugs the inside sample at one end of an edge: the cap faces along the axes on
+// which the other end lies outside the volume, or along the edge where the other end is NaN.
+template <class Samples>
+ISOWEAVE_HD inline Point cap_normal(const Samples& samples, const Crossing& crossing) {
+  const std::array<std::int64_t, 3> outside = crossing.low_inside ? crossing.high() : crossing.low;
+  bool leaves[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) leaves[axis] = !samples.reaches(axis, outside[axis]);
+  const bool any = leaves[0] || leaves[1] || leaves[2];
+  const double step = crossing.low_inside ? 1 : -1;
+  double normal[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] = (any ? leaves[axis] : crossing.along(axis)) ? step : 0;
+  return unit_point({normal[0], normal[1], normal[2]});
 }
 
 ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
@@ -104,11 +121,7 @@ ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y =
 template <class Samples>
 ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& crossing,
                                    const std::array<double, 3>& spacing, bool above) {
-  if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) {  // a cap on the border: it faces along the edge
-    Point cap{0, 0, 0};
-    cap[crossing.axis] = crossing.low_inside ? 1.0F : -1.0F;
-    return cap;
-  }
+  if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) return cap_normal(samples, crossing);
   Vec3 g = crossing_gradient(samples, crossing, spacing, 1);
   if (!is_finite(g)) {  // a difference is beyond the largest number: directions are those of smaller samples
     constexpr double kSmall = 0x1p-124;

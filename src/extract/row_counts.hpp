@@ -20,9 +20,9 @@ struct RowSums {
   std::uint64_t vertices = 0, triangles = 0, cells = 0, on_border = 0;
 };
 
-// The most samples of a row. A row of a layer has at most one cell more, and a cell has at most five triangles: their
-// count fits into 32 bits.
-inline constexpr std::int64_t kMostRowSamples = std::int64_t{1} << 29;
+// The most samples of a row. A row of a layer has at most one cell more, and a cell has at most 31 triangles in all
+// extractors: their count fits into 32 bits.
+inline constexpr std::int64_t kMostRowSamples = std::int64_t{1} << 27;
 
 // Gives every row the places where its vertices and triangles begin. Vertices are numbered after the `inherited` ones.
 // Throws OverMemory where numbers of 32 bits are not enough for a slab of `layers` layers.

@@ -24,8 +24,10 @@ struct RowKernels {
              Comparison<float>, Comparison<double>>
       compare;
 
-  // Finds the bits that differ from the next bit in the row, where `mask` has bits. All rows have as many words.
-  void (*differ_along)(const std::uint64_t* row, const std::uint64_t* mask, std::size_t words, std::uint64_t* out);
+  // Finds the bits of row `a` that differ from the next bit of row `b`, which may be the same row, where `mask` has
+  // bits. All rows have as many words.
+  void (*differ_along)(const std::uint64_t* a, const std::uint64_t* b, const std::uint64_t* mask, std::size_t words,
+                       std::uint64_t* out);
 
   // Finds the bits of two rows that differ.
   void (*differ)(const std::uint64_t* a, const std::uint64_t* b, std::size_t words, std::uint64_t* out);

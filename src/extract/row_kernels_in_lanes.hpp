@@ -76,10 +76,10 @@ class RowKernelsInLanes {
     }
   }
 
-  static void differ_along(const std::uint64_t* __restrict row, const std::uint64_t* __restrict mask, std::size_t words,
-                           std::uint64_t* __restrict out) {
-    for (std::size_t w = 0; w + 1 < words; ++w) out[w] = (row[w] ^ (row[w] >> 1 | row[w + 1] << 63)) & mask[w];
-    out[words - 1] = (row[words - 1] ^ row[words - 1] >> 1) & mask[words - 1];
+  static void differ_along(const std::uint64_t* a, const std::uint64_t* b, const std::uint64_t* __restrict mask,
+                           std::size_t words, std::uint64_t* __restrict out) {
+    for (std::size_t w = 0; w + 1 < words; ++w) out[w] = (a[w] ^ (b[w] >> 1 | b[w + 1] << 63)) & mask[w];
+    out[words - 1] = (a[words - 1] ^ b[words - 1] >> 1) & mask[words - 1];
   }
 
   static void differ(const std::uint64_t* __restrict a, const std::uint64_t* __restrict b, std::size_t words,

@@ -27,6 +27,9 @@ class SampleView {
   // The iso-value, counted as the samples of rows are.
   double iso() const { return iso_; }
 
+  // Whether there are samples at an index along an axis.
+  bool reaches(std::size_t axis, std::int64_t at) const { return at >= 0 && at < dims_[axis]; }
+
   SampleRow<T> row(std::int64_t j, std::int64_t k) const {
     if (j < 0 || k < 0 || j >= dims_[1] || k >= dims_[2]) return {};
     return {reinterpret_cast<const T*>(window_.slice(k)) + j * dims_[0], dims_[0], base_};

@@ -23,9 +23,19 @@ struct VertexNumbering {
   std::uint32_t width = 0;  // ids of mesh edges per id of a vertex
   // Per slot, bits x, y and z: the vertex lies between its point and the one that is further along these axes.
   std::array<std::uint8_t, kMostSlots> directions{};
+  std::uint32_t border_slots = kMostSlots;  // from this slot on, vertices lie on the border of the surface, wherever
 
   // Vertices on the edges of the lattice's cubes, one for each of the three edges that begin at a point.
   static VertexNumbering of_cube_edges(const std::array<std::int64_t, 3>& dims);
+
+  // Vertices on the edges of Kuhn's tetrahedra, one for each of the seven edges that begin at a point.
+  static VertexNumbering of_kuhn_edges(const std::array<std::int64_t, 3>& dims);
+
+  // Vertices on the edges of cubes, and seven inside the cube that begins at a point.
+  static VertexNumbering of_cubes(const std::array<std::int64_t, 3>& dims);
+
+  // Vertices inside cubes alone. The last eight of a cube are those on the border of the surface.
+  static VertexNumbering of_dual_cubes(const std::array<std::int64_t, 3>& dims);
 
   // Vertices of a mesh file.
   static VertexNumbering of_file() { return {}; }

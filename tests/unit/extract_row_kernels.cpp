@@ -48,8 +48,10 @@ TEST(RowKernels, EverySetFindsTheBitsThatDiffer) {
         Words out(count, random());
         kernels->differ(a.data(), b.data(), count, out.data());
         expect_bits(out, [&](std::size_t bit) { return bit_of(a, bit) != bit_of(b, bit); });
-        kernels->differ_along(a.data(), mask.data(), count, out.data());
+        kernels->differ_along(a.data(), a.data(), mask.data(), count, out.data());
         expect_bits(out, [&](std::size_t bit) { return bit_of(mask, bit) && bit_of(a, bit) != bit_of(a, bit + 1); });
+        kernels->differ_along(a.data(), b.data(), mask.data(), count, out.data());
+        expect_bits(out, [&](std::size_t bit) { return bit_of(mask, bit) && bit_of(a, bit) != bit_of(b, bit + 1); });
       }
     }
   }
