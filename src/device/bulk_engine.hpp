@@ -37,6 +37,8 @@ class BulkEngine final : public DeviceEngine {
     end_layer_ = options.rule.closed ? dims[2] : dims[2] - 1;
     cases_.resize(kCaseTable.size());
     device_.write(kCaseTable.data(), kCaseTable.size(), cases_.data());
+    choices_.resize(1);
+    device_.write(&kChoicePolygons, 1, choices_.data());
     inside_.resize(plane_words());
     front_base_.resize(plane_words() + 1);
     device_.clear(inside_);
@@ -265,6 +267,7 @@ class BulkEngine final : public DeviceEngine {
     passes.rule = options_.rule;
     passes.spacing = options_.volume.geometry.spacing;
     passes.cases = cases_.data();
+    passes.choices = choices_.data();
     passes.vertex_base = vertex_base_.data();
     passes.triangle_base = triangle_base_.data();
     passes.front_base = front_base_.data();
@@ -427,6 +430,7 @@ class BulkEngine final : public DeviceEngine {
   std::int64_t room_ = 0;      // slices
   std::int64_t uploaded_ = 0;  // slices below are, or were, on the device
   Buffer<CellCase> cases_;
+  Buffer<ChoicePolygons> choices_;
   Buffer<std::uint64_t> inside_;
   Buffer<std::uint32_t> vertex_base_, triangle_base_, front_base_, front_next_base_;
   SlabCounts counts_;

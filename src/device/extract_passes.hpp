@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "extract/choose_diagonals.hpp"
 #include "extract/cube_rules.hpp"
 #include "extract/gradient.hpp"
 #include "extract/tables.hpp"
@@ -140,6 +141,7 @@ struct ExtractPasses {
   IsoRule rule;
   std::array<double, 3> spacing{};
   const CellCase* cases = nullptr;            // kCaseTable
+  const ChoicePolygons* choices = nullptr;    // kChoicePolygons
   std::uint32_t* vertex_base = nullptr;       // per word of a layer: counts, then numbers of its first vertex
   std::uint32_t* triangle_base = nullptr;     // the same for triangles
   const std::uint32_t* front_base = nullptr;  // per word of slice 0: the number of its first x-crossing
@@ -199,14 +201,16 @@ struct ExtractPasses {
     Index t = first_triangle + triangle_base[item];
     for (std::uint64_t active = bits.active_cells(n, row, w); active != 0; active &= active - 1) {
       const int bit = lowest_bit(active);
-      const CellCase& shape = cases[bits.case_of(n, row, w, bit)];
-      for (int c = 0; c < 3 * shape.triangles; ++t) {
+      const std::uint32_t cell = bits.case_of(n, row, w, bit);
+      const Index first = t;
+      for (int c = 0; c < 3 * cases[cell].triangles; ++t) {
         Triangle triangle;
         for (HalfEdge& side : triangle.sides) {
-          side.vertex = vertex_on({n, row, w}, bit, shape.edges[static_cast<std::size_t>(c++)]);
+          side.vertex = vertex_on({n, row, w}, bit, cases[cell].edges[static_cast<std::size_t>(c++)]);
         }
         zone.triangles[t] = triangle;
       }
+      shorten_diagonals(cell, first);
       ++totals.cells;
     }
   }
@@ -224,6 +228,17 @@ struct ExtractPasses {
   }
 
  private:
+  // Gives the polygons of a cell, whose triangles begin with the `first`, their shortest diagonals.
+  ISOWEAVE_HD void shorten_diagonals(std::uint32_t cell, Index first) const {
+    for (std::size_t n = choices->first[cell]; n < choices->first[cell + 1]; ++n) {
+      const ChoicePolygon& polygon = choices->polygons[n];
+      Triangle* const own = &zone.triangles[first + polygon.first];
+      choose_diagonals(
+          polygon, [&](std::size_t at) -> Index& { return own[at / 3].sides[at % 3].vertex; },
+          [&](Index v) -> const Vec3& { return zone.vertices[v].position; });
+    }
+  }
+
   // A run of 64 lattice edges along an axis: its word, and the row and slice of its lower ends, in samples.
   struct EdgeWord {
     std::int64_t w, j, k;

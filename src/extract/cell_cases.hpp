@@ -1,6 +1,8 @@
 // The cases of the crossed cells of a row, one after the other.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 
 #include "extract/cell_kernels.hpp"
@@ -33,6 +35,39 @@ template <class Visit>
     }
   }
   return count;
+}
+
+// The numbers of the first crossings of word w, in the order of edge_row().
+inline std::array<std::uint32_t, 8> first_numbers(const CellRow& row, std::size_t w) {
+  std::array<std::uint32_t, 8> first;
+  for (std::size_t r = 0; r < 4; ++r) first[r] = row.x_base[r][w];
+  for (std::size_t dz = 0; dz < 2; ++dz) {
+    first[edge_row(1, 0, dz)] = first[2 * dz] + static_cast<std::uint32_t>(std::popcount(row.crossings[2 * dz][w]));
+  }
+  for (std::size_t dy = 0; dy < 2; ++dy) first[edge_row(2, dy, 0)] = row.z_base[dy][w];
+  return first;
+}
+
+// Calls visit(bit of the row, case, numbers) for the crossed cells of a row, one after the other. Numbers are those of
+// the crossings at the cell's bit of all rows, then those at the next bit; that of an absent crossing means nothing.
+template <class Visit>
+inline void for_cell_numbers(const CellRow& row, const Visit& visit) {
+  std::array<std::uint32_t, 16> numbers;
+  for (std::size_t w = 0; w < row.words; ++w) {
+    if (row.crossed[w] == 0) continue;
+    std::array<std::uint32_t, 8> next = first_numbers(row, w);
+    for (const unsigned half : {0U, 1U}) {
+      std::array<std::uint32_t, 8> crossings;
+      for (std::size_t r = 0; r < 8; ++r) crossings[r] = static_cast<std::uint32_t>(row.crossings[r][w] >> 32 * half);
+      for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
+        std::copy(next.begin(), next.end(), numbers.begin());
+        for (std::size_t r = 0; r < 8; ++r) next[r] += crossings[r] >> bit & 1;
+        if (half == 1 && bit == 31 && w + 1 < row.words) next = first_numbers(row, w + 1);
+        std::copy(next.begin(), next.end(), numbers.begin() + 8);
+        visit(64 * w + 32 * half + static_cast<std::size_t>(bit), cell, numbers);
+      });
+    }
+  }
 }
 
 }  // namespace isoweave

@@ -29,14 +29,19 @@ constexpr std::size_t edge_row(int axis, std::size_t dy, std::size_t dz) {
   return axis == 1 ? 4 + dz : 6 + dy;
 }
 
-// For each case, the places of its triangles' corners among 16 numbers: those of the crossings at the cell's bit of the
-// eight rows, then those at the next bit. Each triangle has three places; zeros follow the last one.
+// The place of a cell edge's crossing among 16 numbers: those of the crossings at the cell's bit of the eight rows,
+// then those at the next bit.
+constexpr std::size_t corner_place(std::size_t edge) {
+  const CellEdge e = kEdgeTable[edge];
+  return edge_row(e.axis, e.dy, e.dz) + 8U * e.dx;
+}
+
+// For each case, the places of its triangles' corners. Each triangle has three places; zeros follow the last one.
 inline constexpr std::array<std::array<std::uint8_t, 16>, 256> kCornerPlaces = [] {
   std::array<std::array<std::uint8_t, 16>, 256> places{};
   for (std::size_t cell = 0; cell < places.size(); ++cell) {
     for (std::size_t corner = 0; corner < 3U * kCaseTable[cell].triangles; ++corner) {
-      const CellEdge edge = kEdgeTable[kCaseTable[cell].edges[corner]];
-      places[cell][corner] = static_cast<std::uint8_t>(edge_row(edge.axis, edge.dy, edge.dz) + 8U * edge.dx);
+      places[cell][corner] = static_cast<std::uint8_t>(corner_place(kCaseTable[cell].edges[corner]));
     }
   }
   return places;

@@ -1,9 +1,16 @@
 #include "extract/marching_cubes.hpp"
 
+#include "extract/cell_cases.hpp"
+#include "extract/choose_diagonals.hpp"
+
 namespace isoweave {
 
 MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor)
-    : EdgeExtractor(volume, options, VertexNumbering::of_cube_edges(options.whole(volume)), executor) {}
+    : MarchingCubes(volume, options, VertexNumbering::of_cube_edges(options.whole(volume)), executor) {}
+
+MarchingCubes::MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const VertexNumbering& numbering,
+                             const Executor& executor)
+    : EdgeExtractor(volume, options, numbering, executor) {}
 
 void MarchingCubes::count_cells(const SliceWindow&, const Row& at, RowCounts& counts) const {
   counts.triangles = cell_kernels_.count_triangles(cell_row(at));
@@ -11,10 +18,33 @@ void MarchingCubes::count_cells(const SliceWindow&, const Row& at, RowCounts& co
 
 void MarchingCubes::write_cells(const SliceWindow&, const Row& at, SurfacePiece& piece) const {
   const auto [first, count] = triangles_of(at.number);
-  cell_kernels_.write_triangles(cell_row(at), {piece.triangles.data() + first, count});
+  const CellRow cells = cell_row(at);
+  cell_kernels_.write_triangles(cells, {piece.triangles.data() + first, count});
+  shorten_diagonals(cells, first, piece);
 }
 
-// A row of cells and the rows around it. Its numbers are valid once vertices have been emitted.
+// Gives the polygons of a row of cells, whose triangles begin with the `first`, their shortest diagonals.
+void MarchingCubes::shorten_diagonals(const CellRow& cells, std::uint32_t first, SurfacePiece& piece) const {
+  std::uint32_t* corners = piece.triangles[first].data();
+  const auto shorten = [&](int, std::uint32_t cell) {
+    shorten_diagonals_of(cell, corners, piece);
+    corners += 3 * kCaseTable[cell].triangles;
+  };
+  for (std::size_t w = 0; w < cells.words; ++w) {
+    if (cells.crossed[w] == 0) continue;
+    for (const unsigned half : {0U, 1U}) for_cells(cells, w, half, shorten);
+  }
+}
+
+void MarchingCubes::shorten_diagonals_of(std::uint32_t cell, std::uint32_t* corners, const SurfacePiece& piece) const {
+  const auto place = [&](std::uint32_t number) -> const Vec3& { return place_of(number, piece); };
+  for (std::size_t n = kChoicePolygons.first[cell]; n < kChoicePolygons.first[cell + 1]; ++n) {
+    const ChoicePolygon& polygon = kChoicePolygons.polygons[n];
+    const auto corner = [&](std::size_t at) -> std::uint32_t& { return corners[3U * polygon.first + at]; };
+    choose_diagonals(polygon, corner, place);
+  }
+}
+
 CellRow MarchingCubes::cell_row(const Row& at) const {
   const std::size_t words = slab().words();
   CellRow cells{};

@@ -1,4 +1,5 @@
 // Marching cubes over slabs of layers (Lorensen and Cline, 1987; slabs and the front table as in the source paper).
+// Polygons of more than three corners get the shortest diagonals.
 #pragma once
 
 #include "extract/cell_kernels.hpp"
@@ -6,15 +7,28 @@
 
 namespace isoweave {
 
-class MarchingCubes final : public EdgeExtractor<CubeEdges> {
+class MarchingCubes : public EdgeExtractor<CubeEdges> {
  public:
   // Throws OverMemory for rows of more than kMostRowSamples.
   MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor);
 
- private:
+ protected:
+  MarchingCubes(const VolumeInfo& volume, const ExtractOptions& options, const VertexNumbering& numbering,
+                const Executor& executor);
+
   void count_cells(const SliceWindow& window, const Row& at, RowCounts& counts) const override;
   void write_cells(const SliceWindow& window, const Row& at, SurfacePiece& piece) const override;
+
+  bool needs_places() const override { return true; }
+
+  // A row of cells and the rows around it. Its numbers are valid once vertices have been emitted.
   CellRow cell_row(const Row& at) const;
+
+  // Gives the polygons of a cell, whose triangles have such corners, their shortest diagonals.
+  void shorten_diagonals_of(std::uint32_t cell, std::uint32_t* corners, const SurfacePiece& piece) const;
+
+ private:
+  void shorten_diagonals(const CellRow& cells, std::uint32_t first, SurfacePiece& piece) const;
 
   const CellKernels& cell_kernels_ = cell_kernels();
 };

@@ -7,7 +7,8 @@
 // outside.
 //
 // Polygons are triangulated without any diagonal that lies in a cell face: the cell behind that face could pick the
-// same diagonal, and the edge would have four triangles.
+// same diagonal, and the edge would have four triangles. The table has one triangulation; polygons with a choice are
+// listed beside it, and get the shortest diagonals where they are (choose_diagonals.hpp).
 #pragma once
 
 #include <array>
@@ -64,17 +65,26 @@ constexpr bool share_face(int edge, int other) {
   return false;
 }
 
+// Whether inside corners lie on a diagonal of a face.
+constexpr bool is_ambiguous(int inside, int face) {
+  const auto is_inside = [&](int n) { return (inside >> kFaces[face][n] & 1) != 0; };
+  return is_inside(0) == is_inside(2) && is_inside(1) == is_inside(3) && is_inside(0) != is_inside(1);
+}
+
 // next[e] is the crossing that follows crossing e on its polygon, or -1 where edge e is not crossed. Around a face, one
-// segment cuts off each run of inside corners, from where the run is entered to where it is left.
-constexpr std::array<int, kCellEdges> chain_segments(int inside) {
+// segment cuts off each run of inside corners, from where the run is entered to where it is left. Where the inside
+// corners of an ambiguous face are joined (its bit of `joined` is set), segments cut off the outside corners.
+constexpr std::array<int, kCellEdges> chain_segments(int inside, int joined = 0) {
   std::array<int, kCellEdges> next{};
   next.fill(-1);
-  for (const auto& face : kFaces) {
+  for (int f = 0; f < 6; ++f) {
+    const auto& face = kFaces[f];
     for (int n = 0; n < 4; ++n) {
       const bool enters = !(inside >> face[n] & 1) && (inside >> face[(n + 1) % 4] & 1);
       if (!enters) continue;
       int last = n + 1;
       while (inside >> face[(last + 1) % 4] & 1) ++last;
+      if ((joined >> f & 1) != 0) last = n + 3;  // the segment ends on the other side of the outside corner
       next[static_cast<std::size_t>(edge_between(face[n], face[(n + 1) % 4]))] =
           edge_between(face[last % 4], face[(last + 1) % 4]);
     }
@@ -109,9 +119,10 @@ constexpr bool triangulate(const Polygon& polygon, int first, int last, CellCase
   return false;
 }
 
-constexpr CellCase make_case(int inside) {
-  CellCase out;
-  std::array<int, kCellEdges> next = chain_segments(inside);
+// Calls visit(polygon) for the polygons of a case, in the order of their least cell edges.
+template <class Visit>
+constexpr void for_polygons(int inside, const Visit& visit, int joined = 0) {
+  std::array<int, kCellEdges> next = chain_segments(inside, joined);
   for (std::size_t start = 0; start < kCellEdges; ++start) {
     Polygon polygon;
     for (int edge = static_cast<int>(start); next[static_cast<std::size_t>(edge)] >= 0;) {
@@ -120,8 +131,15 @@ constexpr CellCase make_case(int inside) {
       next[static_cast<std::size_t>(edge)] = -1;
       edge = following;
     }
-    if (polygon.size > 0 && !triangulate(polygon, 0, polygon.size - 1, out)) throw "a polygon without a triangulation";
+    if (polygon.size > 0) visit(polygon);
   }
+}
+
+constexpr CellCase make_case(int inside) {
+  CellCase out;
+  for_polygons(inside, [&](const Polygon& polygon) {
+    if (!triangulate(polygon, 0, polygon.size - 1, out)) throw "a polygon without a triangulation";
+  });
   return out;
 }
 
