@@ -29,6 +29,8 @@ std::string_view option_of(RunFeature feature, const AskedRun& run) {
       return "--watch";
     case RunFeature::kMemoryCap:
       return "--memory";
+    case RunFeature::kExtractor:
+      return "an --extractor other than cubes";
     case RunFeature::kSchedule:
       break;
   }

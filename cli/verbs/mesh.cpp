@@ -59,6 +59,11 @@ void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
   CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
   verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
+  verb.add_option(
+          "--extractor", arguments.extractor,
+          "How the surface is made: cubes; trilinear, with tunnels and faces as the samples say; tetrahedra; dual, "
+          "which keeps sharp edges")
+      ->capture_default_str();
   // --smooth is a flag, as a value that stands apart would be taken for the volume.
   verb.add_flag(fmt::format("--smooth{{{}}}", kUsualSmoothing), arguments.smooth,
                 "Smooth the mask of what is inside, each vertex within its edge of the lattice; --smooth=N: passes");

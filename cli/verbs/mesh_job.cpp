@@ -47,6 +47,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["inside"] = arguments.inside;
   json["closed"] = options.closed;
   json["smooth"] = options.smooth;
+  json["extractor"] = arguments.extractor;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
@@ -106,13 +107,15 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
     MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
                      fmt::format("label {} {} {} quality {}{}", label.label.text(), options.closed ? "closed" : "open",
-                                 stop_text(arguments.stop, kUsualError, 0), arguments.quality, smooth_text(options))};
+                                 stop_text(arguments.stop, kUsualError, 0), arguments.quality,
+                                 extractor_text(arguments) + smooth_text(options))};
     if (!label.name.empty()) file.comments.push_back("name " + printable(label.name));
     return file;
   };
   task.describe = [&](Json& json) {
     json["closed"] = options.closed;
     json["smooth"] = options.smooth;
+    json["extractor"] = arguments.extractor;
     json["quality"] = arguments.quality;
     json["space"] = space_text(info.geometry, options.space);
   };

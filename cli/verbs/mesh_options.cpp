@@ -28,6 +28,14 @@ OutputSpace parse_space(std::string_view text) {
       "--space", text, {{"lps", OutputSpace::kLps}, {"ras", OutputSpace::kRas}, {"index", OutputSpace::kIndex}});
 }
 
+ExtractorKind parse_extractor(std::string_view text) {
+  return parse_choice<ExtractorKind>("--extractor", text,
+                                     {{"cubes", ExtractorKind::kCubes},
+                                      {"trilinear", ExtractorKind::kTrilinear},
+                                      {"tetrahedra", ExtractorKind::kTetrahedra},
+                                      {"dual", ExtractorKind::kDual}});
+}
+
 // Passes of --smooth, 0 where it is not given.
 int parse_smooth(std::string_view text) {
   if (text.empty()) return 0;
@@ -38,9 +46,10 @@ int parse_smooth(std::string_view text) {
 
 std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
-          fmt::format("iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside,
-                      options.closed ? "closed" : "open", stop_text(stop, kUsualError, options.triangles),
-                      arguments.quality, smooth_text(options) + component_text(component_rule(arguments.components)))};
+          fmt::format(
+              "iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside, options.closed ? "closed" : "open",
+              stop_text(stop, kUsualError, options.triangles), arguments.quality,
+              extractor_text(arguments) + smooth_text(options) + component_text(component_rule(arguments.components)))};
 }
 
 }  // namespace
@@ -59,6 +68,7 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
   options.closed = !arguments.open;
   options.smooth = parse_smooth(arguments.smooth);
+  options.extractor = parse_extractor(arguments.extractor);
   options.quality = parse_quality(arguments.quality);
   options.normals = parse_normals(arguments.normals);
   options.drop_specks = drops_specks(arguments.stop);
@@ -81,6 +91,10 @@ double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
   const std::optional<double> iso = otsu_threshold(read_histogram(*open_input(input), &stop));
   if (!iso) throw BadInput(input.path + ": --iso auto expects at least two different values, found one or none");
   return *iso;
+}
+
+std::string extractor_text(const MeshArguments& arguments) {
+  return arguments.extractor == "cubes" ? "" : " extractor " + arguments.extractor;
 }
 
 std::string smooth_text(const MeshOptions& options) {

@@ -26,6 +26,9 @@ std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
 // Otsu's threshold. Reads the volume once more, by itself, as slices cannot be read twice.
 double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop);
 
+// " extractor dual", for the comments of a mesh file; empty for the usual one.
+std::string extractor_text(const MeshArguments& arguments);
+
 // " smooth 4", for the comments of a mesh file; empty where nothing is smoothed.
 std::string smooth_text(const MeshOptions& options);
 

@@ -34,6 +34,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.slab.empty()) arguments.slab = task.at("slab");
   arguments.inside = task.at("inside");
   arguments.smooth = task.at("smooth");
+  arguments.extractor = task.at("extractor");
   arguments.normals = task.at("normals");
   arguments.color_by = task.at("color_by");
   arguments.space = task.at("space");
@@ -78,6 +79,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"slab", arguments.slab},
           {"inside", arguments.inside},
           {"smooth", arguments.smooth},
+          {"extractor", arguments.extractor},
           {"normals", arguments.normals},
           {"color_by", arguments.color_by.empty() ? "" : absolute_path(arguments.color_by)},
           {"space", arguments.space},

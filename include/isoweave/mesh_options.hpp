@@ -13,6 +13,24 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
+// How a surface is made from the samples. All four are closed, oriented manifolds, but for the border of an open
+// volume.
+enum class ExtractorKind : std::uint8_t {
+  // Marching cubes (Lorensen and Cline, 1987): a vertex where the surface crosses an edge of the lattice; on a face
+  // where
+  // the samples leave a choice, inside corners are kept apart.
+  kCubes,
+  // Marching cubes with the topology of the trilinear interpolant: faces by the asymptotic decider (Nielson and Hamann,
+  // 1991), tunnels through cells (Chernyaev, 1995). Elsewhere it is kCubes.
+  kTrilinear,
+  // Marching tetrahedra (Doi and Koide, 1991), six in a cube (Kuhn, 1960): no choices, and three times the triangles.
+  kTetrahedra,
+  // Dual marching cubes (Nielson, 2004): a vertex inside the cell for each polygon of kCubes, where it meets the
+  // tangent
+  // planes best. Sharp edges are kept.
+  kDual
+};
+
 // The surface of a volume.
 struct SurfaceOptions {
   double iso = 0;            // a value: slope and intercept of the volume are accounted for
@@ -21,10 +39,11 @@ struct SurfaceOptions {
   // Passes of smooth_mask, 0 to 64: the surface of a mask or label map without its staircase. 0: the surface of the
   // samples. No vertex leaves its edge of the lattice. min, max and nan of the report are those of the samples.
   int smooth = 0;
-  // The components that are kept, found by choose_components in this volume with the same `iso`, `inside_above` and
-  // `closed`; null: all. The result is the mesh of a surface that never had the others: errors, numbers of triangles
-  // and distances refer to the kept components. Costs a second union-find over the triangles of each slab. Not on a
-  // device.
+  ExtractorKind extractor = ExtractorKind::kCubes;  // a device has kCubes only
+  // The components that are kept, found by choose_components in this volume with the same `iso`, `inside_above`,
+  // `closed` and `extractor`; null: all. The result is the mesh of a surface that never had the others: errors, numbers
+  // of triangles and distances refer to the kept components. Costs a second union-find over the triangles of each slab.
+  // Not on a device.
   std::shared_ptr<const ComponentChoice> components{};
 };
 

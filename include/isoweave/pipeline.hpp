@@ -85,7 +85,8 @@ std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options
 
 // Finds the components of the volume's surface that a rule keeps, for SurfaceOptions::components, in a pass over the
 // volume of its own: components are known in the end only. A source can be read once, so mesh_volume needs another
-// opening of the volume. Of the options only `iso`, `inside_above` and `closed` count.
+// opening of the volume. Of the options only `iso`, `inside_above`, `closed` and
+// `extractor` count.
 // @throws what mesh_volume throws; std::invalid_argument for a device; OverMemory at 2^32 seeds
 // @cost About the time of extraction, and memory for a slab and 20 bytes for each place where a part of the surface
 //   begins, seen along the slices.

@@ -28,6 +28,7 @@ enum class RunFeature : std::uint8_t {
   kStates,          // states to be saved or resumed (RunControl::checkpoint, resume)
   kObserver,        // an observer (RunControl::observer)
   kMemoryCap,       // a cap on memory (RunControl::memory)
+  kExtractor,       // an extractor other than marching cubes (SurfaceOptions::extractor)
   kSchedule         // a schedule other than rounds (RunControl::schedule)
 };
 

@@ -131,4 +131,19 @@ ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& cross
   return unit_point(above ? -g : g);
 }
 
+// The normal at a place inside the cell that begins with a sample, outwards: the gradients at its corners, weighed.
+// Zero where one of them is no number.
+template <class Samples>
+inline Point cell_normal(const Samples& samples, const std::array<std::int64_t, 3>& low, const Vec3& at,
+                         const std::array<double, 3>& spacing, bool above) {
+  Vec3 sum;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+    const double weight = (x != 0 ? at.x : 1 - at.x) * (y != 0 ? at.y : 1 - at.y) * (z != 0 ? at.z : 1 - at.z);
+    sum = sum + weight * gradient_at(samples, {low[0] + x, low[1] + y, low[2] + z}, spacing, 1);
+  }
+  if (!is_finite(sum)) return {0, 0, 0};
+  return unit_point(above ? -sum : sum);
+}
+
 }  // namespace isoweave

@@ -15,13 +15,13 @@ void scan_one(std::uint32_t& count, std::uint64_t& sum) {
   sum += own;
 }
 
+}  // namespace
+
 void require_numbers(std::size_t layers, std::uint64_t count, const char* what) {
   if (count <= std::numeric_limits<std::uint32_t>::max()) return;
   throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
                    ", expected fewer than 2^32: choose thinner slabs");
 }
-
-}  // namespace
 
 RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited) {
   RowSums sums;

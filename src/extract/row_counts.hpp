@@ -24,6 +24,9 @@ struct RowSums {
 // extractors: their count fits into 32 bits.
 inline constexpr std::int64_t kMostRowSamples = std::int64_t{1} << 27;
 
+// Throws OverMemory where so many things of a slab cannot be numbered in 32 bits.
+void require_numbers(std::size_t layers, std::uint64_t count, const char* what);
+
 // Gives every row the places where its vertices and triangles begin. Vertices are numbered after the `inherited` ones.
 // Throws OverMemory where numbers of 32 bits are not enough for a slab of `layers` layers.
 RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited);

@@ -9,6 +9,26 @@ namespace {
 
 constexpr std::int64_t kBlock = 4096;
 
+// The value at an index: interpolated along the axes on which a vertex lies between samples.
+template <class T>
+double value_at(const SampleView<T>& samples, const VertexNumbering::Place& place, const std::array<double, 3>& index) {
+  std::array<double, 8> values;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const std::size_t along = corner & place.direction;
+    const auto step = [&](std::size_t axis) { return static_cast<std::int64_t>(along >> axis & 1); };
+    values[corner] = samples.row(place.low[1] + step(1), place.low[2] + step(2))[place.low[0] + step(0)];
+  }
+  std::size_t left = 8;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    left /= 2;
+    const double t = index[axis] - static_cast<double>(place.low[axis]);
+    for (std::size_t n = 0; n < left; ++n) {
+      values[n] = place.along(axis) ? value_between(values[2 * n], values[2 * n + 1], t) : values[2 * n];
+    }
+  }
+  return values[0];
+}
+
 }  // namespace
 
 void sample_values(const SliceWindow& window, const VertexNumbering& numbering, const std::array<double, 3>& spacing,
@@ -20,14 +40,10 @@ void sample_values(const SliceWindow& window, const VertexNumbering& numbering, 
     executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
       const auto v = static_cast<std::size_t>(n);
       const VertexNumbering::Place place = numbering.place(piece.ids[v]);
-      const std::size_t axis = place.along(0) ? 0 : place.along(1) ? 1 : 2;
-      const auto [i, j, k] = place.low;
-      const double low = samples.row(j, k)[i];
-      const double high = samples.row(j + place.along(1), k + place.along(2))[i + place.along(0)];
-      const Vec3& at = piece.positions[v];
-      const double along[3] = {at.x, at.y, at.z};
-      const double t = along[axis] / spacing[axis] - static_cast<double>(place.low[axis]);
-      piece.values[v] = static_cast<float>(volume.slope * value_between(low, high, t) + volume.intercept);
+      const auto& at = piece.positions[v];
+      const std::array<double, 3> index{at.x / spacing[0], at.y / spacing[1], at.z / spacing[2]};
+      const double value = value_at(samples, place, index);
+      piece.values[v] = static_cast<float>(volume.slope * value + volume.intercept);
     });
   });
 }

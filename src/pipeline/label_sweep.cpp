@@ -57,10 +57,11 @@ LabelSweep::LabelSweep(const SliceWindow& map, const Region& box, const LabelSin
       field_(box_, task.surface, executor_, false),
       world_(task.volume.geometry, task.space, label.sink->offset()),
       sink_(label.sink),
-      extractor_(field_.info(), {field_.rule(), task.has_normals(), PartOfLattice{task.volume.dims, box.first}},
-                 executor_),
+      extractor_(make_extractor(task.surface.extractor, field_.info(),
+                                {field_.rule(), task.has_normals(), PartOfLattice{task.volume.dims, box.first}},
+                                executor_)),
       back_end_(task.simplify, world_, std::span(&sink_, 1), executor_, control, control.stop.get()),
-      pieces_(field_, extractor_, control.slab, task.simplify.needed),
+      pieces_(field_, *extractor_, control.slab, task.simplify.needed),
       loop_(pieces_, {}, &back_end_, report_) {
   report_.error = task.simplify.error;
 }

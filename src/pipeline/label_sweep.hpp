@@ -3,8 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
-#include "extract/marching_cubes.hpp"
+#include "extract/make_extractor.hpp"
 #include "isoweave/pipeline.hpp"
 #include "output/world.hpp"
 #include "pipeline/host_back_end.hpp"
@@ -72,7 +73,7 @@ class LabelSweep {
   SurfaceField field_;
   World world_;
   MeshSink* sink_;
-  MarchingCubes extractor_;
+  std::unique_ptr<Extractor> extractor_;
   HostBackEnd back_end_;
   LabelPieces pieces_;
   Loop loop_;

@@ -289,7 +289,7 @@ void add_layer(LabelsReport& report, LabelsReport&& layer) {
 LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
                          const RunControl& control) {
   const StandardFloats floats;
-  checked_volume(volume.info());
+  checked_volume(volume.info(), options.extractor);
   return LabelsSweep(volume, labels, options, control).run();
 }
 

@@ -30,7 +30,7 @@ struct Feature {
   unsigned refused_by;
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
-constexpr std::array<Feature, 11> kFeatures{{
+constexpr std::array<Feature, 12> kFeatures{{
     {RunFeature::kDevice, "a CUDA device", kLabels | kComponents | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
     {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels,
@@ -51,6 +51,8 @@ constexpr std::array<Feature, 11> kFeatures{{
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
     {RunFeature::kMemoryCap, "a cap on memory", kLabels | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
+    {RunFeature::kExtractor, "an extractor other than marching cubes", kDevice | kSimplify,
+     [](const MeshOptions& options, const RunControl&) { return options.extractor != ExtractorKind::kCubes; }},
     {RunFeature::kSchedule, "a schedule other than rounds", kDevice,
      [](const MeshOptions&, const RunControl& control) {
        return control.schedule != Schedule::kAutomatic && control.schedule != Schedule::kRounds;

@@ -58,12 +58,13 @@ std::string simplify_text(const SimplifyTask& task) {
 }
 
 std::string level_set_text(const SurfaceOptions& surface) {
+  constexpr std::array<const char*, 4> kExtractors{"", " trilinear", " tetrahedra", " dual"};
   return "iso" + numbers_text(std::array{surface.iso}) + (surface.inside_above ? " above" : " below") +
-         (surface.closed ? " closed" : " open");
+         (surface.closed ? " closed" : " open") + kExtractors.at(static_cast<std::size_t>(surface.extractor));
 }
 
 std::string surface_text(const SurfaceOptions& surface) {
-  [[maybe_unused]] const auto& [iso, inside_above, closed, smooth, components] = surface;
+  [[maybe_unused]] const auto& [iso, inside_above, closed, smooth, extractor, components] = surface;
   std::string text = level_set_text(surface);
   if (smooth > 0) text += ", smooth " + std::to_string(smooth);
   if (components == nullptr) return text;

@@ -1,11 +1,13 @@
 #include "pipeline/task.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <set>
 #include <stdexcept>
 
+#include "extract/make_extractor.hpp"
 #include "isoweave/error.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
@@ -39,11 +41,12 @@ std::vector<double> level_errors(const SimplifyOptions& options, double error, d
   return errors;
 }
 
-SurfaceMeasure measure_of(const VolumeInfo& volume) {
+SurfaceMeasure measure_of(const VolumeInfo& volume, ExtractorKind extractor) {
   const double voxel = mean_voxel(volume.geometry);
   const auto& spacing = volume.geometry.spacing;
   const Vec3 cell{spacing[0], spacing[1], spacing[2]};
-  return {voxel * voxel, voxel, VertexNumbering::of_cube_edges(volume.dims), cell, cell, volume.geometry.unit};
+  const Vec3 largest = cells_of_triangle(extractor) * cell;
+  return {voxel * voxel, voxel, numbering_of(extractor, volume.dims), cell, largest, volume.geometry.unit};
 }
 
 // Whether the volume has cells. An open volume of one sample along an axis has crossings and no triangles; only the
@@ -92,13 +95,13 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
              const std::array<double, 3>& offset, RunKind kind) {
   require_possible(kind, options, control);
   Task task;
-  task.volume = checked_volume(volume);
+  task.volume = checked_volume(volume, options.extractor);
   task.surface = static_cast<const SurfaceOptions&>(options);
   task.attributes = static_cast<const AttributeOptions&>(options);
   task.space = options.space;
   task.offset = offset;
   task.rule = stored_rule(volume, options);
-  task.simplify = resolve_simplification(options, measure_of(volume));
+  task.simplify = resolve_simplification(options, measure_of(volume, options.extractor));
   task.simplify.needed = options.error.value > 0 || !has_cells(volume, options);
   task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
   task.simplify.normals = task.has_normals();
@@ -115,10 +118,13 @@ MeshOptions full_surface(const SurfaceOptions& surface) {
   return full;
 }
 
-const VolumeInfo& checked_volume(const VolumeInfo& volume) {
+const VolumeInfo& checked_volume(const VolumeInfo& volume, ExtractorKind extractor) {
   require_usable(volume);
-  if (!VertexNumbering::of_cube_edges(volume.dims).fits()) {
-    throw BadInput(volume.path + ": expected fewer than 2^54 samples, found " + size_text(volume));
+  const VertexNumbering numbering = numbering_of(extractor, volume.dims);
+  if (!numbering.fits()) {
+    const int most = 64 - static_cast<int>(std::bit_width(std::uint64_t{numbering.slots} * numbering.width));
+    throw BadInput(volume.path + ": expected fewer than 2^" + std::to_string(most) + " samples, found " +
+                   size_text(volume));
   }
   return volume;
 }

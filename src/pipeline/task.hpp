@@ -64,8 +64,8 @@ struct Task {
 Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunControl& control,
              const std::array<double, 3>& offset = {0, 0, 0}, RunKind kind = RunKind::kMesh);
 
-// Throws BadInput when a volume has more samples than can be numbered.
-const VolumeInfo& checked_volume(const VolumeInfo& volume);
+// Throws BadInput when a volume has more samples than an extractor can number.
+const VolumeInfo& checked_volume(const VolumeInfo& volume, ExtractorKind extractor);
 
 // The surface in stored sample units; a negative slope turns inside and outside around. Throws std::invalid_argument
 // for an iso-value that is not finite.

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "extract/marching_cubes.hpp"
+#include "extract/make_extractor.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
@@ -18,7 +18,8 @@ VolumeSweep::VolumeSweep(SliceSource& source, const Task& task, const RunControl
       field_(source, task.surface, executor_, control.measure) {}
 
 std::unique_ptr<Extractor> VolumeSweep::make_extractor() const {
-  return std::make_unique<MarchingCubes>(field_.info(), ExtractOptions{field_.rule(), task_.has_normals()}, executor_);
+  return isoweave::make_extractor(task_.surface.extractor, field_.info(), {field_.rule(), task_.has_normals()},
+                                  executor_);
 }
 
 void VolumeSweep::begin(Extractor& extractor, std::vector<PieceStage*> stages, BackEnd* back_end) {

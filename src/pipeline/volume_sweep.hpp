@@ -21,7 +21,7 @@ class VolumeSweep {
   const Executor& executor() const { return executor_; }
   const SurfaceField& field() const { return field_; }
 
-  // Marching cubes over the field.
+  // The task's extractor over the field.
   std::unique_ptr<Extractor> make_extractor() const;
 
   // Begins the loop with an extractor, stages and a back end, which may be null. All of them must outlive the sweep.

@@ -132,7 +132,8 @@ class Zone::Linker {
         },
         [&](Index from, Index h) { sides.arriving.add(from, h); });
     if (zone_.vertices[v].half_edge == kNone) zone_.vertices[v].half_edge = first;
-    if (n >= inherited_ && least >= own_column.begin && last < own_column.end) {
+    const bool in_own_column = n >= inherited_ && least >= own_column.begin && last < own_column.end;
+    if (corners > 0 && in_own_column) {
       zone_.countdown.expect_last(v, last);
     } else if (corners > 0) {
       zone_.countdown.expect(v, corners);

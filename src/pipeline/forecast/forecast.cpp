@@ -67,7 +67,7 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : volume_(volume), rows_(volume), info_(checked_volume(volume.info())), options_(options) {
+      : volume_(volume), rows_(volume), info_(checked_volume(volume.info(), options.extractor)), options_(options) {
     control_.threads = control.threads;
     control_.measure = true;
     control_.slab = control.slab;
