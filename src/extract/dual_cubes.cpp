@@ -321,7 +321,7 @@ class DualCubes::VertexMaker {
     crossing.t = crossing_parameter(crossing.f0, crossing.f1, samples_.iso(), crossing.low_inside);
     std::array<double, 3> at{double(edge.dx), double(edge.dy), double(edge.dz)};
     at[edge.axis] += crossing.t;
-    const Point normal = normal_at(samples_, crossing, cubes_.spacing_, cubes_.options_.rule.above);
+    const Point normal = normal_at<OneSidedDifference>(samples_, crossing, cubes_.spacing_, cubes_.options_.rule.above);
     planes.add({at[0] * cubes_.spacing_[0], at[1] * cubes_.spacing_[1], at[2] * cubes_.spacing_[2]},
                {normal[0], normal[1], normal[2]});
   }

@@ -49,9 +49,32 @@ struct SampleRow {
   }
 };
 
-// The central difference per unit length, of the samples times `scale`. It is one-sided where a neighbour is missing or
-// NaN, and 0 where both are.
-template <class Samples>
+// The difference of samples over two steps, a mean. It is over one step where a neighbour is missing or NaN, and 0
+// where both are.
+struct CentralDifference {
+  ISOWEAVE_HD static double slope(double low, double here, double high, double spacing) {
+    const bool has_low = low == low, has_high = high == high;
+    const int steps = has_low + has_high;
+    return steps > 0 ? ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing) : 0;
+  }
+};
+
+// The central difference, but where one of its two steps is more than twice the other one or goes the other way: then
+// the smaller step. Beside an edge of the surface one of them crosses the edge, and the other one does not (Harten et
+// al., 1987: essentially non-oscillatory).
+struct OneSidedDifference {
+  ISOWEAVE_HD static double slope(double low, double here, double high, double spacing) {
+    const double down = here - low, up = high - here;
+    const double less = fabs(down) < fabs(up) ? down : up;
+    const double more = fabs(down) < fabs(up) ? up : down;
+    const bool known = less == less && more == more;
+    const bool alike = (less > 0) == (more > 0) && fabs(more) <= 2 * fabs(less);
+    return alike || !known ? CentralDifference::slope(low, here, high, spacing) : less / spacing;
+  }
+};
+
+// The differences per unit length along the axes, of the samples times `scale`.
+template <class Difference, class Samples>
 ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std::int64_t, 3>& at,
                                     const std::array<double, 3>& spacing, double scale) {
   const double here = scale * samples.row(at[1], at[2])[at[0]];
@@ -62,9 +85,7 @@ ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std
     ++right[axis];
     const double low = scale * samples.row(left[1], left[2])[left[0]];
     const double high = scale * samples.row(right[1], right[2])[right[0]];
-    const bool has_low = low == low, has_high = high == high;
-    const int steps = has_low + has_high;
-    if (steps > 0) slope[axis] = ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing[axis]);
+    slope[axis] = Difference::slope(low, here, high, spacing[axis]);
   }
   return {slope[0], slope[1], slope[2]};
 }
@@ -94,11 +115,11 @@ struct Crossing {
 };
 
 // The gradient at a crossing, of the samples times `scale`.
-template <class Samples>
+template <class Difference, class Samples>
 ISOWEAVE_HD inline Vec3 crossing_gradient(const Samples& samples, const Crossing& crossing,
                                           const std::array<double, 3>& spacing, double scale) {
-  const Vec3 g0 = gradient_at(samples, crossing.low, spacing, scale);
-  return g0 + crossing.t * (gradient_at(samples, crossing.high(), spacing, scale) - g0);
+  const Vec3 g0 = gradient_at<Difference>(samples, crossing.low, spacing, scale);
+  return g0 + crossing.t * (gradient_at<Difference>(samples, crossing.high(), spacing, scale) - g0);
 }
 
 // The normal of a cap, where the surface hugs the inside sample at one end of an edge: the cap faces along the axes on
@@ -118,14 +139,14 @@ ISOWEAVE_HD inline Point cap_normal(const Samples& samples, const Crossing& cros
 ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
 
 // The normal at a crossing, outwards.
-template <class Samples>
+template <class Difference = CentralDifference, class Samples>
 ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& crossing,
                                    const std::array<double, 3>& spacing, bool above) {
   if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) return cap_normal(samples, crossing);
-  Vec3 g = crossing_gradient(samples, crossing, spacing, 1);
+  Vec3 g = crossing_gradient<Difference>(samples, crossing, spacing, 1);
   if (!is_finite(g)) {  // a difference is beyond the largest number: directions are those of smaller samples
     constexpr double kSmall = 0x1p-124;
-    const Vec3 small = crossing_gradient(samples, crossing, spacing, kSmall);
+    const Vec3 small = crossing_gradient<Difference>(samples, crossing, spacing, kSmall);
     if (is_finite(small)) g = small;
   }
   return unit_point(above ? -g : g);
@@ -140,7 +161,7 @@ inline Point cell_normal(const Samples& samples, const std::array<std::int64_t, 
   for (int corner = 0; corner < 8; ++corner) {
     const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
     const double weight = (x != 0 ? at.x : 1 - at.x) * (y != 0 ? at.y : 1 - at.y) * (z != 0 ? at.z : 1 - at.z);
-    sum = sum + weight * gradient_at(samples, {low[0] + x, low[1] + y, low[2] + z}, spacing, 1);
+    sum = sum + weight * gradient_at<CentralDifference>(samples, {low[0] + x, low[1] + y, low[2] + z}, spacing, 1);
   }
   if (!is_finite(sum)) return {0, 0, 0};
   return unit_point(above ? -sum : sum);
