@@ -83,8 +83,8 @@ TEST(Trilinear, CellsHaveThePartsOfTheInterpolant) {
     const CornerValues values = random_corners(random);
     const CellTopology topology = topology_of(case_of(values), values);
     const std::size_t expected = topology.loops + (topology.has_tunnel ? 0U : 1U);
-    tunnels += topology.has_tunnel ? 1 : 0;
-    centres += topology.vertices() > 0 && !topology.has_tunnel ? 1 : 0;
+    tunnels += topology.has_tunnel ? 1U : 0U;
+    centres += topology.vertices() > 0 && !topology.has_tunnel ? 1U : 0U;
     bool same = false;
     for (const std::size_t steps : {20U, 45U, 110U, 250U}) {
       same = parts_of(values, steps) == expected;
