@@ -29,6 +29,8 @@ std::string_view option_of(RunFeature feature, const AskedRun& run) {
       return "--watch";
     case RunFeature::kMemoryCap:
       return "--memory";
+    case RunFeature::kIndex:
+      return "--index";
     case RunFeature::kSchedule:
       break;
   }

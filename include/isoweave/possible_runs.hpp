@@ -28,7 +28,8 @@ enum class RunFeature : std::uint8_t {
   kStates,          // states to be saved or resumed (RunControl::checkpoint, resume)
   kObserver,        // an observer (RunControl::observer)
   kMemoryCap,       // a cap on memory (RunControl::memory)
-  kSchedule         // a schedule other than rounds (RunControl::schedule)
+  kSchedule,        // a schedule other than rounds (RunControl::schedule)
+  kIndex            // an index of the volume (RunControl::index)
 };
 
 // A run that was asked for with a feature which it does not have. what() names both.

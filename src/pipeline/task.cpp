@@ -9,6 +9,7 @@
 #include "isoweave/error.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
+#include "volume/crossed_bricks.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -130,6 +131,11 @@ IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options) {
   rule.above = options.inside_above == (volume.slope > 0);
   rule.closed = options.closed;
   return rule;
+}
+
+IndexedSurface indexed_surface(const Task& task) {
+  const std::int64_t margin = task.has_normals() ? 1 : 0;  // gradients are differences of neighbours
+  return {task.rule.iso, task.rule.above, task.rule.closed, margin};
 }
 
 bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) {

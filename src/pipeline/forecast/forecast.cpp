@@ -2,7 +2,9 @@
 #include "isoweave/forecast.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 #include "parallel/size.hpp"
+#include "pipeline/forecast/forecast_profile.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
 #include "pipeline/memory_cap.hpp"
@@ -21,6 +24,7 @@
 #include "simplify/count_target.hpp"
 #include "system/process_memory.hpp"
 #include "volume/axes.hpp"
+#include "volume/indexed_source.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -59,6 +63,14 @@ constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer u
 
 enum class Reachable : std::uint8_t { kYes, kNo };  // a number of triangles
 
+std::unique_ptr<IndexedSource> indexed(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  if (!control.index) return nullptr;
+  const IsoRule rule = stored_rule(volume.info(), options);
+  const std::array surfaces{
+      IndexedSurface{rule.iso, rule.above, rule.closed, options.normals == Normals::kAbsent ? 0 : 1}};
+  return std::make_unique<IndexedSource>(volume, control.index, surfaces);
+}
+
 struct BlockFacts {
   double per_layer = 0;  // triangles of the open surface
   double caps = 0;       // triangles per layer on the four sides of a closed one
@@ -67,7 +79,12 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : volume_(volume), rows_(volume), info_(checked_volume(volume.info())), options_(options) {
+      : indexed_(indexed(volume, options, control)),
+        volume_(indexed_ ? *indexed_ : volume),
+        rows_(volume_),
+        info_(checked_volume(volume.info())),
+        options_(options) {
+    if (control.index) bricks_.emplace(*control.index, stored_rule(info_, options));
     control_.threads = control.threads;
     control_.measure = true;
     control_.slab = control.slab;
@@ -339,33 +356,6 @@ class Forecaster {
     return conclude();
   }
 
-  // The number of triangles below a height, in layers. Between the middles of two blocks the facts go from those of the
-  // one to those of the other; outside they stay.
-  class Profile {
-   public:
-    Profile(std::vector<double> per_layer, double distance) : per_layer_(std::move(per_layer)), distance_(distance) {
-      below_.push_back(per_layer_[0] * distance_ / 2);
-      for (std::size_t n = 1; n < per_layer_.size(); ++n) {
-        below_.push_back(below_.back() + (per_layer_[n - 1] + per_layer_[n]) / 2 * distance_);
-      }
-    }
-
-    double below(double height) const {
-      const double place = std::max(height, 0.0) / distance_ - 0.5;
-      if (place <= 0) return per_layer_[0] * std::max(height, 0.0);
-      const std::size_t n = std::min(static_cast<std::size_t>(place), per_layer_.size() - 1);
-      const double beyond = place - static_cast<double>(n);
-      if (n + 1 == per_layer_.size()) return below_[n] + per_layer_[n] * beyond * distance_;
-      const double here = per_layer_[n] + beyond * (per_layer_[n + 1] - per_layer_[n]);
-      return below_[n] + (per_layer_[n] + here) / 2 * beyond * distance_;
-    }
-
-   private:
-    std::vector<double> per_layer_;
-    double distance_;
-    std::vector<double> below_;  // the middle of each block
-  };
-
   // The profiles of the open surface, and of the caps.
   struct Profiles {
     Profile open, caps;
@@ -379,7 +369,9 @@ class Forecaster {
       caps.push_back(facts.caps);
     }
     const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
-    return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
+    Profile at_caps(std::move(caps), distance);
+    if (bricks_) return {Profile(bricks_->spread(open, distance), static_cast<double>(kBrick)), std::move(at_caps)};
+    return {Profile(std::move(open), distance), std::move(at_caps)};
   }
 
   // Whether the error or the topology leaves more triangles than the number that was asked for.
@@ -458,6 +450,7 @@ class Forecaster {
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
 
+  const std::unique_ptr<IndexedSource> indexed_;  // the volume, where there is an index of it
   SliceSource& volume_;
   RowReader rows_;
   const VolumeInfo info_;
@@ -474,6 +467,7 @@ class Forecaster {
   std::int64_t blocks_ = 0;
   std::int64_t every_ = 1;  // so many blocks one is thick
   std::vector<BlockFacts> facts_;
+  std::optional<BricksOfLayers> bricks_;  // of the whole volume
   double slices_read_ = 0;                // in all blocks
   double simplified_ = 0;                 // triangles of tiles
   std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
