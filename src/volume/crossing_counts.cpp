@@ -167,7 +167,8 @@ CrossingCounts counts_of(const EdgeEnds& ends, const VolumeInfo& info, bool is_t
   while (!every && (ends.high() / 2 - ends.low() / 2) / width > kMostValues / 2) width *= 2;
   const double begin = std::floor(ends.low() / width) + 1;
   const double end = std::floor(ends.high() / width);
-  result.counts = ends.crossed(begin, width, static_cast<std::size_t>(end - begin) + 1);
+  // Samples that differ by the last bits of a double may have no bound between them.
+  result.counts = ends.crossed(begin, width, static_cast<std::size_t>(std::max(end - begin + 1, 0.0)));
   const auto value = [&](double bound) {
     return info.slope * (is_turned ? turned_back(bound, info.type) : bound) + info.intercept;
   };

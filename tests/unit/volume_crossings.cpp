@@ -92,6 +92,12 @@ TEST(Crossings, AScalingTurnsThem) {
   volume.expect_all();
 }
 
+TEST(Crossings, ValuesWithoutABoundBetweenThemHaveNone) {
+  RandomVolume<double> volume(SampleType::kFloat64, {3, 3, 3},
+                              [](auto& random) { return random() % 2 == 0 ? 1.0 : std::nextafter(1.0, 2.0); });
+  EXPECT_LE(count_crossings(*volume.open()).counts.size(), 1U);
+}
+
 TEST(Crossings, OneValueHasNone) {
   RandomVolume<std::uint8_t> volume(SampleType::kUint8, {3, 3, 3}, [](auto&) { return std::uint8_t{7}; });
   const CrossingCounts counts = count_crossings(*volume.open());
