@@ -55,6 +55,7 @@ int run(const std::vector<std::string>& arguments) {
   add_mesh_verb(app);
   add_simplify_verb(app);
   add_info_verb(app);
+  add_index_verb(app);
   add_check_verb(app);
   add_compare_verb(app);
   add_render_verb(app);

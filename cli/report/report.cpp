@@ -129,6 +129,13 @@ Json run_json(const MeshReport& report, Json input) {
   return json;
 }
 
+Json left_out_json(const LeftOutReport& left_out, const std::string& path) {
+  return {{"path", path},
+          {"chunks", left_out.chunks},
+          {"chunks_left_out", left_out.chunks_left_out},
+          {"bytes_left_out", left_out.bytes_left_out}};
+}
+
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
   return {{"triangles_extracted", forecast.triangles_extracted},
           {"triangles", forecast.triangles},
@@ -201,6 +208,17 @@ void print_surface(const SurfaceReport& surface, const std::string& output) {
                          grouped(surface.vertices),
                          state_text(surface.open_edges, surface.nonmanifold_edges, surface.nonmanifold_vertices),
                          digest_text(surface.digest)));
+}
+
+void print_left_out(const MeshReport& report, const std::string& path) {
+  if (!report.left_out) return;
+  const LeftOutReport& left_out = *report.left_out;
+  std::string text =
+      fmt::format("by its index {}, {} of samples were not read", printable(path), byte_text(left_out.bytes_left_out));
+  if (left_out.chunks > 0) {
+    text += fmt::format(", nor {} of {} chunks", grouped(left_out.chunks_left_out), grouped(left_out.chunks));
+  }
+  print_note(text);
 }
 
 void print_summary(const MeshReport& report, const std::string& output, double voxels, const Forecast* forecast) {

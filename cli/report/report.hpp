@@ -34,6 +34,9 @@ Json surface_json(const SurfaceReport& surface);
 // meshes.
 Json run_json(const MeshReport& report, Json input);
 
+// The amounts that a run with the index `path` has not read.
+Json left_out_json(const LeftOutReport& left_out, const std::string& path);
+
 // The forecast of a run.
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
 
@@ -59,6 +62,9 @@ std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges
 
 // A line on standard error about a surface that has been written.
 void print_surface(const SurfaceReport& surface, const std::string& output);
+
+// A line about the use of the index `path`, if the run had one.
+void print_left_out(const MeshReport& report, const std::string& path);
 
 // A few lines about a run that is done.
 void print_summary(const MeshReport& report, const std::string& output, double voxels,

@@ -23,12 +23,16 @@ constexpr std::size_t kBarLength = 40;
 
 struct InfoArguments {
   InputOptions input;
-  bool json = false;
+  bool json = false, isos = false;
 };
 
 struct Suggestions {
   std::optional<double> otsu, formula;
 };
+
+Json isos_json(const CrossingCounts& crossings) {
+  return {{"first", crossings.first}, {"step", crossings.step}, {"vertices", crossings.counts}};
+}
 
 Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggestions& suggested,
                const std::string& path) {
@@ -62,6 +66,26 @@ std::string histogram_text(const Histogram& histogram) {
     const double length = std::sqrt(static_cast<double>(counts[n]) / most) * static_cast<double>(kBarLength);
     text += fmt::format("  from {:>12.6g} {:>16} {}\n", histogram.min + step * static_cast<double>(n),
                         grouped(counts[n]), std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
+  }
+  return text;
+}
+
+// The triangles of surfaces at some of the iso-values. Bars are in proportion: the largest of a part of the range
+// stands for it.
+std::string isos_text(const CrossingCounts& crossings) {
+  constexpr std::size_t kLines = 32;
+  if (crossings.counts.empty()) return "isos       none: all samples are one value\n";
+  const auto most = static_cast<double>(std::ranges::max(crossings.counts));
+  const std::size_t lines = std::min(kLines, crossings.counts.size());
+  std::string text = "isos       (about so many triangles of the closed surface; the most of each part of the range)\n";
+  for (std::size_t n = 0; n < lines; ++n) {
+    const auto begin = crossings.counts.begin() + static_cast<std::ptrdiff_t>(n * crossings.counts.size() / lines);
+    const auto end = crossings.counts.begin() + static_cast<std::ptrdiff_t>((n + 1) * crossings.counts.size() / lines);
+    const auto largest = std::max_element(begin, end);
+    const double iso = crossings.first + crossings.step * static_cast<double>(largest - crossings.counts.begin());
+    const double length = static_cast<double>(*largest) / std::max(most, 1.0) * static_cast<double>(kBarLength);
+    text += fmt::format("  iso {:>12.6g} {:>16} {}\n", iso, grouped(2 * *largest),
+                        std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
   }
   return text;
 }
@@ -114,15 +138,25 @@ void run_info(const InfoArguments& arguments) {
   if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
   exit_on_signal();
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
-  const Histogram histogram = read_histogram(*volume);
+  CrossingCounts crossings;
+  if (arguments.isos) {
+    crossings = count_crossings(*volume);
+  } else {
+    crossings.histogram = read_histogram(*volume);
+  }
+  const Histogram& histogram = crossings.histogram;
   Suggestions suggested{otsu_threshold(histogram), std::nullopt};
   if (const std::optional<GenerateOptions> generated = generated_input(arguments.input)) {
     suggested.formula = suggested_iso(generated->kind, generated->type);
   }
   const VolumeInfo& info = volume->info();
   const std::string& path = arguments.input.path;
-  if (arguments.json) return print_out(json_text(info_json(info, histogram, suggested, path)));
-  print_to_reader(info_text(info, histogram, suggested, path));
+  if (arguments.json) {
+    Json json = info_json(info, histogram, suggested, path);
+    if (arguments.isos) json["isos"] = isos_json(crossings);
+    return print_out(json_text(json));
+  }
+  print_to_reader(info_text(info, histogram, suggested, path) + (arguments.isos ? isos_text(crossings) : ""));
 }
 
 }  // namespace
@@ -132,6 +166,7 @@ void add_info_verb(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   add_input_options(*verb, arguments->input);
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->add_flag("--isos", arguments->isos, "Triangles of the surface for iso-values over the whole range");
   verb->callback([arguments] { run_info(*arguments); });
 }
 

@@ -107,6 +107,7 @@ void add_way_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option("--every", arguments.every,
                   "How often --checkpoint saves: a number of layers or a time: 16layers, 90s, 5min, 2h")
       ->default_str("5min");
+  add_index_option(verb, arguments.index);
   add_run_options(verb, arguments.run);
   add_page_options(verb, arguments.page);
   add_watch_option(verb, arguments.watch);

@@ -179,13 +179,14 @@ class MeshJob {
     check_page(arguments_.page, arguments_.output);
   }
 
-  // Refuses options that do not go together, before any file is looked at. A volume and an observer that are not the
-  // real ones stand for those that are opened later: only their presence counts.
+  // Refuses options that do not go together, before any file is looked at. A volume, an index and an observer that
+  // are not the real ones stand for those that are opened later: only their presence counts.
   void check_possible() const {
     MeshOptions asked = options_;
     RunControl control = control_;
     if (!arguments_.color_by.empty()) asked.values = generate_volume({});
     if (arguments_.watch.given()) control.observer = std::make_shared<NoObserver>();
+    if (arguments_.index.named()) control.index = build_index(*generate_volume({"box", {1, 1, 1}}));
     control.checkpoint.folder = arguments_.checkpoint;
     control.resume = resume_;
     const RunKind kind = arguments_.labels.empty() ? RunKind::kMesh : RunKind::kLabels;
@@ -196,6 +197,8 @@ class MeshJob {
   void open() {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
+    if (arguments_.labels.empty()) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
+    control_.index = index_.index;
     options_.values = open_values(arguments_);
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
     if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
@@ -319,6 +322,7 @@ class MeshJob {
   void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
     Json json = report_json(report, info_, arguments_, options_, file_, forecast_);
     json["notes"] = sinks.last().notes();
+    if (report.left_out) json["index"] = left_out_json(*report.left_out, index_.path);
     evidence.write(std::move(json), control_, [&](const RunControl& control) {
       std::uint64_t triangles = report.triangles;
       for (const SurfaceReport& level : report.levels) triangles += level.triangles;
@@ -334,6 +338,7 @@ class MeshJob {
     print_levels(report, outputs_);
     print_target(report, options_.triangles, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
+    print_left_out(report, index_.path);
     print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
   }
 
@@ -346,6 +351,7 @@ class MeshJob {
   RunControl control_;
   std::unique_ptr<SliceSource> volume_;
   VolumeInfo info_;
+  FoundIndex index_;
   MeshFileOptions file_;
   std::optional<Forecast> forecast_;  // of a run that is not resumed
   std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold

@@ -45,5 +45,22 @@ std::optional<double> otsu_threshold(const Histogram& histogram);
 // @throws std::invalid_argument unless `parts` divides kBins
 std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts);
 
+// The edges of the lattice that the surface crosses, for iso-values over the range of a volume: the vertices that a run
+// extracts (MeshReport::vertices_extracted). A closed surface has two triangles for each, less twice its Euler number.
+struct CrossingCounts {
+  Histogram histogram;                // from the same pass
+  double first = 0, step = 1;         // iso-values: first + n * step
+  std::vector<std::uint64_t> counts;  // exact at these values; empty where all samples are one value
+};
+
+// Counts crossings for all iso-values in one pass over the volume. Integers of 8 and 16 bits get each value that a
+// sample can have, others up to 512 values at distances of a power of two, all times the slope.
+// @pre The volume has not been read.
+// @throws Interrupted when `stop` is set, and what the source throws
+// @cost Memory: two slices and about 4 MB.
+// @determinism Depends on the samples only.
+CrossingCounts count_crossings(SliceSource& volume, bool closed = true, bool inside_above = true,
+                               const std::atomic<bool>* stop = nullptr);
+
 }  // namespace isoweave
 #pragma GCC visibility pop

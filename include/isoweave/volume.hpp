@@ -64,6 +64,8 @@ struct VolumeInfo {
   std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "tiff", "png", "dicom", ...
   std::string part;                           // the chosen part of it: "dataset /raw, channel 1"; empty: all of it
   std::string header;                         // where `path` is a folder: the file that describes the volume, if any
+  std::vector<std::string> data_files;        // files with samples, where they are not all in `path` or its folder
+  std::string layout;                         // of headerless data, as parse_raw_layout takes it
   std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
   SampleType type = SampleType::kUint8;
   Geometry geometry;

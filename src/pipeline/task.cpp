@@ -11,6 +11,7 @@
 #include "isoweave/error.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
+#include "volume/crossed_bricks.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -136,6 +137,12 @@ IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options) {
   rule.above = options.inside_above == (volume.slope > 0);
   rule.closed = options.closed;
   return rule;
+}
+
+IndexedSurface indexed_surface(const IsoRule& rule, const SurfaceOptions& surface, bool has_normals) {
+  // Gradients are differences of neighbours. Dual marching cubes place vertices by them.
+  const std::int64_t margin = has_normals || surface.extractor == ExtractorKind::kDual ? 1 : 0;
+  return {rule.iso, rule.above, rule.closed, margin};
 }
 
 bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) {

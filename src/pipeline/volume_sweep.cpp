@@ -1,5 +1,6 @@
 #include "pipeline/volume_sweep.hpp"
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -8,14 +9,25 @@
 
 namespace isoweave {
 
+namespace {
+
+std::unique_ptr<IndexedSource> indexed(SliceSource& source, const Task& task, const RunControl& control) {
+  if (!control.index) return nullptr;
+  const std::array surfaces{indexed_surface(task.rule, task.surface, task.has_normals())};
+  return std::make_unique<IndexedSource>(source, control.index, surfaces);
+}
+
+}  // namespace
+
 VolumeSweep::VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report)
     : source_(source),
+      indexed_(indexed(source, task, control)),
       task_(task),
       control_(control),
       report_(report),
-      reader_bytes_(held_by_slices(source)),
+      reader_bytes_(held_by_slices(this->source())),
       executor_(control.threads),
-      field_(source, task.surface, executor_, control.measure) {}
+      field_(this->source(), task.surface, executor_, control.measure) {}
 
 std::unique_ptr<Extractor> VolumeSweep::make_extractor() const {
   return isoweave::make_extractor(task_.surface.extractor, field_.info(), {field_.rule(), task_.has_normals()},
@@ -62,6 +74,9 @@ void VolumeSweep::tell(const SlabRecord& record) {
 void VolumeSweep::finish() {
   loop_->finish();
   report_samples();
+  if (!indexed_) return;
+  const LeftOut left_out = indexed_->left_out();
+  report_.left_out = {left_out.chunks, left_out.chunks_left_out, left_out.bytes_left_out};
 }
 
 void VolumeSweep::report_samples() {

@@ -85,6 +85,7 @@ OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const Open
     const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
     OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described, options);
     volume.info.path = path;
+    volume.info.data_files = {header};
     return volume;
   }
   bad_input(path, format_of_name(name), what_else(head, path));

@@ -7,6 +7,7 @@
 
 #include "header_helpers.hpp"
 #include "isoweave/generate.hpp"
+#include "isoweave/index.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 #include "meshes.hpp"
@@ -14,6 +15,7 @@
 #include "pvm_helpers.hpp"
 #include "saved_runs.hpp"
 #include "volume/formats/formats.hpp"
+#include "volume/volume_index.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
 #include "dicom_helpers.hpp"
@@ -419,6 +421,20 @@ void put_state(Seeds& seeds) {
   }
 }
 
+// What lies behind the format and the identity of an index, and a whole one.
+void put_indices(Seeds& seeds) {
+  const TempFolder folder;
+  const std::string volume = folder.put("a_18x2x20_float32.raw", std::string(18 * 2 * 20 * sizeof(float), '\x3f'));
+  const auto index = build_index(*open_volume(volume));
+  write_index(*index, folder / "i");
+  const std::string whole = get(folder / "i");
+  const std::string content = whole.substr(0, whole.size() - sizeof(std::uint32_t));
+  const std::size_t lengths = 2 * sizeof(std::uint64_t);
+  const std::size_t head = lengths + std::string("isoweave index 1").size() + index->identity().size();
+  seeds.put("index", '\0' + content);
+  seeds.put("index", '\1' + content.substr(head));
+}
+
 void put_state_bodies(Seeds& seeds) {
   for (std::size_t run = 0; run < fuzz::kSavedRuns; ++run) {
     const TempFolder folder;
@@ -459,5 +475,6 @@ int main(int argc, char** argv) {
   put_label_names(seeds);
   put_state(seeds);
   put_state_bodies(seeds);
+  put_indices(seeds);
   return 0;
 }
