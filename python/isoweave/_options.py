@@ -46,6 +46,8 @@ def simplify_struct(
     for name, number in (("triangles", triangles), ("ratio", ratio)):
         if number is not None and not number > 0:
             raise ValueError(f"{name}: expected a number above 0, found {number}")
+    if min_component < 0:
+        raise ValueError(f"min_component: expected a number of triangles, found {min_component}")
     return c.SimplifyOptions(
         error=length(error),
         levels=levels or None,

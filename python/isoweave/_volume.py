@@ -139,7 +139,10 @@ class Volume:
         (15, 10, 36)
         """
         first, end = [], []
-        ranges = [part if isinstance(part, slice) else slice(*part) for part in roi]
+        try:
+            ranges = [part if isinstance(part, slice) else slice(*part) for part in roi]
+        except TypeError:
+            raise ValueError(f"roi: expected three ranges along z, y, x, found {roi!r}") from None
         if len(ranges) != 3 or any(part.step not in (None, 1) for part in ranges):
             raise ValueError(f"roi: expected three ranges along z, y, x, found {ranges}")
         for part, size in zip(reversed(ranges), reversed(self.shape)):
@@ -265,6 +268,8 @@ def _set_geometry(
         geometry = geometry_of_affine(affine, geometry.space, geometry.unit)
     if spacing is not None:
         geometry.spacing = tuple(_doubles(spacing, 3, "spacing"))
+        if not all(step > 0 for step in geometry.spacing):
+            raise ValueError(f"spacing: expected numbers above 0, found {geometry.spacing}")
     if origin is not None:
         geometry.origin = tuple(_doubles(origin, 3, "origin"))
     if direction is not None:

@@ -37,8 +37,9 @@ def marching_cubes(
             volume without it, as in scikit-image.
 
     Returns:
-        vertices (n, 3) float32, faces (m, 3) int32, normals (n, 3) float32 that point outwards, and values (n,) float32:
-        the level, which is where isoweave's vertices lie.
+        vertices (n, 3) float32, faces (m, 3) int32, normals (n, 3) float32, and values (n,) float32: the level, which is
+        where isoweave's vertices lie. As in scikit-image, normals point to the side of larger values, and faces are
+        clockwise seen from outside where the axes of the array are taken for those of a right-handed world.
 
     >>> import numpy as np
     >>> z, y, x = np.ogrid[-16:16, -16:16, -16:16]
@@ -57,8 +58,8 @@ def marching_cubes(
     surface = mesh(
         opened, level, error=error, inside=inside, step=step_size, normals="gradient", space="index", **options
     )
-    # Two axes change places, and with them the side that faces show.
     vertices = np.ascontiguousarray(surface.vertices[:, ::-1], dtype=np.float32)
-    faces = np.ascontiguousarray(surface.faces[:, ::-1], dtype=np.int32)
-    normals = np.ascontiguousarray(surface.normals[:, ::-1], dtype=np.float32)
+    faces = np.ascontiguousarray(surface.faces, dtype=np.int32)
+    rising = -1 if inside == "above" else 1
+    normals = np.ascontiguousarray(rising * surface.normals[:, ::-1], dtype=np.float32)
     return vertices, faces, normals, np.full(len(vertices), level, np.float32)

@@ -22,10 +22,10 @@ def digest(volume: Any, **options: Any) -> str:
 
 def test_numpy_is_meshed_in_place(volume: np.ndarray, wanted: str) -> None:
     assert digest(volume) == wanted
-    assert isoweave.open_volume(volume)._keep is volume
-    fortran = np.asfortranarray(volume.T.copy(order="C").T)
-    assert isoweave.open_volume(fortran.T, axes="xyz")._reader is None
-    assert digest(fortran.T, axes="xyz") == wanted
+    assert np.shares_memory(isoweave.open_volume(volume)._keep, volume)
+    fortran = np.asfortranarray(volume.T)
+    assert np.shares_memory(isoweave.open_volume(fortran, axes="xyz")._keep, fortran)
+    assert digest(fortran, axes="xyz") == wanted
 
 
 @pytest.mark.parametrize(
@@ -92,9 +92,7 @@ def test_chunks_are_read_once_and_in_order(volume: np.ndarray, wanted: str) -> N
     counting = Counting(volume, chunk=7)
     assert digest(counting) == wanted
     assert counting.reads == [(0, 7), (7, 14), (14, 21), (21, 28), (28, 30)]
-    before = threading.active_count()
-    digest(counting)
-    assert threading.active_count() == before  # the thread that reads ahead has ended
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("isoweave")]
 
 
 def test_arrays_without_chunks_are_read_in_bounded_parts(
@@ -188,6 +186,7 @@ def test_nibabel_and_its_file(volume: np.ndarray, folder: pathlib.Path) -> None:
     affine = np.eye(4)
     affine[:3, :3] = rotated() * SPACING
     affine[:3, 3] = ORIGIN
+    affine = affine.astype(np.float32).astype(float)  # as in the file
     image = nibabel.Nifti1Image(np.asfortranarray(volume.T), affine)
     image.header.set_xyzt_units("mm")
     for name in ("v.nii", "v.nii.gz"):
