@@ -38,7 +38,7 @@ def marching_cubes(
 
     Returns:
         vertices (n, 3) float32, faces (m, 3) int32, normals (n, 3) float32, and values (n,) float32: the level, which is
-        where isoweave's vertices lie. As in scikit-image, normals point to the side of larger values, and faces are
+        where isoweave's vertices lie. As in scikit-image, normals point to the side of smaller values, and faces are
         clockwise seen from outside where the axes of the array are taken for those of a right-handed world.
 
     >>> import numpy as np
@@ -60,6 +60,6 @@ def marching_cubes(
     )
     vertices = np.ascontiguousarray(surface.vertices[:, ::-1], dtype=np.float32)
     faces = np.ascontiguousarray(surface.faces, dtype=np.int32)
-    rising = -1 if inside == "above" else 1
-    normals = np.ascontiguousarray(rising * surface.normals[:, ::-1], dtype=np.float32)
+    falling = 1 if inside == "above" else -1
+    normals = np.ascontiguousarray(falling * surface.normals[:, ::-1], dtype=np.float32)
     return vertices, faces, normals, np.full(len(vertices), level, np.float32)
