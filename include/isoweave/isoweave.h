@@ -254,7 +254,7 @@ typedef struct iw_run {
   int32_t (*progress)(void* context, const iw_progress* progress);
 } iw_run;
 
-// A piece of a mesh on its way to a sink, valid during the call only.
+// A piece of a mesh on its way to a sink, valid during the call only. Arrays without elements may be NULL.
 typedef struct iw_piece {
   size_t struct_size;
   uint64_t vertices, triangles;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smproperty, smproxy  # type: ignore
+from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smproperty, smproxy
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 
 import isoweave
@@ -19,11 +19,11 @@ _SCALARS = """
 """
 
 
-@smproxy.filter(label="Isoweave Contour")  # type: ignore[untyped-decorator]
-@smproperty.input(name="Input")  # type: ignore[untyped-decorator]
-@smdomain.datatype(dataTypes=["vtkImageData"], composite_data_supported=False)  # type: ignore[untyped-decorator]
-@smdomain.xml("""<InputArrayDomain name="inputs_array" attribute_type="point" number_of_components="1"/>""")  # type: ignore[untyped-decorator]
-class IsoweaveContour(VTKPythonAlgorithmBase):  # type: ignore[misc]
+@smproxy.filter(label="Isoweave Contour")
+@smproperty.input(name="Input")
+@smdomain.datatype(dataTypes=["vtkImageData"], composite_data_supported=False)
+@smdomain.xml("""<InputArrayDomain name="inputs_array" attribute_type="point" number_of_components="1"/>""")
+class IsoweaveContour(VTKPythonAlgorithmBase):
     """The simplified surface of an image at a level, bit for bit that of ``isoweave mesh``."""
 
     def __init__(self) -> None:
@@ -33,20 +33,20 @@ class IsoweaveContour(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._error = "0.2vox"
         self._closed = True
 
-    @smproperty.xml(_SCALARS)  # type: ignore[untyped-decorator]
+    @smproperty.xml(_SCALARS)
     def SetScalars(self, _index: int, _port: int, _connection: int, _association: int, name: str) -> None:
         self._set("_scalars", name or None)
 
-    @smproperty.doublevector(name="Level", default_values=0.0)  # type: ignore[untyped-decorator]
+    @smproperty.doublevector(name="Level", default_values=0.0)
     def SetLevel(self, level: float) -> None:
         self._set("_level", level)
 
-    @smproperty.stringvector(name="Error", default_values="0.2vox")  # type: ignore[untyped-decorator]
+    @smproperty.stringvector(name="Error", default_values="0.2vox")
     def SetError(self, error: str) -> None:
         self._set("_error", error)
 
-    @smproperty.intvector(name="Closed", default_values=1)  # type: ignore[untyped-decorator]
-    @smdomain.xml("""<BooleanDomain name="bool"/>""")  # type: ignore[untyped-decorator]
+    @smproperty.intvector(name="Closed", default_values=1)
+    @smdomain.xml("""<BooleanDomain name="bool"/>""")
     def SetClosed(self, closed: int) -> None:
         self._set("_closed", bool(closed))
 

@@ -131,7 +131,8 @@ typedef struct {
 static int32_t append(void* context, const iw_piece* piece) {
   Sink* sink = context;
   if (sink->stop) return 1;
-  memcpy(sink->points + 3 * sink->vertices, piece->points, 3 * piece->vertices * sizeof(float));
+  if (piece->vertices > 0)
+    memcpy(sink->points + 3 * sink->vertices, piece->points, 3 * piece->vertices * sizeof(float));
   for (uint64_t n = 0; n < 3 * piece->triangles; ++n)
     sink->corners[3 * sink->triangles + n] = (uint32_t)piece->corners[n];
   sink->vertices += piece->vertices;
