@@ -7,8 +7,8 @@ processes of their own, and prints the peaks that the system counted for them, a
 """
 
 import multiprocessing
+import os
 import pathlib
-import resource
 import shutil
 import subprocess
 import sys
@@ -34,11 +34,13 @@ def write(path: pathlib.Path, slices: int) -> None:
 
 
 def measure(name: str, *command: str) -> None:
-    """Runs a command, and prints its peak, which is the largest of all children so far."""
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-    said = (done.stdout + done.stderr).strip().splitlines()[-1]
-    print(f"{name:<24}{peak:8.0f} MB   {said}", flush=True)
+    """Runs a command, and prints the peak of its process."""
+    child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said = child.stdout.read().strip().splitlines()[-1]
+    _, status, usage = os.wait4(child.pid, 0)
+    if status != 0:
+        sys.exit(f"{name}: {said}")
+    print(f"{name:<24}{usage.ru_maxrss / 1024:8.0f} MB   {said}", flush=True)
 
 
 def main() -> None:
@@ -49,7 +51,6 @@ def main() -> None:
     writer = multiprocessing.get_context("spawn").Process(target=write, args=(path, slices))
     writer.start()
     writer.join()
-    # In the order of their peaks, as each is the largest so far.
     measure("imports alone", sys.executable, "-c", IMPORTS)
     measure("isoweave mesh", sys.executable, "-m", "isoweave", "mesh", str(path), "--iso", "1000", "-o", "cli.ply")
     measure("isoweave.mesh(zarr)", sys.executable, "-c", PACKAGE, str(path), "package.ply")
