@@ -374,6 +374,7 @@ static void test_stops(const float* samples) {
   EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_DONE));
   iw_output file = {.struct_size = sizeof file};
   file.path = "c_stopped.ply";
+  remove(file.path);  // what a test that failed left
   EXPECT(is(iw_mesh_volume(volume, NULL, NULL, &file, 1, &result), IW_STOPPED));
 
   source.stop_at = -1;
