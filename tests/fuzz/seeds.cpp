@@ -410,6 +410,13 @@ void put_options(Seeds& seeds) {
   }
 }
 
+// A volume of 9 x 9 x 9 bytes, and calls with the defaults.
+void put_c_interface(Seeds& seeds) {
+  std::string seed{"\0\x09\x09\x09\0\0\1\1\1\1\0\1", 12};
+  for (int n = 0; n < 9 * 9 * 9; ++n) seed += static_cast<char>((n * n) % 251);
+  for (const char choice : {'\0', '\1', '\2', '\7'}) seeds.put("c_interface", seed + std::string(40, choice));
+}
+
 void put_state(Seeds& seeds) {
   const TempFolder folder;
   CheckpointFolder states(folder / "");
@@ -472,6 +479,7 @@ int main(int argc, char** argv) {
   put_meshes(seeds);
   fuzz::put_packages(seeds);
   put_options(seeds);
+  put_c_interface(seeds);
   put_label_names(seeds);
   put_state(seeds);
   put_state_bodies(seeds);
