@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
+
+#include "isoweave/error.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -36,6 +39,18 @@ void check_different(std::initializer_list<std::string_view> paths) {
         throw std::invalid_argument(fmt::format("{}: would be written over {}, expected different files", *b, *a));
       }
     }
+  }
+}
+
+void add_clobber_option(CLI::App& verb, bool& no_clobber) {
+  verb.add_flag("--no-clobber", no_clobber, "Refuse to replace a file that exists");
+}
+
+void check_absent(bool no_clobber, std::initializer_list<std::string_view> outputs) {
+  for (const std::string_view output : outputs) {
+    std::error_code error;
+    if (!no_clobber || output.empty() || !std::filesystem::exists(output, error)) continue;
+    throw CannotWrite(fmt::format("{}: exists, and --no-clobber keeps it", output));
   }
 }
 

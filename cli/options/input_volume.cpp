@@ -36,6 +36,7 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   if (!input.raw.empty()) options.raw = parse_raw_layout(input.raw);
   if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
   if (!input.origin.empty()) options.origin = parse_triple("--origin", input.origin);
+  options.unit = input.unit;
   options.series = input.series;
   options.dataset = input.dataset;
   options.level = parse_index("--level", input.level);
@@ -81,6 +82,8 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
                   "Read headerless data: WxHxD:TYPE[:big][:skip=N]; of a folder or pattern, a file for each slice");
   verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
+  verb.add_option("--unit", input.unit,
+                  "Unit of the spacing: mm, um, nm, m, cm, ...; without it the file's, and mm where the file has none");
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
   verb.add_option(
       "--even-spacing", input.even_spacing,
@@ -112,7 +115,8 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
                                       {"--channel", &input.channel},
                                       {"--time", &input.time},
                                       {"--slices-from", &input.slices_from},
-                                      {"--even-spacing", &input.even_spacing}}) {
+                                      {"--even-spacing", &input.even_spacing},
+                                      {"--unit", &input.unit}}) {
     if (!value->empty()) throw std::invalid_argument(fmt::format("{} does not go with a generated volume", option));
   }
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');

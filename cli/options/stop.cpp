@@ -71,16 +71,22 @@ Length stop_distance(const StopOptions& stop, std::string_view unit) {
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
   if (!stop.triangles.empty()) return static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
   if (stop.ratio.empty()) return 0;
-  const double ratio = parse_number("--ratio", stop.ratio);
+  const double ratio = parse_share("--ratio", stop.ratio);
   if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
   return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
 }
 
-void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit) {
+void print_target(const StopOptions& stop, const MeshReport& report, std::uint64_t asked, const Length& allowed,
+                  const std::string& unit) {
   if (asked == 0) return;
-  const auto text = [&](double length) { return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit); };
-  print_note("error reached: " + text(report.error));
+  const auto text = [&](double length) { return fmt::format("{:.4g} {}", length, unit_text(unit)); };
+  print_note(fmt::format("error reached: {} (typical distance, not the largest)", text(report.error)));
   if (report.triangles <= asked) return;
+  const bool all_tetrahedra = report.open_edges == 0 && report.triangles <= 4 * report.components;
+  if (!stop.error.empty() && !all_tetrahedra) {
+    print_note(fmt::format("stopped by --error {} at {} of {} triangles", stop.error, grouped(report.triangles),
+                           grouped(asked)));
+  }
   print_note(
       fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
                   "them, or an --error above {}",

@@ -36,6 +36,16 @@ double parse_number(std::string_view option, std::string_view text) {
   return *value;
 }
 
+double parse_share(std::string_view option, std::string_view text) {
+  constexpr double kPercent = 0.01;
+  std::string_view digits = text;
+  const bool percent = digits.ends_with('%');
+  if (percent) digits.remove_suffix(1);
+  const std::optional<double> value = to_finite(digits);
+  if (!value) wrong_value(option, "a number or a percentage", text);
+  return *value * (percent ? kPercent : 1);
+}
+
 std::int64_t parse_count(std::string_view option, std::string_view text) {
   const std::optional<std::int64_t> value = to_number<std::int64_t>(text);
   if (!value || *value < 1) wrong_value(option, "a whole number of at least 1", text);

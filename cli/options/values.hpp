@@ -35,6 +35,9 @@ std::optional<T> to_number(std::string_view text) {
   return value;
 }
 
+// A part: "0.1" or "10%".
+double parse_share(std::string_view option, std::string_view text);
+
 double parse_number(std::string_view option, std::string_view text);
 std::int64_t parse_count(std::string_view option, std::string_view text);                // at least 1
 int parse_port(std::string_view option, std::string_view text);                          // 0 to 65535

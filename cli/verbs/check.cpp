@@ -1,5 +1,7 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -23,6 +25,29 @@ struct CheckArguments {
   std::string path, threads = "all";
   bool self_intersections = false, json = false, weld = false;
 };
+
+struct Box {
+  std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
+
+  std::array<double, 3> size() const { return {high[0] - low[0], high[1] - low[1], high[2] - low[2]}; }
+};
+
+// The box of the vertices that triangles have.
+Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  bool first = true;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double place = mesh.offset[axis] + double{mesh.vertices[v][axis]};
+        box.low[axis] = first ? place : std::min(box.low[axis], place);
+        box.high[axis] = first ? place : std::max(box.high[axis], place);
+      }
+      first = false;
+    }
+  }
+  return box;
+}
 
 std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
 
@@ -60,12 +85,13 @@ std::string check_text(const MeshCheck& check, const TriangleMesh& mesh, const s
   line("triangles of area 0", grouped(check.zero_area_triangles));
   line("components", grouped(check.components));
   line("Euler number", std::to_string(check.euler));
+  line("size", size_text(box_of(mesh).size(), mesh.unit));
   line("area", fmt::format("{:.9g}", check.area));
   line("volume", fmt::format("{:.9g}", check.volume));
   line("smallest angle", degrees_text(check.angles.smallest));
   line("largest angle", degrees_text(check.angles.largest));
   line("angles under 5 degrees", sharp_text(check.angles));
-  line("unit", mesh.unit.empty() ? "not said" : mesh.unit);
+  line("unit", mesh.unit.empty() ? "not said: mm" : mesh.unit);
   line("space", mesh.space.empty() ? "not said" : mesh.space);
   if (mesh.offset != std::array<double, 3>{0, 0, 0}) {
     line("offset", fmt::format("{},{},{}", mesh.offset[0], mesh.offset[1], mesh.offset[2]));
@@ -114,6 +140,8 @@ void run_check(const CheckArguments& arguments) {
   const MeshCheck check = check_mesh(mesh);
   Json json = check_json(check, arguments.path);
   json.update(place_json(mesh));
+  const Box box = box_of(mesh);
+  json["box"] = {{"low", box.low}, {"high", box.high}};
   tell_input(arguments, input, check, json);
   std::string text = check_text(check, mesh, arguments.path);
   if (arguments.self_intersections) {

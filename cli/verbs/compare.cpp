@@ -24,7 +24,7 @@ constexpr std::int64_t kMostBins = 1'000'000;
 struct CompareArguments {
   ReadMeshOptions reading;
   std::string a, b, samples = "500000", threads = "all", voxel, histogram, distances;
-  bool json = false;
+  bool json = false, no_clobber = false;
 };
 
 std::string distances_text(const MeshDistance& distance, double unit, std::string_view name) {
@@ -94,6 +94,7 @@ void run_compare(const CompareArguments& arguments) {
   }
   check_different({arguments.a, arguments.distances});
   check_different({arguments.b, arguments.distances});
+  check_absent(arguments.no_clobber, {arguments.distances});
   exit_on_signal();
   TriangleMesh a = read_surface(arguments.a, arguments.reading);
   TriangleMesh b = read_surface(arguments.b, arguments.reading);
@@ -140,6 +141,7 @@ void add_compare_verb(CLI::App& app) {
                    "Write A as PLY with the distance to B at each vertex, as the property quality");
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->callback([arguments] { run_compare(*arguments); });
 }

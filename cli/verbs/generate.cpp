@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "isoweave/error.hpp"
+#include "options/files.hpp"
 #include "options/run.hpp"
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -17,7 +18,7 @@ namespace {
 struct GenerateArguments {
   std::string kind, output, size, type = "float32", spacing = "1,1,1", progress = "auto";
   std::uint64_t seed = 1;
-  bool quiet = false;
+  bool quiet = false, no_clobber = false;
 };
 
 // A source that shows how far a volume has been read, and stops when asked to.
@@ -64,6 +65,7 @@ void run_generate(const GenerateArguments& arguments) {
   options.seed = arguments.seed;
   const ProgressMode mode = progress_mode(arguments.progress, arguments.quiet);
 
+  check_absent(arguments.no_clobber, {arguments.output});
   const std::unique_ptr<SliceSource> volume = generate_volume(options);
   ProgressPrinter printer(mode);
   WatchedSource watched(*volume, printer, stop_on_signal());
@@ -89,6 +91,7 @@ void add_generate_verb(CLI::App& app) {
   verb->add_option("--seed", arguments->seed, "For the kinds with chance in them")->capture_default_str();
   verb->add_option("--progress", arguments->progress, "auto (a bar on a terminal), always or never")
       ->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->callback([arguments] { run_generate(*arguments); });
 }

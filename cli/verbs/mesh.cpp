@@ -55,7 +55,7 @@ void run_mesh(MeshArguments arguments) {
 }
 
 void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
-  verb.add_option("--iso", arguments.iso, "Value of the surface, or auto (Otsu's threshold)");
+  verb.add_option("--iso", arguments.iso, "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT");
   CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
   verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
@@ -78,6 +78,7 @@ void add_label_options(CLI::App& verb, MeshArguments& arguments) {
 void add_task_options(CLI::App& verb, MeshArguments& arguments) {
   add_input_options(verb, arguments.input);
   add_output_options(verb, arguments.output);
+  add_placing_options(verb, arguments.output.placing);
   add_surface_options(verb, arguments);
   add_stop_options(verb, arguments.stop);
   verb.add_option("--quality", arguments.quality, "fast, normal or fine")->capture_default_str();
@@ -91,7 +92,7 @@ void add_task_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_flag("--dry-run", arguments.dry_run, "Say what the run would take, from a sample of the volume");
   verb.add_option("--checkpoint", arguments.checkpoint,
                   "Save the state of the run in this folder, to go on with after whatever ends it")
-      ->excludes("--to-stdout");
+      ->excludes("--to-stdout", "--output-unit", "--scale", "--center", "--ground");
 }
 
 // The options of the way to run, which may change when a run is resumed.

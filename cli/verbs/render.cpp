@@ -28,7 +28,8 @@ Examples:
   isoweave render bone.ply -o side.png --view right --size 1920x1080 --background transparent
   isoweave render small.ply -o mesh.png --wireframe --shading flat --view 150,10
   isoweave render distances.ply -o error.png --color-by quality --range 0,0.5
-At --view 0,0 (front) the camera looks along +y with z up; azimuth turns it to the side of +x (right), elevation up.)";
+At --view 0,0 (front) the camera looks along +y with z up, in a mesh that says RAS along -y: at the face of a patient.
+Azimuth turns it to the side of +x (RAS: -x), elevation up.)";
 
 constexpr std::int64_t kMostPixels = 16384;
 constexpr std::int64_t kMostSamples = 8;
@@ -38,7 +39,7 @@ struct RenderArguments {
   std::string path, output, size = "1200x900", view = "35,20", background = "white", colour = "#decdb4", colour_by,
                             range;
   std::string shading = "smooth", samples = "3", threads = "all";
-  bool wireframe = false, quiet = false;
+  bool wireframe = false, quiet = false, no_clobber = false;
 };
 
 int parse_limited(std::string_view option, std::string_view text, std::int64_t most) {
@@ -125,6 +126,7 @@ void check_output(const std::string& path) {
 void run_render(const RenderArguments& arguments) {
   const RenderOptions options = parse_options(arguments);
   check_different({arguments.path, arguments.output});
+  check_absent(arguments.no_clobber, {arguments.output});
   check_output(arguments.output);
   exit_on_signal();
   TriangleMesh mesh = read_named_mesh(arguments.path, arguments.reading);
@@ -165,6 +167,7 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--samples", arguments->samples, "Samples along each side of a pixel")->capture_default_str();
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);
   verb->callback([arguments] { run_render(*arguments); });

@@ -32,7 +32,7 @@ struct ViewArguments {
   ReadMeshOptions reading;
   std::string input, before, threads = "all";
   PageOptions page;
-  bool quiet = false;
+  bool quiet = false, no_clobber = false;
 };
 
 // Whether a file is a report. A scene of glTF begins like a report as well, and is told by its name. A pipe, which can
@@ -76,6 +76,7 @@ void run_view(ViewArguments arguments) {
   control.threads = parse_threads(arguments.threads);
   if (!arguments.page.given()) arguments.page.path = (arguments.input == "-" ? "stdin" : arguments.input) + ".html";
 
+  check_absent(arguments.no_clobber, {arguments.page.path});
   exit_on_signal();
   const bool reported = is_report(arguments.input);
   Json report = reported ? read_report(arguments.input) : Json::object();
@@ -99,6 +100,7 @@ void run_view(ViewArguments arguments) {
     report["before"] = arguments.before;
   }
   if (!reported) report["version"] = ISOWEAVE_VERSION;
+  if (!reported) report["space"] = contents.mesh.space;
   report["output"] = mesh_path;
   control.stop = borrow(stop_on_signal());
   OutputFile file(arguments.page.path);
@@ -117,6 +119,7 @@ void add_view_verb(CLI::App& app) {
   add_page_triangles(*verb, arguments->page);
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);
   verb->callback([arguments] { run_view(*arguments); });

@@ -107,8 +107,13 @@ TEST_F(CliLabels, OnlyThoseNamedInTheirOrder) {
   EXPECT_EQ(listing(folder_), (std::vector<std::string>{kMap, "r.json", "seg_label200.ply", "seg_label3.ply"}));
 }
 
+TEST_F(CliLabels, OneThatDoesNotOccurIsRefused) {
+  program::expect_failed(run(folder_.path(), mesh({"--labels", "3,77"})), 3, "label 77 does not occur");
+  EXPECT_EQ(listing(folder_), (std::vector<std::string>{kMap}));
+}
+
 TEST_F(CliLabels, OneThatDoesNotOccurIsAnEmptyMeshAndAWarning) {
-  const Result result = run(folder_.path(), mesh({"--labels", "3,77", "--progress", "always"}));
+  const Result result = run(folder_.path(), mesh({"--labels", "3,77", "--progress", "always", "--allow-empty"}));
   EXPECT_EQ(result.code, 0);
   EXPECT_NE(result.err.find("label 77 does not occur"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("layer 20 of 20"), std::string::npos) << result.err;

@@ -58,7 +58,7 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   GltfJson root{{"rotation", turn_to_y_up(options.space)}};
-  const double metres = unit_in(options.unit, "m").value_or(1);
+  const double metres = unit_in(unit_or_usual(options.unit), "m").value_or(1);
   if (metres != 1) root["scale"] = {metres, metres, metres};
   if (placed.is_null() && has_offset(options)) {
     root["children"] = {1};

@@ -1,7 +1,7 @@
 // What GLB files of all kinds share: the scene around the mesh, and the container around scene and data.
 //
 // Coordinates stay those of the volume. glTF means metres in a right-handed frame with y up and z to the front, so the
-// root node scales by the unit (not at all where it is not known) and turns the axes: the patient's superior is up and
+// root node scales by the unit (millimetres where it is not known) and turns the axes: the patient's superior is up and
 // anterior is in front for LPS and RAS; for anything else z is up.
 #pragma once
 
