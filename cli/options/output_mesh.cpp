@@ -49,7 +49,7 @@ void add_output_options(CLI::App& verb, OutputOptions& output) {
   verb.add_flag("--one-file", output.one_file,
                 "All levels of --lods in one .glb (MSFT_lod), or .precomputed with --compress")
       ->excludes("--to-stdout");
-  verb.add_option("--segment", output.segment, "Number of the object in .precomputed")->capture_default_str();
+  verb.add_option("--segment", output.segment, "Segment ID in .precomputed")->capture_default_str();
 }
 
 MeshFileOptions mesh_file_options(const OutputOptions& output, MeshFileOptions options) {

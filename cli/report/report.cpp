@@ -203,7 +203,7 @@ void print_surface(const SurfaceReport& surface, const std::string& output) {
                          digest_text(surface.digest)));
 }
 
-void print_summary(const MeshReport& report, const std::string& output, double voxels, const Forecast* forecast) {
+void print_summary(const MeshReport& report, const std::string& output, double voxels) {
   print_note(fmt::format("{}: {} of {} triangles, {} vertices, {}", output, grouped(report.triangles),
                          grouped(report.triangles_extracted), grouped(report.vertices),
                          state_text(report.open_edges, report.nonmanifold_edges, report.nonmanifold_vertices)));
@@ -211,14 +211,8 @@ void print_summary(const MeshReport& report, const std::string& output, double v
   if (voxels > 0 && report.seconds_total > 0) {
     speed += fmt::format(", {:.1f} Mvoxel/s", voxels * 1e-6 / report.seconds_total);
   }
-  print_note(fmt::format("{}, peak memory {}, {} thread{}", speed, byte_text(report.peak_bytes), report.threads,
-                         report.threads == 1 ? "" : "s"));
-  if (forecast != nullptr) {
-    print_note(fmt::format("predicted: {} triangles, {:.2f} s, peak memory {}",
-                           short_count(static_cast<double>(forecast->triangles)), forecast->seconds,
-                           byte_text(forecast->peak_bytes)));
-  }
-  print_note(fmt::format("digest {}", digest_text(report.digest)));
+  print_note(fmt::format("{}, peak memory {}, {} thread{}, digest {}", speed, byte_text(report.peak_bytes),
+                         report.threads, report.threads == 1 ? "" : "s", digest_text(report.digest)));
 }
 
 std::string_view space_name(Space space) {

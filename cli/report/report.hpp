@@ -60,9 +60,8 @@ std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges
 // A line on standard error about a surface that has been written.
 void print_surface(const SurfaceReport& surface, const std::string& output);
 
-// A few lines about a run that is done.
-void print_summary(const MeshReport& report, const std::string& output, double voxels,
-                   const Forecast* forecast = nullptr);
+// Two lines about a run that is done: the mesh, and what it took.
+void print_summary(const MeshReport& report, const std::string& output, double voxels);
 
 std::string_view space_name(Space space);
 std::string_view schedule_name(Schedule schedule);

@@ -18,6 +18,11 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave check bone.ply
+  isoweave check bone.ply --self-intersections --json)";
+
 constexpr std::size_t kListedPairs = 10;
 
 struct CheckArguments {
@@ -155,7 +160,7 @@ void run_check(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
+  CLI::App* verb = app.add_subcommand("check", "Show counts, size, defects and fingerprint of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
   verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   add_weld_option(*verb, arguments->weld);
@@ -164,6 +169,7 @@ void add_check_verb(CLI::App& app) {
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_check(*arguments); });
 }
 

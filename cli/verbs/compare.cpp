@@ -19,6 +19,11 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave compare bone.ply full.ply
+  isoweave compare bone.ply full.ply --distances colours.ply --histogram 20)";
+
 constexpr std::int64_t kMostBins = 1'000'000;
 
 struct CompareArguments {
@@ -130,7 +135,7 @@ void run_compare(const CompareArguments& arguments) {
 }  // namespace
 
 void add_compare_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("compare", "Mean, RMS and largest distance between two meshes, both ways");
+  CLI::App* verb = app.add_subcommand("compare", "Measure the distances between two meshes");
   const auto arguments = std::make_shared<CompareArguments>();
   verb->add_option("A", arguments->a, "Mesh")->required();
   verb->add_option("B", arguments->b, "Mesh")->required();
@@ -143,6 +148,7 @@ void add_compare_verb(CLI::App& app) {
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_compare(*arguments); });
 }
 

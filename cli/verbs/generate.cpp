@@ -15,6 +15,11 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave generate gyroid --size 64 -o gyroid.nrrd
+  isoweave generate sphere --size 64x64x32 --type uint8 -o sphere.nrrd)";
+
 struct GenerateArguments {
   std::string kind, output, size, type = "float32", spacing = "1,1,1", progress = "auto";
   std::uint64_t seed = 1;
@@ -58,10 +63,10 @@ void run_generate(const GenerateArguments& arguments) {
   GenerateOptions options;
   options.kind = arguments.kind;
   options.dims = parse_size("--size", arguments.size);
-  const std::optional<SampleType> type = parse_sample_type(arguments.type);
+  const std::optional<SampleType> type = parse_sample_type(type_name(arguments.type));
   if (!type) wrong_value("--type", "a type such as uint8, int16 or float32", arguments.type);
   options.type = *type;
-  options.spacing = parse_triple("--spacing", arguments.spacing);
+  options.spacing = parse_spacing("--spacing", arguments.spacing);
   options.seed = arguments.seed;
   const ProgressMode mode = progress_mode(arguments.progress, arguments.quiet);
 
@@ -81,7 +86,7 @@ void run_generate(const GenerateArguments& arguments) {
 }  // namespace
 
 void add_generate_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("generate", "Test volumes from formulas");
+  CLI::App* verb = app.add_subcommand("generate", "Make a test volume from a formula");
   const auto arguments = std::make_shared<GenerateArguments>();
   verb->add_option("KIND", arguments->kind, kinds_text())->required();
   verb->add_option("-o,--output", arguments->output, "Volume to write: .nrrd, .mha or .raw")->required();
@@ -93,6 +98,7 @@ void add_generate_verb(CLI::App& app) {
       ->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_generate(*arguments); });
 }
 

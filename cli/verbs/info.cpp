@@ -20,6 +20,12 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave info scan.nii.gz
+  isoweave info foot.raw --raw 256x256x256:uint8
+  isoweave info scan.nii.gz --json)";
+
 constexpr std::size_t kParts = 16;
 constexpr std::size_t kBarLength = 40;
 
@@ -147,10 +153,11 @@ void run_info(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("info", "What a volume is, its histogram and suggested iso-values");
+  CLI::App* verb = app.add_subcommand("info", "Show what a volume is, and iso-values for it");
   const auto arguments = std::make_shared<InfoArguments>();
   add_input_options(*verb, arguments->input);
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_info(*arguments); });
 }
 

@@ -23,7 +23,7 @@ struct MeshArguments {
   ComponentOptions components;
   PageOptions page;
   WatchOptions watch;
-  std::string iso, quality = "normal", slab, inside = "above", normals = "none";
+  std::string iso, quality = "normal", slab, inside = "above", normals = "auto";
   std::string color_by, space, memory, checkpoint, every, resume, labels, label_names, smooth;
   bool open = false, closed = false, dry_run = false, numbered = false;
 };

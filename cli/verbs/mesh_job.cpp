@@ -49,7 +49,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["smooth"] = options.smooth;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
-  json["normals"] = arguments.normals;
+  json["normals"] = normals_name(options.normals);
   if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
@@ -362,7 +362,7 @@ class MeshJob {
     print_levels(report, outputs_);
     print_target(arguments_.stop, report, options_.triangles, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
-    print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
+    print_summary(report, outputs_.back().name(), voxels);
   }
 
   const MeshArguments& arguments_;

@@ -18,7 +18,9 @@
 namespace isoweave::cli {
 namespace {
 
-Normals parse_normals(std::string_view text) {
+// Viewers of GLB draw a surface without normals in facets.
+Normals parse_normals(std::string_view text, const OutputOptions& output) {
+  if (text == "auto") return output_format(output) == MeshFormat::kGlb ? Normals::kGradient : Normals::kAbsent;
   return parse_choice<Normals>(
       "--normals", text,
       {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
@@ -76,7 +78,7 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   options.closed = !arguments.open;
   options.smooth = parse_smooth(arguments.smooth);
   options.quality = parse_quality(arguments.quality);
-  options.normals = parse_normals(arguments.normals);
+  options.normals = parse_normals(arguments.normals, arguments.output);
   options.drop_specks = drops_specks(arguments.stop);
   options.space = parse_space(arguments.space);
   return options;
@@ -105,6 +107,11 @@ std::string preset_note(std::string_view iso, double min, double max) {
   if (preset == nullptr || is_hounsfield_range(min, max)) return "";
   return fmt::format("--iso {} is {} in Hounsfield units, but the samples go from {} to {}: is it CT?", iso,
                      preset->iso, min, max);
+}
+
+std::string normals_name(Normals normals) {
+  if (normals == Normals::kAbsent) return "none";
+  return normals == Normals::kGradient ? "gradient" : "quadric";
 }
 
 std::string smooth_text(const MeshOptions& options) {

@@ -35,6 +35,9 @@ AutomaticIso automatic_iso(const InputOptions& input, const std::atomic<bool>& s
 // A warning where --iso names a tissue and the range of the samples is not that of CT; else empty.
 std::string preset_note(std::string_view iso, double min, double max);
 
+// The name of a kind of normals on the command line.
+std::string normals_name(Normals normals);
+
 // " smooth 4", for the comments of a mesh file; empty where nothing is smoothed.
 std::string smooth_text(const MeshOptions& options);
 

@@ -27,8 +27,9 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  isoweave simplify scan.stl -o smaller.ply --error 0.1
-  isoweave simplify brain.ply -o brain_fine.obj --error 0.5vox --quality fine
+  isoweave simplify scan.stl --error 0.1mm -o smaller.ply
+  isoweave simplify brain.ply --ratio 10% --quality fine -o brain.obj
+
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
@@ -145,8 +146,8 @@ void check_possible(const SimplifyArguments& arguments, const SimplifyOptions& o
   require_possible({RunKind::kSimplify, "simplify", asked, control, arguments.stop, arguments.components});
 }
 
-void run_simplify(const SimplifyArguments& arguments) {
-  if (!arguments.output.given()) throw CLI::RequiredError("--output");
+void run_simplify(SimplifyArguments arguments) {
+  if (!arguments.output.given()) arguments.output.path = usual_output(arguments.input, "_simplified", ".ply");
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
@@ -206,7 +207,7 @@ void run_simplify(const SimplifyArguments& arguments) {
 }  // namespace
 
 void add_simplify_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
+  CLI::App* verb = app.add_subcommand("simplify", "Simplify a triangle mesh");
   const auto arguments = std::make_shared<SimplifyArguments>();
   verb->add_option("MESH", arguments->input, kMeshInputHelp)->required();
   add_output_options(*verb, arguments->output);

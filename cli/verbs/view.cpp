@@ -26,7 +26,9 @@ constexpr const char* kExamples = R"(
 Examples:
   isoweave view bone.ply
   isoweave view bone.json -o bone.html --before full.ply
-The report is one that mesh or simplify wrote (--report); the page shows the mesh that it names.)";
+
+The report is one that mesh or simplify wrote (--report); the page shows the
+mesh that it names.)";
 
 struct ViewArguments {
   ReadMeshOptions reading;
@@ -111,7 +113,7 @@ void run_view(ViewArguments arguments) {
 }  // namespace
 
 void add_view_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("view", "A page that shows a mesh, or a report and its mesh, in a browser");
+  CLI::App* verb = app.add_subcommand("view", "Write a page that shows a mesh in a browser");
   const auto arguments = std::make_shared<ViewArguments>();
   verb->add_option("MESH|REPORT", arguments->input, "Mesh, or report that mesh or simplify wrote")->required();
   verb->add_option("-o,--output", arguments->page.path, "Page to write (default: the name and .html)");

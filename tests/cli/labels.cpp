@@ -294,6 +294,19 @@ TEST_F(CliLabels, APartIsWhereItIsInTheWhole) {
   EXPECT_EQ(part.at("labels").at(0).at("digest"), whole.at("labels").at(0).at("digest"));
 }
 
+// Files far from the origin hold an offset, which is added once.
+TEST_F(CliLabels, LieWhereTheyShouldFarFromTheOrigin) {
+  const std::string header =
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 24 22 20\nspace dimension: 3\n"
+      "space directions: (0.001,0,0) (0,0.001,0) (0,0,0.001)\nspace origin: (400000,500000,600000)\nencoding: raw\n\n";
+  files::write_bytes(folder_ / "far.nrrd", header + map_bytes());
+  const json report = report_of(folder_, {"mesh", "far.nrrd", "-o", "f.ply", "--labels", "3"});
+  const std::string file = report.at("labels").at(0).at("output");
+  const json check = json::parse(run(folder_.path(), {"check", file, "--json"}).out);
+  EXPECT_EQ(check.at("digest"), report.at("labels").at(0).at("digest"));
+  EXPECT_NEAR(check.at("box").at("low").at(0).get<double>(), 400000, 1);
+}
+
 TEST(CliSmooth, WrongUseIsRefused) {
   const files::Folder folder;
   const auto mesh = [](const std::string& smooth) {

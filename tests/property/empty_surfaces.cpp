@@ -84,6 +84,7 @@ TEST(BorderSurface, IsWarnedOf) {
       "memory: the surface is nothing but the border of the volume: the samples go from 0 to 7 and are all inside, iso "
       "is -40";
   EXPECT_EQ(warnings(at(-40)), std::vector<std::string>{below});
+  EXPECT_EQ(warnings(at(0)).size(), 1U) << "inside is what is at the iso-value, too";
   EXPECT_EQ(warnings(at(7, true, false)).size(), 1U) << "inside is what is at the iso-value, too";
   EXPECT_EQ(warnings(at(0.5)).size(), 0U);
   EXPECT_EQ(warnings(at(6.5, true, false)).size(), 0U);

@@ -48,8 +48,12 @@ inline Point gltf_normal(const Point& normal) { return normal == Point{0, 0, 0} 
 // holds it, if that is given.
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
 
+// A mesh by the name of its file, of our material.
+GltfJson gltf_mesh(const std::string& path, GltfJson primitive);
+
 // The scene of several levels of detail (MSFT_lod), finest first: `levels` are the contents of their nodes. A viewer
-// that does not know the extension shows the finest level only.
+// that does not know the extension shows the finest level only. Each level turns and scales by itself: importers that
+// take all nodes see all levels in the same size.
 GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels);
 
 // The scene of a mesh without triangles: glTF has no empty meshes, nor scenes with an empty list of nodes.
