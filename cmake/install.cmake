@@ -62,7 +62,7 @@ install(FILES ${PROJECT_BINARY_DIR}/${library}.pc DESTINATION ${CMAKE_INSTALL_LI
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 find_program(ISOWEAVE_GZIP gzip)
 if(ISOWEAVE_GZIP)
-  set(changes ${PROJECT_BINARY_DIR}/changelog.gz)
+  set(changes ${PROJECT_BINARY_DIR}/NEWS.gz)
   add_custom_command(OUTPUT ${changes} COMMAND ${ISOWEAVE_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${changes}
                      DEPENDS CHANGELOG.md VERBATIM)
   add_custom_target(isoweave_changes ALL DEPENDS ${changes})

@@ -4,9 +4,10 @@ set(CPACK_PACKAGE_VENDOR isoweave)
 set(ISOWEAVE_PACKAGER "isoweave packagers <packages@isoweave.invalid>" CACHE STRING "Who answers for the packages")
 set(CPACK_PACKAGE_CONTACT ${ISOWEAVE_PACKAGER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "turns large 3-D volumes into simplified triangle meshes")
-set(CPACK_PACKAGE_DESCRIPTION "isoweave reads scans and simulations (DICOM, NIfTI, NRRD, TIFF, HDF5, Zarr and others)
-and writes the surface at an iso-value, or of each label, as a simplified mesh
-(PLY, STL, OBJ, GLB, 3MF, VTP). Memory stays bounded, however large the volume is.")
+set(CPACK_PACKAGE_DESCRIPTION "isoweave reads scans and simulations (DICOM, NIfTI, NRRD, TIFF, HDF5, Zarr,
+and others) and writes the surface at an iso-value, or of each label, as a
+simplified mesh (PLY, STL, OBJ, GLB, 3MF, VTP). Memory stays bounded,
+however large the volume is.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -81,7 +81,8 @@ void print_target(const StopOptions& stop, const MeshReport& report, std::uint64
                   const std::string& unit) {
   if (asked == 0) return;
   const auto text = [&](double length) { return fmt::format("{:.4g} {}", length, unit_text(unit)); };
-  print_note(fmt::format("error reached: {} (typical distance, not the largest)", text(report.error)));
+  print_note(
+      fmt::format("error reached: {} (of the last collapses; most of the surface moved far less)", text(report.error)));
   if (report.triangles <= asked) return;
   const bool all_tetrahedra = report.open_edges == 0 && report.triangles <= 4 * report.components;
   if (!stop.error.empty() && !all_tetrahedra) {

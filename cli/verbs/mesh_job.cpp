@@ -145,7 +145,10 @@ class MeshJob {
     const ProgressMode mode = progress_mode(arguments_.run.progress, quiet());
     check();
     open();
-    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, info_, control_);
+    if (!arguments_.labels.empty()) {
+      mesh_labels(arguments_, options_, info_, control_);
+      return tell_unit();
+    }
     Evidence evidence(arguments_.run, arguments_.page);
     if (arguments_.iso == "auto") find_iso();
     find_target();
@@ -201,13 +204,13 @@ class MeshJob {
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
     if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
-    tell_unit();
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
     control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     control_.stop = borrow(stop_on_signal());
   }
 
-  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant.
+  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant. When the run
+  // is done: a run that fails has one line.
   void tell_unit() const {
     if (quiet()) return;
     const bool matters = has_metric_length(arguments_.stop) || states_unit(arguments_.output);
@@ -277,6 +280,7 @@ class MeshJob {
     const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
+    tell_unit();
     evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
   }
 
@@ -356,6 +360,7 @@ class MeshJob {
   }
 
   void print_result(const MeshReport& report, const LevelSinks& sinks) const {
+    tell_unit();
     for (const std::string& warning : report.warnings) print_note("warning: " + warning);
     print_notes(sinks.last());
     print_dropped(report);

@@ -94,8 +94,13 @@ MeshReport simplify_named(const SimplifyArguments& arguments, const TriangleMesh
   try {
     return simplify_mesh(mesh, sinks.pointers(), options, control);
   } catch (const EmptySurface& empty) {
-    const bool all_dropped = mesh.triangles.empty() && dropped.components > 0;
-    throw EmptySurface(fmt::format("{}: {}", arguments.input, all_dropped ? dropped_text(dropped) : empty.what()));
+    std::string reason = empty.what();
+    if (mesh.triangles.empty() && dropped.components > 0) {
+      reason = dropped_text(dropped);
+    } else if (mesh.triangles.empty() && !mesh.notes.empty()) {
+      reason = mesh.notes.front();  // what the file has instead
+    }
+    throw EmptySurface(fmt::format("{}: {}", arguments.input, reason));
   }
 }
 
@@ -170,9 +175,6 @@ void run_simplify(SimplifyArguments arguments) {
   const Json place = place_json(mesh);
   const std::string unit = mesh.unit;
   options = simplify_options(arguments, unit);
-  if (!run.quiet && unit.empty() && (has_metric_length(arguments.stop) || states_unit(arguments.output))) {
-    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
-  }
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
@@ -195,6 +197,9 @@ void run_simplify(SimplifyArguments arguments) {
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
+  if (unit.empty() && (has_metric_length(arguments.stop) || states_unit(arguments.output))) {
+    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
+  }
   print_welded(arguments.input, arguments.weld, input.welded);
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());

@@ -102,7 +102,7 @@ void run_view(ViewArguments arguments) {
     report["before"] = arguments.before;
   }
   if (!reported) report["version"] = ISOWEAVE_VERSION;
-  if (!reported) report["space"] = contents.mesh.space;
+  if (!reported && !contents.mesh.space.empty()) report["space"] = contents.mesh.space;
   report["output"] = mesh_path;
   control.stop = borrow(stop_on_signal());
   OutputFile file(arguments.page.path);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ Words drawn_on(unsigned short columns) {
 }
 
 TEST(CliProgress, PercentIsThereOnEveryTerminal) {
-  for (const unsigned short columns : {80, 50}) {
+  for (const unsigned short columns : std::initializer_list<unsigned short>{80, 50}) {
     const Words lines = drawn_on(columns);
     ASSERT_FALSE(lines.empty());
     for (const std::string& line : lines) {

@@ -90,11 +90,12 @@ TEST_F(CliUnits, AndSizesOfTheOutput) {
   ASSERT_EQ(mesh("l.ply", {"--lods", "0.1,0.5", "--scale", "2"}).code, 0);
   EXPECT_EQ(Json::parse(files::read_bytes(folder_ / "r.json")).at("levels").at(0).at("digest"),
             check("l_lod0.ply").at("digest"));
-  const Result labels = run(
-      folder_.path(), {"mesh", kVolume, "-o", "m.ply", "--labels", "255", "--output-unit", "um", "--report", "r.json"});
+  files::write_bytes(folder_ / "m_4x4x4_uint8.raw", std::string(21, '\1') + std::string(43, '\0'));
+  const Result labels = run(folder_.path(), {"mesh", "m_4x4x4_uint8.raw", "-o", "m.ply", "--labels", "1",
+                                             "--output-unit", "um", "--report", "r.json"});
   ASSERT_EQ(labels.code, 0) << labels.err;
   EXPECT_EQ(Json::parse(files::read_bytes(folder_ / "r.json")).at("labels").at(0).at("digest"),
-            check("m_label255.ply").at("digest"));
+            check("m_label1.ply").at("digest"));
 }
 
 TEST_F(CliUnits, WrongUseIsRefused) {
