@@ -20,4 +20,17 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libhdf5-103-1")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+# A changelog in the form that Debian wants; the changes themselves are in NEWS.
+if(ISOWEAVE_GZIP)
+  string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  set(changelog ${PROJECT_BINARY_DIR}/changelog)
+  file(WRITE ${changelog} "isoweave (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * See NEWS.gz.
+
+ -- ${ISOWEAVE_PACKAGER}  ${now}
+")
+  execute_process(COMMAND ${ISOWEAVE_GZIP} -9nkf ${changelog} COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${changelog}.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()
 include(CPack)
