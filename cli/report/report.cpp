@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -160,8 +161,28 @@ Json check_json(const MeshCheck& check, const std::string& path) {
           {"digest", digest_text(check.digest)}};
 }
 
+Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  bool first = true;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double place = mesh.offset[axis] + double{mesh.vertices[v][axis]};
+        box.low[axis] = first ? place : std::min(box.low[axis], place);
+        box.high[axis] = first ? place : std::max(box.high[axis], place);
+      }
+      first = false;
+    }
+  }
+  return box;
+}
+
 Json place_json(const TriangleMesh& mesh) {
-  return {{"unit", mesh.unit}, {"space", mesh.space}, {"offset", mesh.offset}};
+  const Box box = box_of(mesh);
+  return {{"unit", mesh.unit},
+          {"space", mesh.space},
+          {"offset", mesh.offset},
+          {"box", {{"low", box.low}, {"high", box.high}}}};
 }
 
 Json self_intersections_json(const SelfIntersections& found) {

@@ -1,6 +1,5 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -30,29 +29,6 @@ struct CheckArguments {
   std::string path, threads = "all";
   bool self_intersections = false, json = false, weld = false;
 };
-
-struct Box {
-  std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
-
-  std::array<double, 3> size() const { return {high[0] - low[0], high[1] - low[1], high[2] - low[2]}; }
-};
-
-// The box of the vertices that triangles have.
-Box box_of(const TriangleMesh& mesh) {
-  Box box;
-  bool first = true;
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double place = mesh.offset[axis] + double{mesh.vertices[v][axis]};
-        box.low[axis] = first ? place : std::min(box.low[axis], place);
-        box.high[axis] = first ? place : std::max(box.high[axis], place);
-      }
-      first = false;
-    }
-  }
-  return box;
-}
 
 std::string degrees_text(double angle) { return std::isnan(angle) ? "none" : fmt::format("{:.4g} degrees", angle); }
 
@@ -145,8 +121,6 @@ void run_check(const CheckArguments& arguments) {
   const MeshCheck check = check_mesh(mesh);
   Json json = check_json(check, arguments.path);
   json.update(place_json(mesh));
-  const Box box = box_of(mesh);
-  json["box"] = {{"low", box.low}, {"high", box.high}};
   tell_input(arguments, input, check, json);
   std::string text = check_text(check, mesh, arguments.path);
   if (arguments.self_intersections) {

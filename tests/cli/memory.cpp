@@ -109,7 +109,7 @@ std::vector<std::string> joined(std::vector<std::string> arguments, const std::v
 void expect_named_cap(const std::string& volume, const std::string& file, const std::vector<std::string>& more) {
   SCOPED_TRACE(volume + " " + file + (more.empty() ? "" : " " + more[0]));
   const files::Folder folder;
-  const auto arguments = joined({"mesh", volume, "-o", file, "--quiet", "--iso", "127.5"}, more);
+  const auto arguments = joined({"mesh", volume, "-o", file, "--quiet", "--iso", "127.5", "--allow-empty"}, more);
   const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M"})));
   const Result result = run(folder.path(), joined(arguments, {"--memory", std::to_string(cap) + "M"}));
   EXPECT_EQ(result.code, 0) << result.err;
