@@ -201,6 +201,9 @@ class MeshJob {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
     options_.values = open_values(arguments_);
+    // Viewers of GLB draw a surface without normals in facets.
+    const bool automatic = arguments_.normals == "auto";
+    if (automatic && output_format(arguments_.output) == MeshFormat::kGlb) options_.normals = Normals::kGradient;
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
     if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);

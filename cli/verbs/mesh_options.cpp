@@ -18,9 +18,8 @@
 namespace isoweave::cli {
 namespace {
 
-// Viewers of GLB draw a surface without normals in facets.
-Normals parse_normals(std::string_view text, const OutputOptions& output) {
-  if (text == "auto") return output_format(output) == MeshFormat::kGlb ? Normals::kGradient : Normals::kAbsent;
+Normals parse_normals(std::string_view text) {
+  if (text == "auto") return Normals::kAbsent;  // until the format is known
   return parse_choice<Normals>(
       "--normals", text,
       {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
@@ -78,7 +77,7 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   options.closed = !arguments.open;
   options.smooth = parse_smooth(arguments.smooth);
   options.quality = parse_quality(arguments.quality);
-  options.normals = parse_normals(arguments.normals, arguments.output);
+  options.normals = parse_normals(arguments.normals);
   options.drop_specks = drops_specks(arguments.stop);
   options.space = parse_space(arguments.space);
   return options;
