@@ -60,3 +60,14 @@ set(ISOWEAVE_PC_NAME ${library})
 file(RELATIVE_PATH ISOWEAVE_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/isoweave.pc.in ${library}.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/${library}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# The licence, where Debian looks for it, and the changes.
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+find_program(ISOWEAVE_GZIP gzip)
+if(ISOWEAVE_GZIP)
+  set(changes ${PROJECT_BINARY_DIR}/NEWS.gz)
+  add_custom_command(OUTPUT ${changes} COMMAND ${ISOWEAVE_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${changes}
+                     DEPENDS CHANGELOG.md VERBATIM)
+  add_custom_target(isoweave_changes ALL DEPENDS ${changes})
+  install(FILES ${changes} DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -12,11 +13,18 @@
 #include "options/input_volume.hpp"
 #include "report/print.hpp"
 #include "report/report.hpp"
+#include "report/suggestions.hpp"
 #include "signals.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isoweave::cli {
 namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave info scan.nii.gz
+  isoweave info foot.raw --raw 256x256x256:uint8
+  isoweave info scan.nii.gz --json)";
 
 constexpr std::size_t kParts = 16;
 constexpr std::size_t kBarLength = 40;
@@ -26,9 +34,14 @@ struct InfoArguments {
   bool json = false, isos = false;
 };
 
-struct Suggestions {
-  std::optional<double> otsu, formula;
-};
+// The lengths of the box of the samples.
+std::array<double, 3> extent(const VolumeInfo& info) {
+  std::array<double, 3> lengths{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lengths[axis] = info.geometry.spacing[axis] * static_cast<double>(info.dims[axis]);
+  }
+  return lengths;
+}
 
 Json isos_json(const CrossingCounts& crossings) {
   return {{"first", crossings.first}, {"step", crossings.step}, {"vertices", crossings.counts}};
@@ -50,6 +63,13 @@ Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggest
   Json iso = Json::object();
   iso["otsu"] = suggested.otsu ? Json(*suggested.otsu) : Json(nullptr);
   if (suggested.formula) iso["formula"] = *suggested.formula;
+  iso["three_classes"] = suggested.three_classes;
+  iso["presets"] = Json::object();
+  for (const HounsfieldPreset& preset : hounsfield_presets()) {
+    if (suggested.ct) iso["presets"][std::string(preset.name)] = preset.iso;
+  }
+  input["extent"] = extent(info);
+  input["label_map"] = suggested.label_map;
   return {{"version", ISOWEAVE_VERSION},
           {"input", input},
           {"histogram", {{"low", input["min"]}, {"high", input["max"]}, {"counts", coarser_bins(histogram, kParts)}}},
@@ -115,7 +135,9 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += fmt::format("size       {} x {} x {} {}, {} samples, {}\n", info.dims[0], info.dims[1], info.dims[2],
                       sample_type_name(info.type), grouped(samples), byte_text(info.slice_bytes() * slices));
   text += fmt::format("spacing    {:.6g} x {:.6g} x {:.6g} {}\n", geometry.spacing[0], geometry.spacing[1],
-                      geometry.spacing[2], geometry.unit.empty() ? "(no unit)" : printable(geometry.unit));
+                      geometry.spacing[2],
+                      geometry.unit.empty() ? "mm (the file names no unit; see --unit)" : printable(geometry.unit));
+  text += fmt::format("extent     {}\n", size_text(extent(info), geometry.unit));
   text +=
       fmt::format("origin     {:.6g}, {:.6g}, {:.6g}\n", geometry.origin[0], geometry.origin[1], geometry.origin[2]);
   text += fmt::format("axes       {}\n", axes_text(geometry));
@@ -126,6 +148,12 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
   if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
   if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
+  if (suggested.three_classes.size() == 2) {
+    text += fmt::format("           --iso {:.6g} or {:.6g} (three classes)\n", suggested.three_classes[0],
+                        suggested.three_classes[1]);
+  }
+  if (suggested.ct) text += fmt::format("           --iso {} (tissues of CT)\n", presets_text());
+  if (suggested.label_map) text += "           --labels all (looks like a mask or label map)\n";
   for (const LabelName& label : info.labels) {
     text += fmt::format("label      {} {}\n", label.label.text(), printable(label.name));
   }
@@ -145,10 +173,7 @@ void run_info(const InfoArguments& arguments) {
     crossings.histogram = read_histogram(*volume);
   }
   const Histogram& histogram = crossings.histogram;
-  Suggestions suggested{otsu_threshold(histogram), std::nullopt};
-  if (const std::optional<GenerateOptions> generated = generated_input(arguments.input)) {
-    suggested.formula = suggested_iso(generated->kind, generated->type);
-  }
+  const Suggestions suggested = suggestions(histogram, arguments.input, nullptr);
   const VolumeInfo& info = volume->info();
   const std::string& path = arguments.input.path;
   if (arguments.json) {
@@ -162,11 +187,12 @@ void run_info(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("info", "What a volume is, its histogram and suggested iso-values");
+  CLI::App* verb = app.add_subcommand("info", "Show what a volume is, and iso-values for it");
   const auto arguments = std::make_shared<InfoArguments>();
   add_input_options(*verb, arguments->input);
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->add_flag("--isos", arguments->isos, "Triangles of the surface for iso-values over the whole range");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_info(*arguments); });
 }
 

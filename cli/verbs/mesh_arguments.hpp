@@ -25,7 +25,7 @@ struct MeshArguments {
   PageOptions page;
   WatchOptions watch;
   IndexOptions index;
-  std::string iso, quality = "normal", slab, inside = "above", normals = "none", extractor = "cubes";
+  std::string iso, quality = "normal", slab, inside = "above", normals = "auto", extractor = "cubes";
   std::string color_by, space, memory, checkpoint, every, resume, labels, label_names, smooth;
   bool open = false, closed = false, dry_run = false, numbered = false;
 };

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "isoweave/label.hpp"
@@ -40,6 +42,24 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop = nu
 // (Otsu, "A threshold selection method from gray-level histograms", 1979); the middle one of equally good values. As an
 // iso-value it parts bright from dark. Nothing when there are not two different values.
 std::optional<double> otsu_threshold(const Histogram& histogram);
+
+// The values that split the histogram into `classes` classes with the largest variance between them, ascending (Otsu's
+// criterion for several thresholds, found exactly). Fewer where there are not so many different values.
+// @throws std::invalid_argument unless classes is from 2 to 8
+// @cost classes * kBins^2 steps.
+std::vector<double> otsu_thresholds(const Histogram& histogram, std::size_t classes);
+
+// A tissue in CT, by the iso-value in Hounsfield units that parts it from what is around it.
+struct HounsfieldPreset {
+  std::string_view name;
+  double iso;
+};
+
+// bone, skin and lung. The surface of the lungs is that of the air in them: inside is below.
+std::span<const HounsfieldPreset> hounsfield_presets();
+
+// Whether a range of values looks like that of CT in Hounsfield units: air, far below 0, and what is denser than water.
+bool is_hounsfield_range(double min, double max);
 
 // The counts of the histogram in fewer equal parts of its range.
 // @throws std::invalid_argument unless `parts` divides kBins

@@ -141,6 +141,10 @@ struct RunControl {
   // Whether to find the digest, the components, non-manifold edges and vertices, and the range of the samples. Without
   // it these stay empty in the report.
   bool measure = true;
+  // Whether a mesh without triangles is a result, with a warning. False for programs that would replace a good mesh by
+  // it.
+  // @throws EmptySurface from the run, before a sink is finished; no state is left in a checkpoint folder
+  bool allow_empty = true;
 };
 
 }  // namespace isoweave

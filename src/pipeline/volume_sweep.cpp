@@ -1,5 +1,6 @@
 #include "pipeline/volume_sweep.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -84,8 +85,8 @@ void VolumeSweep::report_samples() {
   const SampleRange& range = pieces_->range();
   const double low = volume.slope * range.min + volume.intercept;
   const double high = volume.slope * range.max + volume.intercept;
-  report_.min = volume.slope > 0 || range.empty() ? low : high;
-  report_.max = volume.slope > 0 || range.empty() ? high : low;
+  report_.min = range.empty() ? range.min : std::min(low, high);
+  report_.max = range.empty() ? range.max : std::max(low, high);
   report_.nan = range.nan;
   if (range.nan == 0) return;
   report_.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");

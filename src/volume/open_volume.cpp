@@ -202,7 +202,7 @@ std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOpti
   if (!volume.unit_conflict.empty() && !options.spacing) {
     bad_input(volume.info.path, "units of length that can be made one, or --spacing", volume.unit_conflict);
   }
-  apply_overrides(volume.info.geometry, options);
+  apply_overrides(volume.info, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }
 
