@@ -51,30 +51,14 @@ struct SampleRow {
 
 // The difference of samples over two steps, a mean. It is over one step where a neighbour is missing or NaN, and 0
 // where both are.
-struct CentralDifference {
-  ISOWEAVE_HD static double slope(double low, double here, double high, double spacing) {
-    const bool has_low = low == low, has_high = high == high;
-    const int steps = has_low + has_high;
-    return steps > 0 ? ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing) : 0;
-  }
-};
-
-// The central difference, but where one of its two steps is more than twice the other one or goes the other way: then
-// the smaller step. Beside an edge of the surface one of them crosses the edge, and the other one does not (Harten et
-// al., 1987: essentially non-oscillatory).
-struct OneSidedDifference {
-  ISOWEAVE_HD static double slope(double low, double here, double high, double spacing) {
-    const double down = here - low, up = high - here;
-    const double less = fabs(down) < fabs(up) ? down : up;
-    const double more = fabs(down) < fabs(up) ? up : down;
-    const bool known = less == less && more == more;
-    const bool alike = (less > 0) == (more > 0) && fabs(more) <= 2 * fabs(less);
-    return alike || !known ? CentralDifference::slope(low, here, high, spacing) : less / spacing;
-  }
-};
+ISOWEAVE_HD inline double central_slope(double low, double here, double high, double spacing) {
+  const bool has_low = low == low, has_high = high == high;
+  const int steps = has_low + has_high;
+  return steps > 0 ? ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing) : 0;
+}
 
 // The differences per unit length along the axes, of the samples times `scale`.
-template <class Difference, class Samples>
+template <class Samples>
 ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std::int64_t, 3>& at,
                                     const std::array<double, 3>& spacing, double scale) {
   const double here = scale * samples.row(at[1], at[2])[at[0]];
@@ -85,7 +69,7 @@ ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std
     ++right[axis];
     const double low = scale * samples.row(left[1], left[2])[left[0]];
     const double high = scale * samples.row(right[1], right[2])[right[0]];
-    slope[axis] = Difference::slope(low, here, high, spacing[axis]);
+    slope[axis] = central_slope(low, here, high, spacing[axis]);
   }
   return {slope[0], slope[1], slope[2]};
 }
@@ -115,11 +99,11 @@ struct Crossing {
 };
 
 // The gradient at a crossing, of the samples times `scale`.
-template <class Difference, class Samples>
+template <class Samples>
 ISOWEAVE_HD inline Vec3 crossing_gradient(const Samples& samples, const Crossing& crossing,
                                           const std::array<double, 3>& spacing, double scale) {
-  const Vec3 g0 = gradient_at<Difference>(samples, crossing.low, spacing, scale);
-  return g0 + crossing.t * (gradient_at<Difference>(samples, crossing.high(), spacing, scale) - g0);
+  const Vec3 g0 = gradient_at(samples, crossing.low, spacing, scale);
+  return g0 + crossing.t * (gradient_at(samples, crossing.high(), spacing, scale) - g0);
 }
 
 // The normal of a cap, where the surface hugs the inside sample at one end of an edge: the cap faces along the axes on
@@ -139,17 +123,50 @@ ISOWEAVE_HD inline Point cap_normal(const Samples& samples, const Crossing& cros
 ISOWEAVE_HD inline bool is_finite(Vec3 v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
 
 // The normal at a crossing, outwards.
-template <class Difference = CentralDifference, class Samples>
+template <class Samples>
 ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& crossing,
                                    const std::array<double, 3>& spacing, bool above) {
   if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) return cap_normal(samples, crossing);
-  Vec3 g = crossing_gradient<Difference>(samples, crossing, spacing, 1);
+  Vec3 g = crossing_gradient(samples, crossing, spacing, 1);
   if (!is_finite(g)) {  // a difference is beyond the largest number: directions are those of smaller samples
     constexpr double kSmall = 0x1p-124;
-    const Vec3 small = crossing_gradient<Difference>(samples, crossing, spacing, kSmall);
+    const Vec3 small = crossing_gradient(samples, crossing, spacing, kSmall);
     if (is_finite(small)) g = small;
   }
   return unit_point(above ? -g : g);
+}
+
+// The mean of two differences that is 0 where they go apart and near the smaller one where they are far from alike: the
+// harmonic mean (van Leer, 1974). Beside a sharp edge of the surface one of them crosses the edge, and the other does
+// not.
+inline double limited_slope(double down, double up) {
+  if (down != down) return up == up ? up : 0;
+  if (up != up) return down;
+  return down * up > 0 ? 2 * (down * up / (down + up)) : 0;
+}
+
+// The normal at a crossing of an edge of a cube, outwards, from as few samples as tell it: those at the ends of the
+// edge, and the places beside the crossing on the edges beside its own. Sharp edges of a surface stay sharp.
+template <class Samples>
+inline Point sharp_normal_at(const Samples& samples, const Crossing& crossing, const std::array<double, 3>& spacing,
+                             bool above) {
+  if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) return cap_normal(samples, crossing);
+  const auto at = [&](std::size_t axis, int step) {
+    std::array<std::int64_t, 3> low = crossing.low, high = crossing.high();
+    low[axis] += step;
+    high[axis] += step;
+    const double f0 = samples.row(low[1], low[2])[low[0]];
+    return f0 + crossing.t * (samples.row(high[1], high[2])[high[0]] - f0);
+  };
+  const double here = crossing.f0 + crossing.t * (crossing.f1 - crossing.f0);
+  std::array<double, 3> slope;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    slope[axis] =
+        (crossing.along(axis) ? crossing.f1 - crossing.f0 : limited_slope(here - at(axis, -1), at(axis, 1) - here)) /
+        spacing[axis];
+  }
+  const Vec3 gradient{slope[0], slope[1], slope[2]};
+  return unit_point(above ? -gradient : gradient);
 }
 
 // The normal at a place inside the cell that begins with a sample, outwards: the gradients at its corners, weighed.
@@ -161,7 +178,7 @@ inline Point cell_normal(const Samples& samples, const std::array<std::int64_t, 
   for (int corner = 0; corner < 8; ++corner) {
     const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
     const double weight = (x != 0 ? at.x : 1 - at.x) * (y != 0 ? at.y : 1 - at.y) * (z != 0 ? at.z : 1 - at.z);
-    sum = sum + weight * gradient_at<CentralDifference>(samples, {low[0] + x, low[1] + y, low[2] + z}, spacing, 1);
+    sum = sum + weight * gradient_at(samples, {low[0] + x, low[1] + y, low[2] + z}, spacing, 1);
   }
   if (!is_finite(sum)) return {0, 0, 0};
   return unit_point(above ? -sum : sum);

@@ -1,92 +1,21 @@
 // What every extractor promises: closed, oriented manifolds whatever the samples; and what each promises by itself.
 // Threads: none, they are shown by the conformance of extractors
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <functional>
 #include <map>
-#include <numbers>
 #include <numeric>
-#include <random>
 
-#include "surfaces.hpp"
+#include "grids.hpp"
 
 namespace isoweave::testing {
 namespace {
-
-using Dims = std::array<std::int64_t, 3>;
-
-constexpr std::array kAll{ExtractorKind::kCubes, ExtractorKind::kTrilinear, ExtractorKind::kTetrahedra,
-                          ExtractorKind::kDual};
-
-// Samples by their indices; all outside at first.
-struct Grid {
-  Dims dims;
-  std::vector<float> samples = std::vector<float>(static_cast<std::size_t>(dims[0] * dims[1] * dims[2]), -1.0F);
-
-  float& at(std::int64_t i, std::int64_t j, std::int64_t k) {
-    return samples[static_cast<std::size_t>((k * dims[1] + j) * dims[0] + i)];
-  }
-  bool is_inside(std::int64_t i, std::int64_t j, std::int64_t k) {
-    const bool within = i >= 0 && j >= 0 && k >= 0 && i < dims[0] && j < dims[1] && k < dims[2];
-    return within && at(i, j, k) >= 0;
-  }
-  template <class Fill>
-  void fill(const Fill& fill) {
-    for (std::int64_t k = 0; k < dims[2]; ++k) {
-      for (std::int64_t j = 0; j < dims[1]; ++j) {
-        for (std::int64_t i = 0; i < dims[0]; ++i) at(i, j, k) = fill(i, j, k);
-      }
-    }
-  }
-};
-
-struct Made {
-  TriangleMesh mesh;
-  MeshCheck check;
-  MeshReport report;
-};
-
-Made make(const Grid& grid, ExtractorKind extractor, bool closed = true,
-          const std::array<double, 3>& spacing = {1, 1, 1}, MeshOptions options = {}) {
-  MemoryVolume volume(grid.dims, grid.samples);
-  volume.info().geometry.spacing = spacing;
-  options.closed = closed;
-  options.extractor = extractor;
-  MemorySink sink;
-  Made made;
-  made.report = mesh_volume(volume, sink, options);
-  made.mesh = std::move(sink.mesh);
-  made.check = check_mesh(made.mesh);
-  return made;
-}
-
-MeshOptions full() { return full_surface({}); }
-
-void expect_manifold(const Made& made, bool closed) {
-  EXPECT_EQ(made.check.nonmanifold_edges, 0U);
-  EXPECT_EQ(made.check.nonmanifold_vertices, 0U);
-  EXPECT_EQ(made.check.misoriented_edges, 0U);
-  EXPECT_EQ(made.check.degenerate_triangles, 0U);
-  EXPECT_EQ(made.check.unused_vertices, 0U);
-  if (closed) {
-    EXPECT_EQ(made.check.open_edges, 0U);
-  }
-  EXPECT_EQ(made.check.open_edges, made.report.open_edges);
-}
-
-Grid random_grid(const Dims& dims, std::mt19937& random) {
-  std::uniform_real_distribution<float> value(-1, 1);
-  Grid grid{dims};
-  grid.fill([&](auto...) { return value(random); });
-  return grid;
-}
 
 TEST(Extractors, MakeManifoldsOfRandomSamples) {
   std::mt19937 random(1);
   for (const Dims& dims : {Dims{9, 8, 7}, Dims{1, 5, 6}, Dims{5, 1, 6}, Dims{6, 5, 1}, Dims{1, 1, 1}, Dims{2, 2, 2},
                            Dims{2, 7, 5}, Dims{7, 2, 2}, Dims{3, 3, 3}, Dims{66, 3, 4}}) {
     const Grid grid = random_grid(dims, random);
-    for (const ExtractorKind extractor : kAll) {
+    for (const ExtractorKind extractor : kAllExtractors) {
       for (const bool closed : {true, false}) {
         SCOPED_TRACE(::testing::Message() << dims[0] << " x " << dims[1] << " x " << dims[2] << ", extractor "
                                           << static_cast<int>(extractor) << (closed ? "" : ", open"));
@@ -119,7 +48,7 @@ TEST(Extractors, MakeManifoldsOfAllPairsOfCells) {
   };
   for (const Dims& block : {Dims{3, 2, 2}, Dims{2, 3, 2}, Dims{2, 2, 3}}) {
     const Grid grid = blocks(block, 4096, 64, sample);
-    for (const ExtractorKind extractor : kAll) {
+    for (const ExtractorKind extractor : kAllExtractors) {
       SCOPED_TRACE(static_cast<int>(extractor));
       expect_manifold(make(grid, extractor, true, {1, 1, 1}, full()), true);
     }
@@ -139,7 +68,7 @@ TEST(Extractors, MakeManifoldsOfTies) {
     grids.back().fill([&](auto...) { return static_cast<float>(random() % 3) - 1; });
   }
   for (const Grid& grid : grids) {
-    for (const ExtractorKind extractor : kAll) {
+    for (const ExtractorKind extractor : kAllExtractors) {
       SCOPED_TRACE(static_cast<int>(extractor));
       expect_manifold(make(grid, extractor, true, {1, 1, 1}, full()), true);
     }
@@ -155,7 +84,7 @@ TEST(Extractors, TakeNaNAndInfiniteSamples) {
   }
   MeshOptions options;
   options.normals = Normals::kGradient;
-  for (const ExtractorKind extractor : kAll) {
+  for (const ExtractorKind extractor : kAllExtractors) {
     SCOPED_TRACE(static_cast<int>(extractor));
     const Made made = make(grid, extractor, true, {1, 1, 1}, options);
     expect_manifold(made, true);
@@ -388,133 +317,6 @@ TEST(Cubes, ArePermutedAsTheAxesAre) {
 }
 
 // A volume of a linear function, whose values every interpolation keeps.
-TEST(Extractors, GiveVerticesTheValuesOfAnotherVolume) {
-  std::mt19937 random(9);
-  const Grid grid = random_grid({8, 7, 6}, random);
-  Grid ramp{grid.dims};
-  ramp.fill([](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return static_cast<float>(i) + 10 * static_cast<float>(j) - 3 * static_cast<float>(k);
-  });
-  for (const ExtractorKind extractor : kAll) {
-    MeshOptions options = full();
-    options.values = std::make_shared<MemoryVolume>(ramp.dims, ramp.samples);
-    const Made made = make(grid, extractor, false, {1, 1, 1}, options);
-    ASSERT_EQ(made.mesh.values.size(), made.mesh.vertices.size());
-    for (std::size_t v = 0; v < made.mesh.vertices.size(); ++v) {
-      const Point& p = made.mesh.vertices[v];
-      ASSERT_NEAR(made.mesh.values[v], p[0] + 10 * p[1] - 3 * p[2], 1e-4) << static_cast<int>(extractor);
-    }
-  }
-}
-
-TEST(Extractors, GiveNormalsThatPointOutwards) {
-  GenerateOptions sphere;
-  sphere.dims = {24, 24, 24};
-  for (const ExtractorKind extractor : kAll) {
-    MeshOptions options = full();
-    options.extractor = extractor;
-    options.normals = Normals::kGradient;
-    MemorySink sink;
-    mesh_volume(*generate_volume(sphere), sink, options);
-    ASSERT_EQ(sink.mesh.normals.size(), sink.mesh.vertices.size());
-    for (std::size_t v = 0; v < sink.mesh.vertices.size(); ++v) {
-      double along = 0, squared = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double from_centre = double{sink.mesh.vertices[v][axis]} - 11.5;
-        along += from_centre * double{sink.mesh.normals[v][axis]};
-        squared += from_centre * from_centre;
-      }
-      ASSERT_GT(along / std::sqrt(squared), 0.98) << static_cast<int>(extractor);
-    }
-  }
-}
-
-TEST(Extractors, HaveFlatCaps) {
-  Grid grid{{6, 5, 4}, std::vector<float>(6 * 5 * 4, 1.0F)};
-  const std::array<double, 3> sides{5 + 2.0 / 256, 4 + 2.0 / 256, 3 + 2.0 / 256};
-  for (const ExtractorKind extractor : kAll) {
-    SCOPED_TRACE(static_cast<int>(extractor));
-    MeshOptions options = full();
-    options.normals = Normals::kGradient;
-    const Made made = make(grid, extractor, true, {1, 1, 1}, options);
-    expect_manifold(made, true);
-    EXPECT_EQ(made.check.euler, 2);
-    for (std::size_t v = 0; v < made.mesh.vertices.size(); ++v) {
-      int on_sides = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double p = double{made.mesh.vertices[v][axis]} + 1.0 / 256;
-        if (std::abs(p) > 1e-5 && std::abs(p - sides[axis]) > 1e-5) continue;
-        ++on_sides;
-        ASSERT_GT((p > 1 ? 1 : -1) * made.mesh.normals[v][axis], 0.4);
-      }
-      ASSERT_GE(on_sides, 1);
-    }
-  }
-}
-
-TEST(Extractors, KeepTheDistanceThatIsGuaranteed) {
-  GenerateOptions noise;
-  noise.kind = "noise";
-  noise.dims = {16, 15, 14};
-  for (const ExtractorKind extractor : kAll) {
-    const auto run = [&](double error, double distance) {
-      MeshOptions options;
-      options.iso = 0.5;
-      options.extractor = extractor;
-      options.error = Length::voxels(error);
-      options.max_distance = Length::voxels(distance);
-      MemorySink sink;
-      mesh_volume(*generate_volume(noise), sink, options);
-      return std::move(sink.mesh);
-    };
-    const TriangleMesh fine = run(0, 0);
-    const TriangleMesh coarse = run(2, 0.3);
-    EXPECT_LT(coarse.triangles.size(), fine.triangles.size() / 2);
-    EXPECT_LE(compare_meshes(coarse, fine).a_to_b.max, 0.3001) << static_cast<int>(extractor);
-  }
-}
-
-TEST(Extractors, CountTheBorderOfTheComponentsThatAreKept) {
-  GenerateOptions white;
-  white.kind = "white";
-  white.dims = {12, 11, 10};
-  for (const ExtractorKind extractor : kAll) {
-    MeshOptions options = full();
-    options.iso = 0.5;
-    options.closed = false;
-    options.extractor = extractor;
-    const ComponentChoice choice = choose_components(*generate_volume(white), options, {.min_triangles = 20});
-    options.components = borrow(choice);
-    MemorySink sink;
-    const MeshReport report = mesh_volume(*generate_volume(white), sink, options);
-    EXPECT_GT(report.components_dropped, 0U);
-    EXPECT_EQ(check_mesh(sink.mesh).open_edges, report.open_edges) << static_cast<int>(extractor);
-    EXPECT_EQ(count_triangles(*generate_volume(white), options), report.triangles);
-  }
-}
-
-TEST(Extractors, OtherThanCubesAreRefusedOnADevice) {
-  MeshOptions options;
-  RunControl control;
-  control.device = Device::kCuda;
-  EXPECT_NO_THROW(require_possible(RunKind::kMesh, options, control));
-  options.extractor = ExtractorKind::kDual;
-  EXPECT_THROW(require_possible(RunKind::kMesh, options, control), ImpossibleRun);
-  EXPECT_NO_THROW(require_possible(RunKind::kLabels, options, {}));
-}
-
-TEST(Extractors, RefuseMoreSamplesThanTheyCanNumber) {
-  VolumeInfo volume;
-  volume.dims = {1 << 26, 1 << 12, 1 << 12};  // 2^50
-  const auto resolved = [&](ExtractorKind extractor) {
-    MeshOptions options;
-    options.extractor = extractor;
-    resolve(volume, options, {});
-  };
-  EXPECT_NO_THROW(resolved(ExtractorKind::kCubes));
-  EXPECT_NO_THROW(resolved(ExtractorKind::kTetrahedra));
-  EXPECT_THROW(resolved(ExtractorKind::kDual), BadInput);
-}
 
 }  // namespace
 }  // namespace isoweave::testing
