@@ -240,9 +240,9 @@ TEST(CliPage, NoiseIsShownAsCoarselyAsItCanBe) {
   ASSERT_EQ(surfaces.size(), 2U) << surfaces;
   EXPECT_EQ(surfaces[1]["name"], "stand-in");
   EXPECT_GT(surfaces[1]["triangles"], 2000);
-  // 2 % of the diagonal of the volume is the error of a collapse there; distances are a little more.
+  // 2 % of the diagonal of the volume is the error of a collapse there; distances are up to twice that.
   const Json packed = json_in(files::read_bytes(folder / "out.html"), "surface-1");
-  EXPECT_LT(packed["distance"].get<double>(), 1.5 * 0.02 * 24 * std::sqrt(3.0));
+  EXPECT_LT(packed["distance"].get<double>(), 2 * 0.02 * 24 * std::sqrt(3.0));
 }
 
 TEST(CliPage, WhatWasNotSimplifiedAndWhatIsEmptyIsSaid) {
