@@ -81,6 +81,22 @@ void warn_of_values(const Task& task, MeshReport& report) {
                             " by its spacing, origin or axes; sample by sample it is taken for the same place");
 }
 
+void report_samples(const VolumeInfo& volume, const SampleRange& range, MeshReport& report) {
+  const double low = volume.slope * range.min + volume.intercept;
+  const double high = volume.slope * range.max + volume.intercept;
+  report.min = volume.slope > 0 || range.empty() ? low : high;
+  report.max = volume.slope > 0 || range.empty() ? high : low;
+  report.nan = range.nan;
+  if (range.nan == 0) return;
+  report.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
+}
+
+SampleRange range_of_constant(const SampleBytes& sample, const VolumeInfo& volume) {
+  SampleRange range = sample_range(sample.data(), volume.type, 1);
+  range.nan *= static_cast<std::uint64_t>(volume.slice_samples() * volume.dims[2]);
+  return range;
+}
+
 void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report) {
   if (report.triangles > 0) return;
   if (report.components_dropped > 0) {

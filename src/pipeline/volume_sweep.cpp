@@ -1,9 +1,9 @@
 #include "pipeline/volume_sweep.hpp"
 
-#include <string>
 #include <utility>
 
 #include "extract/make_extractor.hpp"
+#include "pipeline/run_report.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
@@ -37,9 +37,7 @@ void VolumeSweep::find_constant() {
   const std::optional<SampleBytes> sample = constant_sample(source_);
   if (!sample || is_inside(*sample, volume.type, task_.rule)) return;
   all_outside_ = true;
-  SampleRange range = sample_range(sample->data(), volume.type, 1);
-  range.nan *= static_cast<std::uint64_t>(volume.slice_samples() * volume.dims[2]);
-  pieces_->set_range(range);
+  pieces_->set_range(range_of_constant(*sample, volume));
 }
 
 void VolumeSweep::step() {
@@ -61,19 +59,7 @@ void VolumeSweep::tell(const SlabRecord& record) {
 
 void VolumeSweep::finish() {
   loop_->finish();
-  report_samples();
-}
-
-void VolumeSweep::report_samples() {
-  const VolumeInfo& volume = task_.volume;
-  const SampleRange& range = pieces_->range();
-  const double low = volume.slope * range.min + volume.intercept;
-  const double high = volume.slope * range.max + volume.intercept;
-  report_.min = volume.slope > 0 || range.empty() ? low : high;
-  report_.max = volume.slope > 0 || range.empty() ? high : low;
-  report_.nan = range.nan;
-  if (range.nan == 0) return;
-  report_.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
+  report_samples(task_.volume, pieces_->range(), report_);
 }
 
 }  // namespace isoweave

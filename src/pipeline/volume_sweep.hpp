@@ -49,7 +49,6 @@ class VolumeSweep {
  private:
   void find_constant();
   void tell(const SlabRecord& record);
-  void report_samples();
 
   SliceSource& source_;
   const Task& task_;
