@@ -26,6 +26,7 @@
 #include "report/report.hpp"
 #include "signals.hpp"
 #include "verbs/mesh_forecast.hpp"
+#include "verbs/mesh_isos.hpp"
 #include "verbs/mesh_labels.hpp"
 #include "verbs/mesh_options.hpp"
 #include "verbs/mesh_state.hpp"
@@ -150,6 +151,7 @@ class MeshJob {
     open();
     if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, info_, control_);
     Evidence evidence(arguments_.run, arguments_.page);
+    if (has_several_isos(arguments_)) return mesh_isos(evidence);
     if (arguments_.iso == "auto") find_iso();
     find_target();
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
@@ -169,6 +171,7 @@ class MeshJob {
     check_watch(arguments_.watch);
     check_possible();
     check_labels(arguments_);
+    check_isos(arguments_);
     if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
       throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
     }
@@ -188,8 +191,11 @@ class MeshJob {
     if (arguments_.watch.given()) control.observer = std::make_shared<NoObserver>();
     control.checkpoint.folder = arguments_.checkpoint;
     control.resume = resume_;
-    const RunKind kind = arguments_.labels.empty() ? RunKind::kMesh : RunKind::kLabels;
-    require_possible({kind, "--labels", asked, control, arguments_.stop, arguments_.components});
+    const bool labels = !arguments_.labels.empty();
+    const bool isos = has_several_isos(arguments_);
+    const RunKind kind = labels ? RunKind::kLabels : isos ? RunKind::kIsoValues : RunKind::kMesh;
+    const char* const name = labels ? "--labels" : "--iso with several values";
+    require_possible({kind, name, asked, control, arguments_.stop, arguments_.components});
   }
 
   // The volumes, and the options that depend on their units and sizes.
@@ -206,6 +212,12 @@ class MeshJob {
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
     control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     control_.stop = borrow(stop_on_signal());
+  }
+
+  // Makes a mesh for each iso-value. A share of the triangles would be another number for each, and is refused.
+  void mesh_isos(Evidence& evidence) {
+    options_.triangles = stop_triangles(arguments_.stop, [] { return std::uint64_t{0}; });
+    mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
   }
 
   void find_iso() {

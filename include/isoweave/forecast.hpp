@@ -30,7 +30,8 @@ struct Forecast {
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
 
 // Adds the forecast of another iso-value of the same volume to that of a run of mesh_iso_values, which begins with an
-// empty one. Slices and the program are in memory once, and zones of all values; triangles and times add up.
+// empty one. Slices and the program are in memory once, and zones of all values; triangles and times add up. Runs with
+// several values have no cap on memory: least_bytes is what they are expected to take.
 void add_iso_value(Forecast& sum, const Forecast& value);
 
 // Adds memory that the process holds during the run beside it to the forecast: what sinks hold (mesh_file_memory), and

@@ -100,7 +100,8 @@ class IsoSweep final : public StrandGuide {
   }
 
   std::int64_t first_kept(std::int64_t done) const {
-    std::int64_t first = done - slices_kept(task_.surface);
+    if (task_.surface.smooth > 0) return done - slices_kept(task_.surface);
+    std::int64_t first = done;
     for (const StrandState& state : sweep_.strands()) {
       if (state.strand != nullptr) first = std::min(first, state.strand->first_needed());
     }

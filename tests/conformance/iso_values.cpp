@@ -195,6 +195,21 @@ TEST(IsoSweepOptions, SlopeAndNaNCountAsInTheirOwnRuns) {
   }
 }
 
+// One slice has caps on both sides, or no cells at all; two have one layer of cells.
+TEST(IsoSweepOptions, ThinVolumesAreThoseOfTheirOwnRuns) {
+  for (const std::int64_t slices : {1, 2, 3}) {
+    for (const bool closed : {true, false}) {
+      for (const ExtractorKind kind : {ExtractorKind::kCubes, ExtractorKind::kDual}) {
+        MeshOptions options;
+        options.closed = closed;
+        options.extractor = kind;
+        SCOPED_TRACE(::testing::Message() << slices << " slices, closed " << closed);
+        expect_same(run_together(options, {}, {12, 11, slices}), run_each(options, {12, 11, slices}));
+      }
+    }
+  }
+}
+
 TEST(IsoSweepOptions, WhatTakesOneSurfaceIsRefused) {
   MemorySink sinks[2];
   const IsoSink surfaces[] = {{120, &sinks[0]}, {140, &sinks[1]}};

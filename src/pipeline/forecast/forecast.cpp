@@ -10,6 +10,7 @@
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 #include "parallel/size.hpp"
+#include "pipeline/forecast/forecast_profile.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
 #include "pipeline/memory_cap.hpp"
@@ -312,7 +313,9 @@ class Forecaster {
     forecast.triangles = to_count(left);
     if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
-    forecast.peak_bytes = to_count(peak(profiles, control_.slab));
+    const Peak of_run = peak(profiles, control_.slab);
+    forecast.peak_bytes = to_count(of_run.bytes);
+    forecast.surface_bytes = to_count(of_run.surface);
     forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
@@ -338,38 +341,6 @@ class Forecaster {
     blocks_ = 1;
     return conclude();
   }
-
-  // The number of triangles below a height, in layers. Between the middles of two blocks the facts go from those of the
-  // one to those of the other; outside they stay.
-  class Profile {
-   public:
-    Profile(std::vector<double> per_layer, double distance) : per_layer_(std::move(per_layer)), distance_(distance) {
-      below_.push_back(per_layer_[0] * distance_ / 2);
-      for (std::size_t n = 1; n < per_layer_.size(); ++n) {
-        below_.push_back(below_.back() + (per_layer_[n - 1] + per_layer_[n]) / 2 * distance_);
-      }
-    }
-
-    double below(double height) const {
-      const double place = std::max(height, 0.0) / distance_ - 0.5;
-      if (place <= 0) return per_layer_[0] * std::max(height, 0.0);
-      const std::size_t n = std::min(static_cast<std::size_t>(place), per_layer_.size() - 1);
-      const double beyond = place - static_cast<double>(n);
-      if (n + 1 == per_layer_.size()) return below_[n] + per_layer_[n] * beyond * distance_;
-      const double here = per_layer_[n] + beyond * (per_layer_[n + 1] - per_layer_[n]);
-      return below_[n] + (per_layer_[n] + here) / 2 * beyond * distance_;
-    }
-
-   private:
-    std::vector<double> per_layer_;
-    double distance_;
-    std::vector<double> below_;  // the middle of each block
-  };
-
-  // The profiles of the open surface, and of the caps.
-  struct Profiles {
-    Profile open, caps;
-  };
 
   Profiles make_profiles() const {
     std::vector<double> open;
@@ -403,8 +374,13 @@ class Forecaster {
     return above(profiles.open, depth) + kCapWeight * above(profiles.caps, kCapDepth * depth);
   }
 
-  // The peak of a run's memory, found by going through its slabs.
-  double peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
+  // The peak of a run's memory, and the part of it that another surface would take once more.
+  struct Peak {
+    double bytes = 0, surface = 0;
+  };
+
+  // The peak is found by going through the slabs of the run.
+  Peak peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
     const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
                             field.slice_bytes(),
@@ -419,7 +395,7 @@ class Forecaster {
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
-    double most = model.fixed();
+    Peak most{model.fixed(), 0};
     double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
@@ -442,18 +418,23 @@ class Forecaster {
       const double fullest = 2 * static_cast<double>(goal.most_vertices);
       while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
       const double triangles = extracted();
-      most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
+      const double bytes = model.peak(static_cast<double>(planned), ring, triangles, undecided);
+      if (bytes > most.bytes) most = {bytes, bytes - model.peak(static_cast<double>(planned), ring, 0, 0)};
       per_layer = triangles / static_cast<double>(recent);
+    }
+    // A smoothed field is one surface's own, with the slices that come out of it.
+    if (options_.smooth > 0) {
+      most.surface = most.bytes - model.fixed() + static_cast<double>(SurfaceField::memory(info_, options_));
     }
     return most;
   }
 
   // The cap that a run should do with, without slack.
   double least_cap(const Profiles& profiles) const {
-    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1) / kUsedPart;
-    const double usual = kCountMargin * peak(profiles, 1) / kUsedPart;
+    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1).bytes / kUsedPart;
+    const double usual = kCountMargin * peak(profiles, 1).bytes / kUsedPart;
     if (!is_out_of_reach(profiles)) return usual;
-    return std::max(usual, peak(profiles, 1, Reachable::kNo) / kUsedPart);
+    return std::max(usual, peak(profiles, 1, Reachable::kNo).bytes / kUsedPart);
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
