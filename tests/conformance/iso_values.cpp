@@ -6,6 +6,7 @@
 
 #include "label_maps.hpp"
 #include "surfaces.hpp"
+#include "volume/row_source.hpp"
 
 namespace isoweave::testing {
 namespace {
@@ -207,6 +208,39 @@ TEST(IsoSweepOptions, ThinVolumesAreThoseOfTheirOwnRuns) {
         expect_same(run_together(options, {}, {12, 11, slices}), run_each(options, {12, 11, slices}));
       }
     }
+  }
+}
+
+// A volume of one value that declares more samples than anyone can read.
+class Blank final : public RowSource {
+ public:
+  Blank() {
+    info_.path = "blank";
+    info_.dims = {1 << 17, 1 << 17, 1 << 17};
+    info_.type = SampleType::kUint8;
+  }
+  const VolumeInfo& info() const override { return info_; }
+  void read(std::int64_t, std::int64_t, std::span<std::byte>) override { throw std::logic_error("it is read"); }
+  void read_rows(std::int64_t, std::int64_t, std::int64_t, std::span<std::byte>) override {
+    throw std::logic_error("rows of it are read");
+  }
+  std::optional<SampleBytes> constant() const override { return SampleBytes{std::byte{7}}; }
+
+ private:
+  VolumeInfo info_;
+};
+
+TEST(IsoSweepOptions, AVolumeOfOneValueOutsideIsNotRead) {
+  Blank blank;
+  std::array<MemorySink, 2> sinks;
+  const IsoSink surfaces[] = {{8, &sinks[0]}, {9.5, &sinks[1]}};
+  const IsoValuesReport report = mesh_iso_values(blank, surfaces, {});
+  EXPECT_EQ(report.total.min, 7);
+  EXPECT_EQ(report.total.max, 7);
+  for (std::size_t n = 0; n < 2; ++n) {
+    EXPECT_TRUE(sinks[n].finished);
+    EXPECT_EQ(report.meshes[n].triangles, 0U);
+    EXPECT_EQ(report.meshes[n].warnings.size(), 1U);
   }
 }
 
