@@ -1,10 +1,16 @@
 // The command line: picks the verb, and turns every error into one line and an exit code.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <sstream>
 #include <stdexcept>
 
+#include "help/help_text.hpp"
+#include "help/manual.hpp"
+#include "help/option_table.hpp"
+#include "help/usage_errors.hpp"
 #include "options/values.hpp"
 #include "report/print.hpp"
 #include "signals.hpp"
@@ -16,24 +22,26 @@ namespace {
 constexpr const char* kExamples = R"(
 Examples:
   isoweave info scan.nii.gz
-  isoweave mesh scan.nii.gz -o bone.ply --iso 300 --error 0.2vox --report bone.json
-  isoweave mesh foot_256x256x256_uint8.raw -o foot.stl --iso auto
+  isoweave mesh scan.nii.gz --iso 300 -o bone.ply
   isoweave check bone.ply
-  isoweave compare bone.ply reference.ply --voxel 0.5
   isoweave render bone.ply -o bone.png
-  isoweave view bone.ply
 
-Exit codes: 0 done, 2 usage, 3 bad input, 4 cannot write, 5 not enough memory, 6 device, 130 interrupted.
-isoweave VERB --help says more.)";
+Exit codes: 0 done, 2 usage, 3 bad input, 4 cannot write, 5 not enough memory,
+6 device, 130 interrupted.
+isoweave help VERB says more.)";
 
 void check_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
   std::string verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : verbs_of(app)) {
+    names.push_back(verb->get_name());
     if (!arguments.empty() && verb->get_name() == arguments[0]) return;
     verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
   }
   if (arguments.empty()) throw std::invalid_argument("expected a verb: " + verbs + "; see isoweave --help");
-  if (!arguments[0].starts_with('-')) wrong_value("verb", "one of " + verbs, arguments[0]);
+  if (arguments[0].starts_with('-')) return;
+  const std::string meant = nearest(arguments[0], names);
+  wrong_value("verb", "one of " + verbs, arguments[0] + (meant.empty() ? "" : "', did you mean '" + meant));
 }
 
 // Empty values are refused: where a variable of a script is empty, its option would be ignored in silence.
@@ -46,32 +54,83 @@ void refuse_empty_values(CLI::App& app) {
   }
 }
 
-int run(const std::vector<std::string>& arguments) {
-  CLI::App app("Large volumes to simplified triangle surfaces, exactly, in bounded memory", "isoweave");
-  app.set_version_flag("--version", "isoweave " ISOWEAVE_VERSION);
-  app.set_help_flag("-h,--help", "Say what there is");
-  app.require_subcommand(1);
-  app.footer(kExamples);
+// Prints what "isoweave help ..." asks for: a man page or a script for a shell.
+void print_manual(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const std::string last = arguments.size() > 2 ? arguments[2] : "";
+  if (arguments[1] == "--completion") return print_to_reader(completion_script(app, last));
+  if (!last.empty()) check_verb(app, {last});
+  print_to_reader(man_page(last.empty() ? app : *app.get_subcommand(last)));
+}
+
+// "help VERB" is "VERB --help".
+std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0] != "help") return arguments;
+  if (arguments.size() == 1) return {"--help"};
+  return {arguments[1], "--help"};
+}
+
+void add_verbs(CLI::App& app) {
   add_mesh_verb(app);
   add_simplify_verb(app);
   add_info_verb(app);
+  add_index_verb(app);
   add_check_verb(app);
   add_compare_verb(app);
   add_render_verb(app);
   add_view_verb(app);
   add_generate_verb(app);
   refuse_empty_values(app);
+  describe_options(app);
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) describe_options(*verb);
+}
+
+// The verb whose help tells of a usage error: " mesh", or nothing.
+std::string verb_in(const CLI::App& app, const std::vector<std::string>& arguments) {
+  for (const CLI::App* verb : verbs_of(app)) {
+    if (!arguments.empty() && arguments[0] == verb->get_name()) return " " + arguments[0];
+  }
+  return "";
+}
+
+[[noreturn]] void refuse(const CLI::App& app, const std::vector<std::string>& arguments, const std::string& message) {
+  throw std::invalid_argument(fmt::format("{}; see isoweave{} --help", message, verb_in(app, arguments)));
+}
+
+void parse(CLI::App& app, const std::vector<std::string>& arguments) {
+  const std::string name = verb_in(app, arguments);
+  const CLI::App& verb = name.empty() ? app : *app.get_subcommand(arguments[0]);
+  const std::string unknown = name.empty() ? "" : unknown_option(verb, arguments);
+  if (!unknown.empty()) refuse(app, arguments, unknown);
   try {
-    check_verb(app, arguments);
     // CLI11 takes the arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& wish) {
     std::ostringstream text;
     app.exit(wish, text, text);
     print_to_reader(text.str());
+  } catch (const CLI::ExtrasError& error) {
+    const std::string extra = extra_text(verb, arguments);
+    refuse(app, arguments, extra.empty() ? error.what() : extra);
   } catch (const CLI::ParseError& error) {
-    throw std::invalid_argument(std::string(error.what()) + "; see isoweave --help");
+    refuse(app, arguments, missing_text(error.what()));
   }
+}
+
+int run(const std::vector<std::string>& given) {
+  CLI::App app("Turn large 3-D volumes into simplified triangle meshes", "isoweave");
+  app.set_version_flag("--version", "isoweave " ISOWEAVE_VERSION, "Show the version");
+  app.set_help_flag("-h,--help", "Show this help");
+  app.require_subcommand(1);
+  app.footer(kExamples);
+  use_help_text(app);
+  add_verbs(app);
+  if (given.size() > 1 && given[0] == "help" && given[1].starts_with("--")) {
+    print_manual(app, given);
+    return 0;
+  }
+  const std::vector<std::string> arguments = without_help_verb(given);
+  check_verb(app, arguments);
+  parse(app, arguments);
   return 0;
 }
 

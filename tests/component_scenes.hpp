@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "extract/marching_cubes.hpp"
 #include "oracle.hpp"
 #include "output/world.hpp"
 

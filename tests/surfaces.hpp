@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "extract/marching_cubes.hpp"
+#include "extract/make_extractor.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/generate.hpp"
 #include "isoweave/measure.hpp"
@@ -85,6 +85,7 @@ struct SurfaceCase {
   bool drop_specks = false;
   double max_distance = 0;  // mean voxels
   bool normals_count = false;
+  ExtractorKind extractor = ExtractorKind::kCubes;
 
   IsoRule rule() const { return {suggested_iso(volume.kind, volume.type), true, closed}; }
   double voxel() const { return cube_root(volume.spacing[0] * volume.spacing[1] * volume.spacing[2]); }
@@ -92,13 +93,14 @@ struct SurfaceCase {
   ZoneOptions zone() const {
     const double a0 = voxel() * voxel();
     const auto& [x, y, z] = volume.spacing;
-    return {VertexNumbering::of_cube_edges(volume.dims),
+    const double reach = cells_of_triangle(extractor);
+    return {numbering_of(extractor, volume.dims),
             a0,
             retire_cost(error * voxel(), a0),
             drop_specks,
             max_distance * voxel(),
             {x, y, z},
-            {x, y, z},
+            {reach * x, reach * y, reach * z},
             normals_count,
             quality};
   }
@@ -114,18 +116,19 @@ template <class Decide>
 SurfaceRun sweep(const SurfaceCase& surface, std::int64_t slab, const Executor& executor, Simplifier& simplifier,
                  Decide&& decide) {
   const auto source = generate_volume(surface.volume);
-  MarchingCubes extractor(source->info(), {surface.rule(), surface.normals_count}, executor);
+  const std::unique_ptr<Extractor> extractor =
+      make_extractor(surface.extractor, source->info(), {surface.rule(), surface.normals_count}, executor);
   SliceWindow window(*source);
   MemorySink sink;
   const World world;
   FinalOutput output(world, sink, executor);
   SurfacePiece piece;
   SurfaceRun run;
-  while (extractor.layers_left() > 0) {
-    const std::int64_t layers = std::min(slab, extractor.layers_left());
-    const auto [first, end] = extractor.slices_for(layers);
+  while (extractor->layers_left() > 0) {
+    const std::int64_t layers = std::min(slab, extractor->layers_left());
+    const auto [first, end] = extractor->slices_for(layers);
     window.advance(first, end);
-    extractor.extract(window, layers, ~std::uint64_t{0}, piece);
+    extractor->extract(window, layers, ~std::uint64_t{0}, piece);
     run.report.triangles_extracted += piece.triangles.size();
     run.report.vertices_extracted += piece.positions.size();
     simplifier.append(piece);

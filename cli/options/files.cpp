@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
+
+#include "isoweave/error.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -36,6 +39,33 @@ void check_different(std::initializer_list<std::string_view> paths) {
         throw std::invalid_argument(fmt::format("{}: would be written over {}, expected different files", *b, *a));
       }
     }
+  }
+}
+
+std::string usual_output(const std::string& input, std::string_view more, std::string_view ending) {
+  constexpr std::string_view kPacked = ".gz";
+  const bool unnamed = is_read_once(input) || input.find_first_of("*?[") != std::string::npos;
+  if (unnamed || input.starts_with("generate:")) throw CLI::RequiredError("--output");
+  std::filesystem::path path(input);
+  if (!path.has_filename()) path = path.parent_path();
+  if (path.extension() == kPacked) path.replace_extension();
+  path.replace_filename(path.stem().string() + std::string(more) + std::string(ending));
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    throw CannotWrite(fmt::format("{}: exists; -o names the file that is to be written", path.string()));
+  }
+  return path.string();
+}
+
+void add_clobber_option(CLI::App& verb, bool& no_clobber) {
+  verb.add_flag("--no-clobber", no_clobber, "Refuse to replace a file that exists");
+}
+
+void check_absent(bool no_clobber, std::initializer_list<std::string_view> outputs) {
+  for (const std::string_view output : outputs) {
+    std::error_code error;
+    if (!no_clobber || output.empty() || !std::filesystem::exists(output, error)) continue;
+    throw CannotWrite(fmt::format("{}: exists, and --no-clobber keeps it", output));
   }
 }
 

@@ -30,12 +30,24 @@ UnevenSlices parse_uneven(std::string_view text) {
       {{"resample", UnevenSlices::kResample}, {"mean", UnevenSlices::kMean}, {"refuse", UnevenSlices::kRefuse}});
 }
 
+// The layout, with its type in any spelling. What is wrong with it is said by the option's name.
+RawLayout parse_raw(const std::string& text) {
+  std::string plain;
+  for (const std::string_view part : split(text, ':')) plain += (plain.empty() ? "" : ":") + type_name(part);
+  try {
+    return parse_raw_layout(plain);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--raw: ") + error.what());
+  }
+}
+
 std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   if (const std::optional<GenerateOptions> generated = generated_input(input)) return generate_volume(*generated);
   OpenOptions options;
-  if (!input.raw.empty()) options.raw = parse_raw_layout(input.raw);
-  if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
+  if (!input.raw.empty()) options.raw = parse_raw(input.raw);
+  if (!input.spacing.empty()) options.spacing = parse_spacing("--spacing", input.spacing);
   if (!input.origin.empty()) options.origin = parse_triple("--origin", input.origin);
+  options.unit = input.unit;
   options.series = input.series;
   options.dataset = input.dataset;
   options.level = parse_index("--level", input.level);
@@ -79,8 +91,11 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
                   "'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
   verb.add_option("--raw", input.raw,
                   "Read headerless data: WxHxD:TYPE[:big][:skip=N]; of a folder or pattern, a file for each slice");
-  verb.add_option("--spacing", input.spacing, "Spacing x,y,z of the samples, instead of the file's");
+  verb.add_option("--spacing", input.spacing,
+                  "Spacing of the samples, or one number for all axes, instead of the file's");
   verb.add_option("--origin", input.origin, "Position x,y,z of the first sample, instead of the file's");
+  verb.add_option("--unit", input.unit,
+                  "Unit of the spacing: mm, um, nm, m, cm, ...; without it the file's, and mm where the file has none");
   verb.add_option("--series", input.series, "Which DICOM series of a folder, by its UID; none: the one without a UID");
   verb.add_option(
       "--even-spacing", input.even_spacing,
@@ -88,8 +103,7 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
       "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
                   "Which array of an HDF5, NPZ or VTK file or of a Zarr or N5 folder, by its path or name in it");
-  verb.add_option("--level", input.level,
-                  "Which of the sizes of an image in OME-Zarr, N5 or Imaris, 0 being the full one");
+  verb.add_option("--level", input.level, "Resolution level of OME-Zarr, N5 or Imaris; 0 is the full size");
   verb.add_option("--channel", input.channel, "Which channel of a stack or array, from 0");
   verb.add_option("--time", input.time, "Which time or frame of a stack or array, from 0");
   verb.add_option("--slices-from", input.slices_from,
@@ -112,7 +126,8 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
                                       {"--channel", &input.channel},
                                       {"--time", &input.time},
                                       {"--slices-from", &input.slices_from},
-                                      {"--even-spacing", &input.even_spacing}}) {
+                                      {"--even-spacing", &input.even_spacing},
+                                      {"--unit", &input.unit}}) {
     if (!value->empty()) throw std::invalid_argument(fmt::format("{} does not go with a generated volume", option));
   }
   const std::vector<std::string_view> parts = split(std::string_view(input.path).substr(kGeneratePrefix.size()), ':');
@@ -121,7 +136,7 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
   options.kind = parts[0];
   options.dims = parse_size("VOLUME", parts[1]);
   if (parts.size() > 2) {
-    const std::optional<SampleType> type = parse_sample_type(parts[2]);
+    const std::optional<SampleType> type = parse_sample_type(type_name(parts[2]));
     if (!type) wrong_value("VOLUME", "a type such as uint8, int16 or float32", parts[2]);
     options.type = *type;
   }
@@ -130,7 +145,7 @@ std::optional<GenerateOptions> generated_input(const InputOptions& input) {
     if (!seed) wrong_value("VOLUME", "a seed that is a whole number", parts[3]);
     options.seed = *seed;
   }
-  if (!input.spacing.empty()) options.spacing = parse_triple("--spacing", input.spacing);
+  if (!input.spacing.empty()) options.spacing = parse_spacing("--spacing", input.spacing);
   return options;
 }
 

@@ -17,6 +17,7 @@ struct InputOptions {
   std::string raw, spacing, origin, series, dataset, level, channel, time, slices_from, roi, step;
   std::string even_spacing;  // empty: resample, but refuse where labels are read
   bool external = true;      // a header may name other files
+  std::string unit;          // empty: that of the file
 };
 
 void add_input_options(CLI::App& verb, InputOptions& input);

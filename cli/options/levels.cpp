@@ -78,6 +78,13 @@ LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
   for (const auto& sink : sinks_) pointers_.push_back(sink.get());
 }
 
+void LevelSinks::tell_digests(MeshReport& report) const {
+  report.digest = file_digest(*sinks_.back(), report.digest);
+  for (std::size_t level = 0; level < report.levels.size(); ++level) {
+    report.levels[level].digest = file_digest(*sinks_[level], report.levels[level].digest);
+  }
+}
+
 std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs) {
   std::vector<TriangleMesh> meshes;
   for (std::size_t level = 0; level + 1 < outputs.size(); ++level) meshes.push_back(read_mesh(outputs[level].path));

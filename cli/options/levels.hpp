@@ -40,6 +40,9 @@ class LevelSinks {
   std::span<MeshSink* const> pointers() const { return pointers_; }
   const MeshSink& last() const { return *sinks_.back(); }
 
+  // Gives the report the digests of the meshes as they are in their files.
+  void tell_digests(MeshReport& report) const;
+
  private:
   std::vector<std::unique_ptr<MeshSink>> sinks_;
   std::vector<MeshSink*> pointers_;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "options/files.hpp"
 #include "options/values.hpp"
 
 namespace isoweave::cli {
@@ -14,6 +15,8 @@ void add_run_options(CLI::App& verb, RunOptions& run) {
       ->capture_default_str();
   verb.add_option("--report", run.report, "Write what was done and measured to this JSON file");
   verb.add_option("--progress", run.progress, "auto (a bar on a terminal), always or never")->capture_default_str();
+  verb.add_flag("--allow-empty", run.allow_empty, "Write a mesh without triangles too, instead of exit code 3");
+  add_clobber_option(verb, run.no_clobber);
   verb.add_flag("--quiet", run.quiet, "Say nothing but errors");
 }
 
@@ -27,6 +30,7 @@ RunControl run_control(const RunOptions& run) {
                                              {"rounds", Schedule::kRounds}});
   control.device = parse_choice<Device>("--device", run.device,
                                         {{"auto", Device::kAutomatic}, {"cpu", Device::kCpu}, {"cuda", Device::kCuda}});
+  control.allow_empty = run.allow_empty;
   return control;
 }
 

@@ -14,7 +14,7 @@ struct RunOptions {
   std::string threads = "all", device = "auto", schedule = "auto";
   std::string report;
   std::string progress = "auto";
-  bool quiet = false;
+  bool quiet = false, allow_empty = false, no_clobber = false;
 };
 
 void add_run_options(CLI::App& verb, RunOptions& run);

@@ -15,20 +15,20 @@ namespace isoweave::cli {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option("--error", stop.error,
-                  "Simplification error: a length in vox, mm, um, nm, in or the input's unit; 0: none");
-  CLI::Option* const triangles = verb.add_option(
-      "--triangles", stop.triangles,
-      "Stop at this number of triangles, or at the error; without --error at a twentieth of the volume's "
-      "diagonal");
-  verb.add_option("--ratio", stop.ratio, "Stop at this part of the full surface's triangles; a volume is read twice")
+                  "How far the surface may move, typically (RMS); the largest distance may be several times that, see "
+                  "--max-distance. In vox, mm, um, nm, in, or the unit of the input; 0: no simplification");
+  CLI::Option* const triangles =
+      verb.add_option("--triangles", stop.triangles,
+                      "Stop at so many triangles, or earlier at --error (without it: at a twentieth of the diagonal)");
+  verb.add_option("--ratio", stop.ratio,
+                  "Stop at this part of the full surface's triangles, such as 10%; a volume is read twice")
       ->excludes(triangles);
   verb.add_option("--lods", stop.lods,
-                  "Several errors E1,E2,... from one sweep: -o a.ply makes a_lod0.ply, the finest, a_lod1.ply, ...")
+                  "Several errors E1,E2,... in one sweep: -o a.ply makes a_lod0.ply (the finest), a_lod1.ply, ...")
       ->excludes("--error", "--triangles", "--ratio", "--to-stdout");
   verb.add_option("--max-distance", stop.max_distance,
                   "Guarantee: no point of the result is farther than this length from the full surface");
-  verb.add_option("--specks", stop.specks,
-                  "keep, or drop: a closed component that has shrunk to a tetrahedron within the error vanishes")
+  verb.add_option("--specks", stop.specks, "drop: remove closed pieces that are smaller than the error; or keep")
       ->capture_default_str();
 }
 
@@ -50,7 +50,8 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
 
 bool has_metric_length(const StopOptions& stop) {
   const auto is_metric = [](const std::string& text) {
-    return !text.empty() && text.find_last_not_of("0123456789.") == text.size() - 1 && !text.ends_with("vox");
+    return !text.empty() && text.find_last_not_of("0123456789.") == text.size() - 1 &&
+           text.find("vox") == std::string::npos;
   };
   const std::vector<StopOptions> levels = stop_levels(stop);
   return is_metric(stop.max_distance) ||
@@ -71,16 +72,23 @@ Length stop_distance(const StopOptions& stop, std::string_view unit) {
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
   if (!stop.triangles.empty()) return static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
   if (stop.ratio.empty()) return 0;
-  const double ratio = parse_number("--ratio", stop.ratio);
+  const double ratio = parse_share("--ratio", stop.ratio);
   if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
   return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
 }
 
-void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit) {
+void print_target(const StopOptions& stop, const MeshReport& report, std::uint64_t asked, const Length& allowed,
+                  const std::string& unit) {
   if (asked == 0) return;
-  const auto text = [&](double length) { return fmt::format("{:.4g}{}{}", length, unit.empty() ? "" : " ", unit); };
-  print_note("error reached: " + text(report.error));
+  const auto text = [&](double length) { return fmt::format("{:.4g} {}", length, unit_text(unit)); };
+  print_note(
+      fmt::format("error reached: {} (of the last collapses; most of the surface moved far less)", text(report.error)));
   if (report.triangles <= asked) return;
+  const bool all_tetrahedra = report.open_edges == 0 && report.triangles <= 4 * report.components;
+  if (!stop.error.empty() && !all_tetrahedra) {
+    print_note(fmt::format("stopped by --error {} at {} of {} triangles", stop.error, grouped(report.triangles),
+                           grouped(asked)));
+  }
   print_note(
       fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
                   "them, or an --error above {}",

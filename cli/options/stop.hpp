@@ -45,7 +45,8 @@ std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::u
 
 // Prints how a run to a number of triangles ended: the error that it reached and, where more triangles are left than
 // were asked for, the ways to leave fewer. Prints nothing for a run to an error.
-void print_target(const MeshReport& report, std::uint64_t asked, const Length& allowed, const std::string& unit);
+void print_target(const StopOptions& stop, const MeshReport& report, std::uint64_t asked, const Length& allowed,
+                  const std::string& unit);
 
 // "error 0.2vox", "triangles 20000", or both; and "specks drop".
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles);

@@ -14,6 +14,14 @@ std::optional<double> to_finite(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+// "0.2voxels" as "0.2vox".
+std::string short_length(const std::string& text) {
+  for (const std::string_view name : {"voxels", "voxel"}) {
+    if (text.ends_with(name)) return text.substr(0, text.size() - name.size()) + "vox";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -36,10 +44,30 @@ double parse_number(std::string_view option, std::string_view text) {
   return *value;
 }
 
+double parse_share(std::string_view option, std::string_view text) {
+  constexpr double kPercent = 0.01;
+  std::string_view digits = text;
+  const bool percent = digits.ends_with('%');
+  if (percent) digits.remove_suffix(1);
+  const std::optional<double> value = to_finite(digits);
+  if (!value) wrong_value(option, "a number or a percentage", text);
+  return *value * (percent ? kPercent : 1);
+}
+
 std::int64_t parse_count(std::string_view option, std::string_view text) {
-  const std::optional<std::int64_t> value = to_number<std::int64_t>(text);
-  if (!value || *value < 1) wrong_value(option, "a whole number of at least 1", text);
-  return *value;
+  constexpr double kMost = 9e18;
+  std::string_view digits = text;
+  double factor = 1;
+  if (digits.ends_with('k') || digits.ends_with('K')) factor = 1e3;
+  if (digits.ends_with('M')) factor = 1e6;
+  if (factor > 1) digits.remove_suffix(1);
+  const std::optional<std::int64_t> value = to_number<std::int64_t>(digits);
+  if (value && *value >= 1 && factor == 1) return *value;
+  const std::optional<double> part = to_finite(digits);
+  const bool whole = part && factor > 1 && *part * factor >= 1 && *part * factor < kMost &&
+                     std::floor(*part * factor) == *part * factor;
+  if (!whole) wrong_value(option, "a whole number of at least 1, such as 5000 or 50k", text);
+  return static_cast<std::int64_t>(*part * factor);
 }
 
 int parse_port(std::string_view option, std::string_view text) {
@@ -81,6 +109,25 @@ std::array<double, 3> parse_triple(std::string_view option, std::string_view tex
   return values;
 }
 
+std::array<double, 3> parse_spacing(std::string_view option, std::string_view text) {
+  const std::optional<double> all = to_finite(text);
+  if (all) return {*all, *all, *all};
+  return parse_triple(option, text);
+}
+
+std::string type_name(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kNames{
+      {{"u8", "uint8"},   {"i8", "int8"},     {"u16", "uint16"},    {"i16", "int16"},      {"u32", "uint32"},
+       {"i32", "int32"},  {"u64", "uint64"},  {"i64", "int64"},     {"f32", "float32"},    {"f64", "float64"},
+       {"byte", "uint8"}, {"uchar", "uint8"}, {"char", "int8"},     {"short", "int16"},    {"ushort", "uint16"},
+       {"int", "int32"},  {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}, {"s16", "int16"},
+       {"s8", "int8"}}};
+  for (const auto& [name, known] : kNames) {
+    if (name == text) return std::string(known);
+  }
+  return std::string(text);
+}
+
 std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text) {
   std::vector<std::string_view> parts = split(text, 'x');
   if (parts.size() == 1) parts.assign(3, parts[0]);
@@ -96,7 +143,7 @@ std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view
 
 Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit) {
   try {
-    const Length length = parse_length(text, unit);
+    const Length length = parse_length(short_length(text), unit);
     if (std::isfinite(length.value) && length.value >= 0) return length;
   } catch (const std::invalid_argument&) {
     // The library does not know which option the text came from.

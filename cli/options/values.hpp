@@ -35,11 +35,20 @@ std::optional<T> to_number(std::string_view text) {
   return value;
 }
 
+// A part: "0.1" or "10%".
+double parse_share(std::string_view option, std::string_view text);
+
 double parse_number(std::string_view option, std::string_view text);
-std::int64_t parse_count(std::string_view option, std::string_view text);                // at least 1
-int parse_port(std::string_view option, std::string_view text);                          // 0 to 65535
-std::uint64_t parse_bytes(std::string_view option, std::string_view text);               // "800M", "2G", "1.5Gi"
-std::array<double, 3> parse_triple(std::string_view option, std::string_view text);      // "x,y,z"
+std::int64_t parse_count(std::string_view option, std::string_view text);            // at least 1
+int parse_port(std::string_view option, std::string_view text);                      // 0 to 65535
+std::uint64_t parse_bytes(std::string_view option, std::string_view text);           // "800M", "2G", "1.5Gi"
+std::array<double, 3> parse_triple(std::string_view option, std::string_view text);  // "x,y,z"
+// Three numbers, or one for all three.
+std::array<double, 3> parse_spacing(std::string_view option, std::string_view text);
+
+// The name of a type of samples: "uint8" for "u8" or "byte", anything else as it is.
+std::string type_name(std::string_view text);
+
 std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text);  // "N" or "WxHxD"
 
 // Parses a length, with the option's name in its message. Refuses lengths that cannot be an error.

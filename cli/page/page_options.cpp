@@ -41,11 +41,12 @@ void check_page(const PageOptions& page, std::string_view wanted) {
 void check_page(const PageOptions& page, const OutputOptions& output) {
   if (!page.given()) return;
   check_page(page, "--html");
-  const bool readable = output.to_stdout.empty() && !output.compress && !output.one_file;
+  const bool readable = output.to_stdout.empty() && !output.compress && !output.one_file && !output.placing.given();
   if (readable && output_format(output) != MeshFormat::kPrecomputed) return;
   const std::string found = !output.to_stdout.empty() ? "--to-stdout"
                             : output.compress         ? "--compress"
                             : output.one_file         ? "--one-file"
+                            : output.placing.given()  ? "one that is scaled or moved"
                                                       : output.path;
   wrong_value("--html", "a mesh file that isoweave can read again", found);
 }

@@ -53,6 +53,9 @@ void draw_line(std::string_view text) { write_to(stderr, "\r\x1b[K" + one_line(t
 
 int report_error(const std::exception& error) {
   const auto is = [&]<class E>(const E*) { return dynamic_cast<const E*>(&error) != nullptr; };
+  if (is(static_cast<EmptySurface*>(nullptr))) {
+    return fail(kExitBadInput, fmt::format("{} (--allow-empty writes an empty mesh)", error.what()));
+  }
   if (is(static_cast<BadInput*>(nullptr))) return fail(kExitBadInput, error.what());
   if (is(static_cast<CannotWrite*>(nullptr))) return fail(kExitCannotWrite, error.what());
   if (is(static_cast<OverMemory*>(nullptr))) return fail(kExitOverMemory, error.what());
@@ -63,6 +66,12 @@ int report_error(const std::exception& error) {
   }
   if (is(static_cast<std::invalid_argument*>(nullptr))) return fail(kExitUsage, error.what());
   return fail(kExitInternal, fmt::format("internal error: {}", error.what()));
+}
+
+std::string unit_text(std::string_view unit) { return unit.empty() ? "mm" : printable(unit); }
+
+std::string size_text(const std::array<double, 3>& size, std::string_view unit) {
+  return fmt::format("{:.6g} x {:.6g} x {:.6g} {}", size[0], size[1], size[2], unit_text(unit));
 }
 
 std::string grouped(std::uint64_t number) {

@@ -1,6 +1,7 @@
 // The texts that the program prints: results on standard output, everything else on standard error.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <string>
@@ -34,6 +35,12 @@ void draw_line(std::string_view text);
 
 // Prints an error and returns its exit code.
 int report_error(const std::exception& error);
+
+// The unit of a length: "mm" where none is said, as everywhere.
+std::string unit_text(std::string_view unit);
+
+// Three lengths with their unit: "181 x 217 x 181 mm".
+std::string size_text(const std::array<double, 3>& size, std::string_view unit);
 
 // 1234567 -> "1,234,567"; 1234567 -> "1.23 M"; 1572864 -> "1.57 MB".
 std::string grouped(std::uint64_t number);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "report/print.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr auto kBarInterval = std::chrono::milliseconds(100);
 constexpr auto kLineInterval = std::chrono::seconds(3);
-constexpr std::size_t kShortestBar = 5;
-constexpr std::size_t kLongestBar = 20;
+constexpr std::size_t kBar = 10;
+constexpr std::size_t kWidthWithBar = 40;
 
 std::size_t terminal_width() {
   winsize size{};
@@ -28,13 +29,9 @@ double fraction_done(const Progress& progress) {
   return std::clamp(static_cast<double>(progress.layer) / static_cast<double>(progress.layers), 0.0, 1.0);
 }
 
-// A bar as long as there is room for, or none.
-std::string bar_text(double fraction, std::size_t room) {
-  constexpr std::size_t kFrame = 3;
-  if (room < kShortestBar + kFrame) return {};
-  const std::size_t length = std::min(room - kFrame, kLongestBar);
-  const auto full = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(length)));
-  return fmt::format("[{:.<{}}] ", std::string(full, '#'), length);
+std::string bar_text(double fraction) {
+  const auto full = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(kBar)));
+  return fmt::format("[{:.<{}}] ", std::string(full, '#'), kBar);
 }
 
 std::string time_text(double seconds) {
@@ -43,17 +40,37 @@ std::string time_text(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+// The parts of a line, the most important ones first.
+std::vector<std::string> progress_parts(const Progress& progress, double seconds) {
+  const double fraction = fraction_done(progress);
+  std::vector<std::string> parts{fmt::format("{:.0f} %", std::floor(100 * fraction))};
+  if (fraction > 0 && fraction < 1) parts.push_back(time_text(seconds * (1 - fraction) / fraction) + " left");
+  parts.push_back(fmt::format("layer {} of {}", progress.layer, progress.layers));
+  if (seconds > 0)
+    parts.push_back(fmt::format("{:.1f} Mvoxel/s", static_cast<double>(progress.voxels) * 1e-6 / seconds));
+  if (progress.live_triangles + progress.final_triangles > 0) {
+    parts.push_back(short_count(static_cast<double>(progress.live_triangles)) + " live triangles");
+  }
+  if (progress.bytes > 0) parts.push_back(byte_text(progress.bytes));
+  return parts;
+}
+
 }  // namespace
 
+std::string progress_line(const Progress& progress, double seconds, std::size_t width) {
+  std::string text = width >= kWidthWithBar ? bar_text(fraction_done(progress)) : "";
+  std::string comma;
+  for (const std::string& part : progress_parts(progress, seconds)) {
+    if (text.size() + comma.size() + part.size() > width) break;
+    text += comma + part;
+    comma = ", ";
+  }
+  return text;
+}
+
 std::string progress_text(const Progress& progress, double seconds) {
-  std::string text = fmt::format("layer {} of {}", progress.layer, progress.layers);
-  if (seconds > 0) text += fmt::format(", {:.1f} Mvoxel/s", static_cast<double>(progress.voxels) * 1e-6 / seconds);
-  const std::uint64_t triangles = progress.live_triangles + progress.final_triangles;
-  if (triangles > 0)
-    text += fmt::format(", {} live triangles", short_count(static_cast<double>(progress.live_triangles)));
-  if (progress.bytes > 0) text += ", " + byte_text(progress.bytes);
-  const double fraction = fraction_done(progress);
-  if (fraction > 0 && fraction < 1) text += ", " + time_text(seconds * (1 - fraction) / fraction) + " left";
+  std::string text;
+  for (const std::string& part : progress_parts(progress, seconds)) text += (text.empty() ? "" : ", ") + part;
   return text;
 }
 
@@ -71,15 +88,12 @@ void ProgressPrinter::show(const Progress& progress) {
   const Clock::duration interval = on_terminal_ ? Clock::duration(kBarInterval) : Clock::duration(kLineInterval);
   if (now - last_ < interval && !complete) return;
   last_ = now;
-  const std::string text = progress_text(progress, std::chrono::duration<double>(now - start_).count());
+  const double seconds = std::chrono::duration<double>(now - start_).count();
   if (!on_terminal_) {
-    print_note(text);
+    print_note(progress_text(progress, seconds));
     return;
   }
-  const std::size_t width = terminal_width() - 1;
-  const std::size_t room = width - std::min(width, text.size());
-  const std::string line = (bar_text(fraction_done(progress), room) + text).substr(0, width);
-  draw_line(line);
+  draw_line(progress_line(progress, seconds, terminal_width() - 1));
   bar_drawn_ = true;
 }
 

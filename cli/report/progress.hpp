@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -34,7 +35,10 @@ class ProgressPrinter {
   Clock::time_point last_;
 };
 
-// The parts of a progress line; `seconds` since the start.
+// What a run has done, in one line; `seconds` since the start. Percent and time left come first.
 std::string progress_text(const Progress& progress, double seconds);
+
+// The same with a bar, for a terminal of so many columns: what does not fit is left out at the end.
+std::string progress_line(const Progress& progress, double seconds, std::size_t width);
 
 }  // namespace isoweave::cli

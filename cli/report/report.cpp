@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -129,6 +130,13 @@ Json run_json(const MeshReport& report, Json input) {
   return json;
 }
 
+Json left_out_json(const LeftOutReport& left_out, const std::string& path) {
+  return {{"path", path},
+          {"chunks", left_out.chunks},
+          {"chunks_left_out", left_out.chunks_left_out},
+          {"bytes_left_out", left_out.bytes_left_out}};
+}
+
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
   return {{"triangles_extracted", forecast.triangles_extracted},
           {"triangles", forecast.triangles},
@@ -160,8 +168,28 @@ Json check_json(const MeshCheck& check, const std::string& path) {
           {"digest", digest_text(check.digest)}};
 }
 
+Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  bool first = true;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double place = mesh.offset[axis] + double{mesh.vertices[v][axis]};
+        box.low[axis] = first ? place : std::min(box.low[axis], place);
+        box.high[axis] = first ? place : std::max(box.high[axis], place);
+      }
+      first = false;
+    }
+  }
+  return box;
+}
+
 Json place_json(const TriangleMesh& mesh) {
-  return {{"unit", mesh.unit}, {"space", mesh.space}, {"offset", mesh.offset}};
+  const Box box = box_of(mesh);
+  return {{"unit", mesh.unit},
+          {"space", mesh.space},
+          {"offset", mesh.offset},
+          {"box", {{"low", box.low}, {"high", box.high}}}};
 }
 
 Json self_intersections_json(const SelfIntersections& found) {
@@ -203,7 +231,18 @@ void print_surface(const SurfaceReport& surface, const std::string& output) {
                          digest_text(surface.digest)));
 }
 
-void print_summary(const MeshReport& report, const std::string& output, double voxels, const Forecast* forecast) {
+void print_left_out(const MeshReport& report, const std::string& path) {
+  if (!report.left_out) return;
+  const LeftOutReport& left_out = *report.left_out;
+  std::string text =
+      fmt::format("by its index {}, {} of samples were not read", printable(path), byte_text(left_out.bytes_left_out));
+  if (left_out.chunks > 0) {
+    text += fmt::format(", nor {} of {} chunks", grouped(left_out.chunks_left_out), grouped(left_out.chunks));
+  }
+  print_note(text);
+}
+
+void print_summary(const MeshReport& report, const std::string& output, double voxels) {
   print_note(fmt::format("{}: {} of {} triangles, {} vertices, {}", output, grouped(report.triangles),
                          grouped(report.triangles_extracted), grouped(report.vertices),
                          state_text(report.open_edges, report.nonmanifold_edges, report.nonmanifold_vertices)));
@@ -211,14 +250,8 @@ void print_summary(const MeshReport& report, const std::string& output, double v
   if (voxels > 0 && report.seconds_total > 0) {
     speed += fmt::format(", {:.1f} Mvoxel/s", voxels * 1e-6 / report.seconds_total);
   }
-  print_note(fmt::format("{}, peak memory {}, {} thread{}", speed, byte_text(report.peak_bytes), report.threads,
-                         report.threads == 1 ? "" : "s"));
-  if (forecast != nullptr) {
-    print_note(fmt::format("predicted: {} triangles, {:.2f} s, peak memory {}",
-                           short_count(static_cast<double>(forecast->triangles)), forecast->seconds,
-                           byte_text(forecast->peak_bytes)));
-  }
-  print_note(fmt::format("digest {}", digest_text(report.digest)));
+  print_note(fmt::format("{}, peak memory {}, {} thread{}, digest {}", speed, byte_text(report.peak_bytes),
+                         report.threads, report.threads == 1 ? "" : "s", digest_text(report.digest)));
 }
 
 std::string_view space_name(Space space) {

@@ -1,6 +1,7 @@
 // Facts about volumes, meshes and runs, as JSON and as text.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -34,13 +35,25 @@ Json surface_json(const SurfaceReport& surface);
 // meshes.
 Json run_json(const MeshReport& report, Json input);
 
+// The amounts that a run with the index `path` has not read.
+Json left_out_json(const LeftOutReport& left_out, const std::string& path);
+
 // The forecast of a run.
 Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
 
 // The facts of a mesh, by its triangles alone.
 Json check_json(const MeshCheck& check, const std::string& path);
 
-// The place of a mesh: its unit and space, empty where they are not said, and its offset.
+struct Box {
+  std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
+
+  std::array<double, 3> size() const { return {high[0] - low[0], high[1] - low[1], high[2] - low[2]}; }
+};
+
+// The box of the vertices that triangles have.
+Box box_of(const TriangleMesh& mesh);
+
+// The place of a mesh: its unit and space, empty where they are not said, its offset and its box.
 Json place_json(const TriangleMesh& mesh);
 
 Json self_intersections_json(const SelfIntersections& found);
@@ -60,9 +73,11 @@ std::string state_text(std::uint64_t open_edges, std::uint64_t nonmanifold_edges
 // A line on standard error about a surface that has been written.
 void print_surface(const SurfaceReport& surface, const std::string& output);
 
-// A few lines about a run that is done.
-void print_summary(const MeshReport& report, const std::string& output, double voxels,
-                   const Forecast* forecast = nullptr);
+// A line about the use of the index `path`, if the run had one.
+void print_left_out(const MeshReport& report, const std::string& path);
+
+// Two lines about a run that is done: the mesh, and what it took.
+void print_summary(const MeshReport& report, const std::string& output, double voxels);
 
 std::string_view space_name(Space space);
 std::string_view schedule_name(Schedule schedule);

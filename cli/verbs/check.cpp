@@ -1,5 +1,6 @@
 // isoweave check: counts and defects of a mesh. Defects are findings, not errors.
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -15,6 +16,11 @@
 
 namespace isoweave::cli {
 namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave check bone.ply
+  isoweave check bone.ply --self-intersections --json)";
 
 constexpr std::size_t kListedPairs = 10;
 
@@ -60,12 +66,13 @@ std::string check_text(const MeshCheck& check, const TriangleMesh& mesh, const s
   line("triangles of area 0", grouped(check.zero_area_triangles));
   line("components", grouped(check.components));
   line("Euler number", std::to_string(check.euler));
+  line("size", size_text(box_of(mesh).size(), mesh.unit));
   line("area", fmt::format("{:.9g}", check.area));
   line("volume", fmt::format("{:.9g}", check.volume));
   line("smallest angle", degrees_text(check.angles.smallest));
   line("largest angle", degrees_text(check.angles.largest));
   line("angles under 5 degrees", sharp_text(check.angles));
-  line("unit", mesh.unit.empty() ? "not said" : mesh.unit);
+  line("unit", mesh.unit.empty() ? "not said: mm" : mesh.unit);
   line("space", mesh.space.empty() ? "not said" : mesh.space);
   if (mesh.offset != std::array<double, 3>{0, 0, 0}) {
     line("offset", fmt::format("{},{},{}", mesh.offset[0], mesh.offset[1], mesh.offset[2]));
@@ -127,7 +134,7 @@ void run_check(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("check", "Counts, defects and digest of a mesh");
+  CLI::App* verb = app.add_subcommand("check", "Show counts, size, defects and fingerprint of a mesh");
   const auto arguments = std::make_shared<CheckArguments>();
   verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
   add_weld_option(*verb, arguments->weld);
@@ -136,6 +143,7 @@ void add_check_verb(CLI::App& app) {
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_check(*arguments); });
 }
 

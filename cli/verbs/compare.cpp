@@ -19,12 +19,17 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave compare bone.ply full.ply
+  isoweave compare bone.ply full.ply --distances colours.ply --histogram 20)";
+
 constexpr std::int64_t kMostBins = 1'000'000;
 
 struct CompareArguments {
   ReadMeshOptions reading;
   std::string a, b, samples = "500000", threads = "all", voxel, histogram, distances;
-  bool json = false;
+  bool json = false, no_clobber = false;
 };
 
 std::string distances_text(const MeshDistance& distance, double unit, std::string_view name) {
@@ -94,6 +99,7 @@ void run_compare(const CompareArguments& arguments) {
   }
   check_different({arguments.a, arguments.distances});
   check_different({arguments.b, arguments.distances});
+  check_absent(arguments.no_clobber, {arguments.distances});
   exit_on_signal();
   TriangleMesh a = read_surface(arguments.a, arguments.reading);
   TriangleMesh b = read_surface(arguments.b, arguments.reading);
@@ -129,7 +135,7 @@ void run_compare(const CompareArguments& arguments) {
 }  // namespace
 
 void add_compare_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("compare", "Mean, RMS and largest distance between two meshes, both ways");
+  CLI::App* verb = app.add_subcommand("compare", "Measure the distances between two meshes");
   const auto arguments = std::make_shared<CompareArguments>();
   verb->add_option("A", arguments->a, "Mesh")->required();
   verb->add_option("B", arguments->b, "Mesh")->required();
@@ -140,7 +146,9 @@ void add_compare_verb(CLI::App& app) {
                    "Write A as PLY with the distance to B at each vertex, as the property quality");
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_compare(*arguments); });
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "isoweave/error.hpp"
+#include "options/files.hpp"
 #include "options/run.hpp"
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -14,10 +15,15 @@
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave generate gyroid --size 64 -o gyroid.nrrd
+  isoweave generate sphere --size 64x64x32 --type uint8 -o sphere.nrrd)";
+
 struct GenerateArguments {
   std::string kind, output, size, type = "float32", spacing = "1,1,1", progress = "auto";
   std::uint64_t seed = 1;
-  bool quiet = false;
+  bool quiet = false, no_clobber = false;
 };
 
 // A source that shows how far a volume has been read, and stops when asked to.
@@ -57,13 +63,14 @@ void run_generate(const GenerateArguments& arguments) {
   GenerateOptions options;
   options.kind = arguments.kind;
   options.dims = parse_size("--size", arguments.size);
-  const std::optional<SampleType> type = parse_sample_type(arguments.type);
+  const std::optional<SampleType> type = parse_sample_type(type_name(arguments.type));
   if (!type) wrong_value("--type", "a type such as uint8, int16 or float32", arguments.type);
   options.type = *type;
-  options.spacing = parse_triple("--spacing", arguments.spacing);
+  options.spacing = parse_spacing("--spacing", arguments.spacing);
   options.seed = arguments.seed;
   const ProgressMode mode = progress_mode(arguments.progress, arguments.quiet);
 
+  check_absent(arguments.no_clobber, {arguments.output});
   const std::unique_ptr<SliceSource> volume = generate_volume(options);
   ProgressPrinter printer(mode);
   WatchedSource watched(*volume, printer, stop_on_signal());
@@ -79,7 +86,7 @@ void run_generate(const GenerateArguments& arguments) {
 }  // namespace
 
 void add_generate_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("generate", "Test volumes from formulas");
+  CLI::App* verb = app.add_subcommand("generate", "Make a test volume from a formula");
   const auto arguments = std::make_shared<GenerateArguments>();
   verb->add_option("KIND", arguments->kind, kinds_text())->required();
   verb->add_option("-o,--output", arguments->output, "Volume to write: .nrrd, .mha or .raw")->required();
@@ -89,7 +96,9 @@ void add_generate_verb(CLI::App& app) {
   verb->add_option("--seed", arguments->seed, "For the kinds with chance in them")->capture_default_str();
   verb->add_option("--progress", arguments->progress, "auto (a bar on a terminal), always or never")
       ->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_generate(*arguments); });
 }
 

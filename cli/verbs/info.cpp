@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -12,23 +13,39 @@
 #include "options/input_volume.hpp"
 #include "report/print.hpp"
 #include "report/report.hpp"
+#include "report/suggestions.hpp"
 #include "signals.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isoweave::cli {
 namespace {
 
+constexpr const char* kExamples = R"(
+Examples:
+  isoweave info scan.nii.gz
+  isoweave info foot.raw --raw 256x256x256:uint8
+  isoweave info scan.nii.gz --json)";
+
 constexpr std::size_t kParts = 16;
 constexpr std::size_t kBarLength = 40;
 
 struct InfoArguments {
   InputOptions input;
-  bool json = false;
+  bool json = false, isos = false;
 };
 
-struct Suggestions {
-  std::optional<double> otsu, formula;
-};
+// The lengths of the box of the samples.
+std::array<double, 3> extent(const VolumeInfo& info) {
+  std::array<double, 3> lengths{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lengths[axis] = info.geometry.spacing[axis] * static_cast<double>(info.dims[axis]);
+  }
+  return lengths;
+}
+
+Json isos_json(const CrossingCounts& crossings) {
+  return {{"first", crossings.first}, {"step", crossings.step}, {"vertices", crossings.counts}};
+}
 
 Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggestions& suggested,
                const std::string& path) {
@@ -46,6 +63,13 @@ Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggest
   Json iso = Json::object();
   iso["otsu"] = suggested.otsu ? Json(*suggested.otsu) : Json(nullptr);
   if (suggested.formula) iso["formula"] = *suggested.formula;
+  iso["three_classes"] = suggested.three_classes;
+  iso["presets"] = Json::object();
+  for (const HounsfieldPreset& preset : hounsfield_presets()) {
+    if (suggested.ct) iso["presets"][std::string(preset.name)] = preset.iso;
+  }
+  input["extent"] = extent(info);
+  input["label_map"] = suggested.label_map;
   return {{"version", ISOWEAVE_VERSION},
           {"input", input},
           {"histogram", {{"low", input["min"]}, {"high", input["max"]}, {"counts", coarser_bins(histogram, kParts)}}},
@@ -62,6 +86,26 @@ std::string histogram_text(const Histogram& histogram) {
     const double length = std::sqrt(static_cast<double>(counts[n]) / most) * static_cast<double>(kBarLength);
     text += fmt::format("  from {:>12.6g} {:>16} {}\n", histogram.min + step * static_cast<double>(n),
                         grouped(counts[n]), std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
+  }
+  return text;
+}
+
+// The triangles of surfaces at some of the iso-values. Bars are in proportion: the largest of a part of the range
+// stands for it.
+std::string isos_text(const CrossingCounts& crossings) {
+  constexpr std::size_t kLines = 32;
+  if (crossings.counts.empty()) return "isos       none: all samples are one value\n";
+  const auto most = static_cast<double>(std::ranges::max(crossings.counts));
+  const std::size_t lines = std::min(kLines, crossings.counts.size());
+  std::string text = "isos       (about so many triangles of the closed surface; the most of each part of the range)\n";
+  for (std::size_t n = 0; n < lines; ++n) {
+    const auto begin = crossings.counts.begin() + static_cast<std::ptrdiff_t>(n * crossings.counts.size() / lines);
+    const auto end = crossings.counts.begin() + static_cast<std::ptrdiff_t>((n + 1) * crossings.counts.size() / lines);
+    const auto largest = std::max_element(begin, end);
+    const double iso = crossings.first + crossings.step * static_cast<double>(largest - crossings.counts.begin());
+    const double length = static_cast<double>(*largest) / std::max(most, 1.0) * static_cast<double>(kBarLength);
+    text += fmt::format("  iso {:>12.6g} {:>16} {}\n", iso, grouped(2 * *largest),
+                        std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
   }
   return text;
 }
@@ -91,7 +135,9 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += fmt::format("size       {} x {} x {} {}, {} samples, {}\n", info.dims[0], info.dims[1], info.dims[2],
                       sample_type_name(info.type), grouped(samples), byte_text(info.slice_bytes() * slices));
   text += fmt::format("spacing    {:.6g} x {:.6g} x {:.6g} {}\n", geometry.spacing[0], geometry.spacing[1],
-                      geometry.spacing[2], geometry.unit.empty() ? "(no unit)" : printable(geometry.unit));
+                      geometry.spacing[2],
+                      geometry.unit.empty() ? "mm (the file names no unit; see --unit)" : printable(geometry.unit));
+  text += fmt::format("extent     {}\n", size_text(extent(info), geometry.unit));
   text +=
       fmt::format("origin     {:.6g}, {:.6g}, {:.6g}\n", geometry.origin[0], geometry.origin[1], geometry.origin[2]);
   text += fmt::format("axes       {}\n", axes_text(geometry));
@@ -102,6 +148,12 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
   if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
   if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
+  if (suggested.three_classes.size() == 2) {
+    text += fmt::format("           --iso {:.6g} or {:.6g} (three classes)\n", suggested.three_classes[0],
+                        suggested.three_classes[1]);
+  }
+  if (suggested.ct) text += fmt::format("           --iso {} (tissues of CT)\n", presets_text());
+  if (suggested.label_map) text += "           --labels all (looks like a mask or label map)\n";
   for (const LabelName& label : info.labels) {
     text += fmt::format("label      {} {}\n", label.label.text(), printable(label.name));
   }
@@ -114,24 +166,33 @@ void run_info(const InfoArguments& arguments) {
   if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
   exit_on_signal();
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
-  const Histogram histogram = read_histogram(*volume);
-  Suggestions suggested{otsu_threshold(histogram), std::nullopt};
-  if (const std::optional<GenerateOptions> generated = generated_input(arguments.input)) {
-    suggested.formula = suggested_iso(generated->kind, generated->type);
+  CrossingCounts crossings;
+  if (arguments.isos) {
+    crossings = count_crossings(*volume);
+  } else {
+    crossings.histogram = read_histogram(*volume);
   }
+  const Histogram& histogram = crossings.histogram;
+  const Suggestions suggested = suggestions(histogram, arguments.input, nullptr);
   const VolumeInfo& info = volume->info();
   const std::string& path = arguments.input.path;
-  if (arguments.json) return print_out(json_text(info_json(info, histogram, suggested, path)));
-  print_to_reader(info_text(info, histogram, suggested, path));
+  if (arguments.json) {
+    Json json = info_json(info, histogram, suggested, path);
+    if (arguments.isos) json["isos"] = isos_json(crossings);
+    return print_out(json_text(json));
+  }
+  print_to_reader(info_text(info, histogram, suggested, path) + (arguments.isos ? isos_text(crossings) : ""));
 }
 
 }  // namespace
 
 void add_info_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("info", "What a volume is, its histogram and suggested iso-values");
+  CLI::App* verb = app.add_subcommand("info", "Show what a volume is, and iso-values for it");
   const auto arguments = std::make_shared<InfoArguments>();
   add_input_options(*verb, arguments->input);
   verb->add_flag("--json", arguments->json, "Print JSON");
+  verb->add_flag("--isos", arguments->isos, "Triangles of the surface for iso-values over the whole range");
+  verb->footer(kExamples);
   verb->callback([arguments] { run_info(*arguments); });
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "options/files.hpp"
 #include "report/print.hpp"
 #include "verbs/mesh_arguments.hpp"
 #include "verbs/mesh_job.hpp"
@@ -19,25 +20,24 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  isoweave mesh ct.nii.gz -o bone.ply --iso 300
-  isoweave mesh foot_256x256x256_uint8.raw -o foot.stl --iso auto --error 0.5vox
-  isoweave mesh scan.raw --raw 512x512x300:int16:big --spacing 0.7,0.7,1.5 -o scan.obj --iso 226 --error 0.1mm
-  isoweave mesh generate:gyroid:2048x2048x2048:uint8 -o gyroid.ply --iso 127.5 --checkpoint gyroid.run
-  isoweave mesh --resume gyroid.run
-  isoweave mesh brain.nii.gz -o brain.glb --iso 40 --triangles 200000
-  isoweave mesh brain.nii.gz -o brain.ply --iso 40 --lods 0.1vox,0.3vox,1vox
-  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --html bone.html
-  isoweave mesh ct.nii.gz -o bone.ply --iso 300 --watch
-  isoweave mesh segmentation.nii.gz -o seg.ply --labels all --smooth
+  isoweave mesh ct.nii.gz --iso bone -o bone.ply
+  isoweave mesh foot_256x256x256_uint8.raw --iso auto --error 0.5vox -o foot.stl
+  isoweave mesh brain.nii.gz --iso 40 --triangles 200k -o brain.glb
+  isoweave mesh scan.raw --raw 512x512x300:int16 --spacing 0.7,0.7,1.5 \
+    --iso 226 --error 0.1mm -o scan.obj
+  isoweave mesh mask.nii.gz --iso 0.5 --smooth --center --ground -o print.stl
+  isoweave mesh segmentation.nii.gz --labels all --smooth -o seg.ply
+  isoweave mesh huge.zarr --iso 100 --memory 2G --checkpoint run -o huge.ply
+  isoweave mesh --resume run
 
-Without --error, --lods, --max-distance, --triangles and --ratio the error is 0.2vox. The result does not depend on
---threads, --schedule and --slab.)";
+Without an option of Simplification the error is 0.2vox. --threads, --schedule
+and --slab never change the result.)";
 
 void run_mesh(MeshArguments arguments) {
   if (arguments.resume.empty()) {
     if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
-    if (!arguments.output.given()) throw CLI::RequiredError("--output");
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
+    if (!arguments.output.given()) arguments.output.path = usual_output(arguments.input.path, "", ".ply");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (arguments.every.empty()) arguments.every = "5min";
     // Labels are not resampled, as a value between two labels is no label.
@@ -55,9 +55,10 @@ void run_mesh(MeshArguments arguments) {
 }
 
 void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
-  verb.add_option("--iso", arguments.iso,
-                  "Value of the surface, or auto (Otsu's threshold); several with commas: a file each, such as "
-                  "a_iso10.ply for a.ply");
+  verb.add_option(
+      "--iso", arguments.iso,
+      "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT. Several with commas: a file "
+      "each, such as a_iso10.ply for a.ply");
   CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
   verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
@@ -85,11 +86,14 @@ void add_label_options(CLI::App& verb, MeshArguments& arguments) {
 void add_task_options(CLI::App& verb, MeshArguments& arguments) {
   add_input_options(verb, arguments.input);
   add_output_options(verb, arguments.output);
+  add_placing_options(verb, arguments.output.placing);
   add_surface_options(verb, arguments);
   add_stop_options(verb, arguments.stop);
+  verb.get_option("--error")->default_str(kUsualError);
   verb.add_option("--quality", arguments.quality, "fast, normal or fine")->capture_default_str();
-  verb.add_option("--normals", arguments.normals,
-                  "none, gradient, or quadric: gradients that the simplification keeps as well as the places")
+  verb.add_option(
+          "--normals", arguments.normals,
+          "none, gradient, quadric (gradients that simplification takes into account), or auto: gradient in .glb")
       ->capture_default_str();
   verb.add_option("--color-by", arguments.color_by,
                   "Volume of the same size whose values the vertices get: 'quality' in PLY, 'value' in VTP");
@@ -97,8 +101,8 @@ void add_task_options(CLI::App& verb, MeshArguments& arguments) {
   add_label_options(verb, arguments);
   verb.add_flag("--dry-run", arguments.dry_run, "Say what the run would take, from a sample of the volume");
   verb.add_option("--checkpoint", arguments.checkpoint,
-                  "Save the state of the run in this folder, to go on with after whatever ends it")
-      ->excludes("--to-stdout");
+                  "Save the state of the run in this folder; --resume continues it")
+      ->excludes("--to-stdout", "--output-unit", "--scale", "--center", "--ground");
 }
 
 // The options of the way to run, which may change when a run is resumed.
@@ -106,9 +110,9 @@ void add_way_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option("--slab", arguments.slab, "Layers per slab: a number, auto or whole; never changes the result")
       ->default_str("auto");
   verb.add_option("--memory", arguments.memory, "Cap on the memory of the process, such as 800M or 2G");
-  verb.add_option("--every", arguments.every,
-                  "How often --checkpoint saves: a number of layers or a time: 16layers, 90s, 5min, 2h")
+  verb.add_option("--every", arguments.every, "How often --checkpoint saves: 16layers, 90s, 5min, 2h")
       ->default_str("5min");
+  add_index_option(verb, arguments.index);
   add_run_options(verb, arguments.run);
   add_page_options(verb, arguments.page);
   add_watch_option(verb, arguments.watch);
@@ -125,14 +129,14 @@ void exclude_from_labels(CLI::App& verb) {
 }  // namespace
 
 void add_mesh_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("mesh", "Volume to simplified surface");
+  CLI::App* verb = app.add_subcommand("mesh", "Turn a volume into a simplified surface");
   const auto arguments = std::make_shared<MeshArguments>();
   add_task_options(*verb, *arguments);
   const std::vector<CLI::Option*> task = verb->get_options();
   add_way_options(*verb, *arguments);
   exclude_from_labels(*verb);
   CLI::Option* resume =
-      verb->add_option("--resume", arguments->resume, "Go on with the run whose state is saved in this folder");
+      verb->add_option("--resume", arguments->resume, "Continue the run whose state is in this folder");
   for (CLI::Option* option : task) {
     if (option != verb->get_help_ptr()) resume->excludes(option);
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "options/components.hpp"
+#include "options/index.hpp"
 #include "options/input_volume.hpp"
 #include "options/output_mesh.hpp"
 #include "options/run.hpp"
@@ -23,7 +24,8 @@ struct MeshArguments {
   ComponentOptions components;
   PageOptions page;
   WatchOptions watch;
-  std::string iso, quality = "normal", slab, inside = "above", normals = "none", extractor = "cubes";
+  IndexOptions index;
+  std::string iso, quality = "normal", slab, inside = "above", normals = "auto", extractor = "cubes";
   std::string color_by, space, memory, checkpoint, every, resume, labels, label_names, smooth;
   bool open = false, closed = false, dry_run = false, numbered = false;
 };

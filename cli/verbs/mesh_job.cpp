@@ -51,7 +51,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   json["extractor"] = arguments.extractor;
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
-  json["normals"] = arguments.normals;
+  json["normals"] = normals_name(options.normals);
   if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
@@ -149,7 +149,10 @@ class MeshJob {
     const ProgressMode mode = progress_mode(arguments_.run.progress, quiet());
     check();
     open();
-    if (!arguments_.labels.empty()) return mesh_labels(arguments_, options_, info_, control_);
+    if (!arguments_.labels.empty()) {
+      mesh_labels(arguments_, options_, info_, control_);
+      return tell_unit();
+    }
     Evidence evidence(arguments_.run, arguments_.page);
     if (has_several_isos(arguments_)) return mesh_isos(evidence);
     if (arguments_.iso == "auto") find_iso();
@@ -164,6 +167,7 @@ class MeshJob {
 
  private:
   bool quiet() const { return arguments_.run.quiet; }
+  bool no_clobber() const { return arguments_.run.no_clobber; }
 
   // Checks all options that need no file.
   void check() const {
@@ -178,17 +182,21 @@ class MeshJob {
     for (const OutputOptions& output : outputs_) {
       check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
       check_different({arguments_.color_by, output.path});
+      if (arguments_.labels.empty()) check_absent(no_clobber(), {output.path});
     }
+    check_absent(no_clobber(), {arguments_.run.report, arguments_.page.path});
     check_page(arguments_.page, arguments_.output);
+    check_placing(arguments_.output, outputs_.size() > 1 || !arguments_.labels.empty());
   }
 
-  // Refuses options that do not go together, before any file is looked at. A volume and an observer that are not the
-  // real ones stand for those that are opened later: only their presence counts.
+  // Refuses options that do not go together, before any file is looked at. A volume, an index and an observer that
+  // are not the real ones stand for those that are opened later: only their presence counts.
   void check_possible() const {
     MeshOptions asked = options_;
     RunControl control = control_;
     if (!arguments_.color_by.empty()) asked.values = generate_volume({});
     if (arguments_.watch.given()) control.observer = std::make_shared<NoObserver>();
+    if (arguments_.index.named()) control.index = build_index(*generate_volume({"box", {1, 1, 1}}));
     control.checkpoint.folder = arguments_.checkpoint;
     control.resume = resume_;
     const bool labels = !arguments_.labels.empty();
@@ -202,13 +210,16 @@ class MeshJob {
   void open() {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
+    const bool one_surface = arguments_.labels.empty() && !has_several_isos(arguments_);
+    if (one_surface) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
+    control_.index = index_.index;
     options_.values = open_values(arguments_);
+    // Viewers of GLB draw a surface without normals in facets.
+    const bool automatic = arguments_.normals == "auto";
+    if (automatic && output_format(arguments_.output) == MeshFormat::kGlb) options_.normals = Normals::kGradient;
     options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
     if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
     options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
-    if (!quiet() && info_.geometry.unit.empty() && has_metric_length(arguments_.stop)) {
-      print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm");
-    }
     options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
     control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     control_.stop = borrow(stop_on_signal());
@@ -218,14 +229,32 @@ class MeshJob {
   void mesh_isos(Evidence& evidence) {
     options_.triangles = stop_triangles(arguments_.stop, [] { return std::uint64_t{0}; });
     mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
+    tell_unit();
+  }
+
+  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant. When the
+  // run is done: a run that fails has one line.
+  void tell_unit() const {
+    if (quiet()) return;
+    const bool matters = has_metric_length(arguments_.stop) || states_unit(arguments_.output);
+    if (info_.geometry.unit.empty() && matters) {
+      print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm (--unit says otherwise)");
+    }
+    const bool by_error = !arguments_.stop.error.empty() && !options_.error.in_voxels;
+    if (!by_error || options_.error.value <= most_shape_error(info_)) return;
+    print_note(fmt::format("warning: --error {} is more than a twentieth of the volume's diagonal, {:.4g} {}",
+                           arguments_.stop.error, most_shape_error(info_) * 20, unit_text(info_.geometry.unit)));
   }
 
   void find_iso() {
     // Opens the file and discards it: an error that would stop the run after the first pass is found now.
     open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
     require_memory_to_read(*volume_, options_, control_);
-    options_.iso = automatic_iso(arguments_.input, *control_.stop);
-    if (!quiet()) print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
+    const AutomaticIso found = automatic_iso(arguments_.input, *control_.stop);
+    options_.iso = found.iso;
+    if (quiet()) return;
+    print_note(fmt::format("--iso {} (Otsu's threshold)", options_.iso));
+    if (!found.others.empty()) print_note(found.others);
   }
 
   // Chooses the components, once, in a pass of its own.
@@ -274,6 +303,7 @@ class MeshJob {
     const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
+    tell_unit();
     evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
   }
 
@@ -311,7 +341,10 @@ class MeshJob {
     ProgressPrinter printer(mode);
     control_.progress = [&](const Progress& progress) { printer.show(progress); };
     control_.observer = watch;
-    const MeshReport report = mesh_volume(*volume_, sinks.pointers(), options_, control_);
+    MeshReport report = mesh(sinks);
+    sinks.tell_digests(report);
+    const std::string preset = preset_note(arguments_.iso, report.min, report.max);
+    if (!preset.empty()) report.warnings.push_back(preset);
     remove_level_folders(folders);
     if (watch) watch->complete(report);
     printer.finish();
@@ -319,6 +352,16 @@ class MeshJob {
     if (quiet()) return;
     print_result(report, sinks);
     if (watch) watch->deliver(*control_.stop);
+  }
+
+  // Says what to try where nothing is at the iso-value.
+  MeshReport mesh(const LevelSinks& sinks) {
+    try {
+      return mesh_volume(*volume_, sinks.pointers(), options_, control_);
+    } catch (const EmptySurface& empty) {
+      const bool misses = arguments_.iso != "auto" && rule_.keeps_all();
+      throw EmptySurface(std::string(empty.what()) + (misses ? ": try --iso auto" : ""));
+    }
   }
 
   void print_volume_notes() const {
@@ -331,6 +374,7 @@ class MeshJob {
   void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
     Json json = report_json(report, info_, arguments_, options_, file_, forecast_);
     json["notes"] = sinks.last().notes();
+    if (report.left_out) json["index"] = left_out_json(*report.left_out, index_.path);
     evidence.write(std::move(json), control_, [&](const RunControl& control) {
       std::uint64_t triangles = report.triangles;
       for (const SurfaceReport& level : report.levels) triangles += level.triangles;
@@ -340,13 +384,15 @@ class MeshJob {
   }
 
   void print_result(const MeshReport& report, const LevelSinks& sinks) const {
+    tell_unit();
     for (const std::string& warning : report.warnings) print_note("warning: " + warning);
     print_notes(sinks.last());
     print_dropped(report);
     print_levels(report, outputs_);
-    print_target(report, options_.triangles, options_.error, info_.geometry.unit);
+    print_target(arguments_.stop, report, options_.triangles, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
-    print_summary(report, outputs_.back().name(), voxels, forecast_ ? &*forecast_ : nullptr);
+    print_left_out(report, index_.path);
+    print_summary(report, outputs_.back().name(), voxels);
   }
 
   const MeshArguments& arguments_;
@@ -358,6 +404,7 @@ class MeshJob {
   RunControl control_;
   std::unique_ptr<SliceSource> volume_;
   VolumeInfo info_;
+  FoundIndex index_;
   MeshFileOptions file_;
   std::optional<Forecast> forecast_;  // of a run that is not resumed
   std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold

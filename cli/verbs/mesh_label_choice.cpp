@@ -20,6 +20,17 @@ std::vector<std::int64_t> layers_of(std::span<const LabelName> segments) {
   return {layers.begin(), layers.end()};
 }
 
+// Adds the numbers of a range such as "1-10". False for anything else.
+bool add_range(std::string_view word, std::vector<std::string>& words) {
+  const std::size_t dash = word.find('-');
+  if (dash == std::string_view::npos || word.find_first_not_of("0123456789-") != std::string_view::npos) return false;
+  const auto first = to_number<std::uint64_t>(word.substr(0, dash));
+  const auto last = to_number<std::uint64_t>(word.substr(dash + 1));
+  if (!first || !last || *last < *first || *last - *first >= kMostLabels) return false;
+  for (std::uint64_t label = *first; label <= *last; ++label) words.push_back(std::to_string(label));
+  return true;
+}
+
 }  // namespace
 
 LabelChoice parse_labels(std::string_view text) {
@@ -29,8 +40,9 @@ LabelChoice parse_labels(std::string_view text) {
   if (choice.all) return choice;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    choice.words.emplace_back(text.substr(begin, end - begin));
-    if (choice.words.back().empty()) wrong_value("--labels", "all, or whole numbers or names such as 1,2,5", text);
+    const std::string_view word = text.substr(begin, end - begin);
+    if (word.empty()) wrong_value("--labels", "all, or whole numbers or names such as 1,2,5 or 1-10", text);
+    if (!add_range(word, choice.words)) choice.words.emplace_back(word);
     begin = end + 1;
   }
   if (choice.words.size() > kMostLabels) {

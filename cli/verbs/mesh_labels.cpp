@@ -62,6 +62,7 @@ class UnfinishedSink final : public MeshSink {
 
   void append(const MeshPiece& piece) override { sink_.append(piece); }
   void finish() override {}
+  std::array<double, 3> offset() const override { return sink_.offset(); }
 
  private:
   MeshSink& sink_;
@@ -83,6 +84,7 @@ struct LabelFiles {
     for (std::size_t n = 0; n < names.size(); ++n) {
       OutputOptions output = label_output(task.output, file_names[n]);
       check_different({task.input.path, output.path, task.run.report, task.names});
+      check_absent(task.run.no_clobber, {output.path});
       MeshFileOptions options = task.file(names[n]);
       if (numbers_objects(task)) options.segment = names[n].label.bits();
       files.push_back(open_output(output, options));
@@ -91,8 +93,14 @@ struct LabelFiles {
     }
   }
 
-  void finish() {
-    for (const std::unique_ptr<MeshSink>& file : files) file->finish();
+  // Finishes the files, and gives the report the digests of the meshes as they are in them.
+  void finish(LabelsReport& report) {
+    for (std::size_t n = 0; n < files.size(); ++n) {
+      files[n]->finish();
+      const std::uint64_t of_run =
+          std::exchange(report.labels[n].digest, file_digest(*files[n], report.labels[n].digest));
+      report.total.digest += report.labels[n].digest - of_run;
+    }
   }
 };
 
@@ -106,13 +114,11 @@ void check_numbers(const LabelsTask& task, std::span<const LabelName> labels) {
 
 // Refuses a map whose labels look like the values of a grey image.
 void check_is_label_map(const LabelsTask& task, std::span<const LabelExtent> labels) {
-  constexpr std::size_t kFew = 16;
-  const std::size_t scattered = count_scattered(labels);
-  if (task.choice.insists || labels.size() < kFew || 2 * scattered <= labels.size()) return;
+  if (task.choice.insists || look_like_labels(labels)) return;
   throw BadInput(
       fmt::format("{}: --labels all expects a label map, found {} values of which {} are scattered like those "
                   "of a grey image (--iso meshes one; --labels all! takes them for labels)",
-                  task.input.path, labels.size(), scattered));
+                  task.input.path, labels.size(), count_scattered(labels)));
 }
 
 // All labels that occur, and the segments that do not.
@@ -130,8 +136,9 @@ std::vector<MeshedLabel> all_labels(const LabelsTask& task, const LabelBook& boo
   return labels;
 }
 
-std::vector<MeshedLabel> chosen_labels(std::span<const LabelName> chosen, const InputOptions& input, std::int64_t layer,
-                                       const std::atomic<bool>* stop) {
+// The labels that are named. One that does not occur is refused, unless --allow-empty lets its mesh be empty.
+std::vector<MeshedLabel> chosen_labels(const LabelsTask& task, std::span<const LabelName> chosen,
+                                       const InputOptions& input, std::int64_t layer, const std::atomic<bool>* stop) {
   std::vector<LabelName> here;
   std::vector<Label> wanted;
   for (const LabelName& name : chosen) {
@@ -142,7 +149,12 @@ std::vector<MeshedLabel> chosen_labels(std::span<const LabelName> chosen, const 
   if (here.empty()) return {};
   const std::vector<LabelExtent> extents = find_labels(*open_input(input), wanted, stop);
   std::vector<MeshedLabel> labels;
-  for (std::size_t n = 0; n < here.size(); ++n) labels.push_back({std::move(here[n]), extents[n]});
+  for (std::size_t n = 0; n < here.size(); ++n) {
+    if (extents[n].samples == 0 && !task.run.allow_empty) {
+      throw EmptySurface(fmt::format("{}: label {} does not occur", task.input.path, here[n].label.text()));
+    }
+    labels.push_back({std::move(here[n]), extents[n]});
+  }
   return labels;
 }
 
@@ -153,7 +165,7 @@ std::vector<LabelLayer> find_layers(const LabelsTask& task, const LabelBook& boo
     LabelLayer layer{task.input, {}};
     if (number > 0 || book.layers().size() > 1) layer.input.channel = std::to_string(number);
     layer.labels = task.choice.all ? all_labels(task, book, layer.input, number, stop)
-                                   : chosen_labels(chosen, layer.input, number, stop);
+                                   : chosen_labels(task, chosen, layer.input, number, stop);
     if (!layer.labels.empty()) layers.push_back(std::move(layer));
   }
   if (layers.empty()) throw BadInput(task.input.path + ": --labels all expects a label other than 0, found none");
@@ -259,8 +271,8 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   }
   ProgressPrinter printer(progress_mode(run.progress, run.quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const LabelsReport report = mesh_layers(task, layers, files, control);
-  files.finish();
+  LabelsReport report = mesh_layers(task, layers, files, control);
+  files.finish(report);
   printer.finish();
   evidence.write(report_json(task, info, report, layers, files), control, {});
   if (!run.quiet) print_labels(task, info, report, files, layers.size());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,12 +13,14 @@
 #include "options/input_volume.hpp"
 #include "options/values.hpp"
 #include "report/report.hpp"
+#include "report/suggestions.hpp"
 #include "verbs/mesh_isos.hpp"
 
 namespace isoweave::cli {
 namespace {
 
 Normals parse_normals(std::string_view text) {
+  if (text == "auto") return Normals::kAbsent;  // until the format is known
   return parse_choice<Normals>(
       "--normals", text,
       {{"none", Normals::kAbsent}, {"gradient", Normals::kGradient}, {"quadric", Normals::kQuadric}});
@@ -45,6 +48,20 @@ int parse_smooth(std::string_view text) {
   return static_cast<int>(passes);
 }
 
+const HounsfieldPreset* find_preset(std::string_view name) {
+  for (const HounsfieldPreset& preset : hounsfield_presets()) {
+    if (preset.name == name) return &preset;
+  }
+  return nullptr;
+}
+
+double parse_iso(std::string_view text) {
+  if (const HounsfieldPreset* preset = find_preset(text)) return preset->iso;
+  const std::optional<double> number = to_number<double>(text);
+  if (!number || !std::isfinite(*number)) wrong_value("--iso", "a number, auto, bone, skin or lung", text);
+  return *number;
+}
+
 std::vector<std::string> comments(const MeshArguments& arguments, const StopOptions& stop, const MeshOptions& options) {
   return {"isoweave " ISOWEAVE_VERSION,
           fmt::format(
@@ -65,7 +82,7 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
 MeshOptions mesh_options(const MeshArguments& arguments) {
   MeshOptions options;
   const bool known = arguments.iso != "auto" && arguments.labels.empty() && !has_several_isos(arguments);
-  if (known) options.iso = parse_number("--iso", arguments.iso);
+  if (known) options.iso = parse_iso(arguments.iso);
   options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
   options.closed = !arguments.open;
   options.smooth = parse_smooth(arguments.smooth);
@@ -88,10 +105,23 @@ std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
   return open_input(input);
 }
 
-double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
-  const std::optional<double> iso = otsu_threshold(read_histogram(*open_input(input), &stop));
+AutomaticIso automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {
+  const Histogram histogram = read_histogram(*open_input(input), &stop);
+  const std::optional<double> iso = otsu_threshold(histogram);
   if (!iso) throw BadInput(input.path + ": --iso auto expects at least two different values, found one or none");
-  return *iso;
+  return {*iso, other_surfaces(histogram, input, &stop)};
+}
+
+std::string preset_note(std::string_view iso, double min, double max) {
+  const HounsfieldPreset* preset = find_preset(iso);
+  if (preset == nullptr || is_hounsfield_range(min, max)) return "";
+  return fmt::format("--iso {} is {} in Hounsfield units, but the samples go from {} to {}: is it CT?", iso,
+                     preset->iso, min, max);
+}
+
+std::string normals_name(Normals normals) {
+  if (normals == Normals::kAbsent) return "none";
+  return normals == Normals::kGradient ? "gradient" : "quadric";
 }
 
 std::string extractor_text(const MeshArguments& arguments) {

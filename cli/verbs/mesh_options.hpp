@@ -23,8 +23,20 @@ MeshOptions mesh_options(const MeshArguments& arguments);
 // The volume whose values the vertices get, opened with the choices made for the first volume; or null.
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
 
-// Otsu's threshold. Reads the volume once more, by itself, as slices cannot be read twice.
-double automatic_iso(const InputOptions& input, const std::atomic<bool>& stop);
+// Otsu's threshold, and a line about other surfaces that the volume has.
+struct AutomaticIso {
+  double iso = 0;
+  std::string others;  // empty: none
+};
+
+// Reads the volume once more, by itself, as slices cannot be read twice.
+AutomaticIso automatic_iso(const InputOptions& input, const std::atomic<bool>& stop);
+
+// A warning where --iso names a tissue and the range of the samples is not that of CT; else empty.
+std::string preset_note(std::string_view iso, double min, double max);
+
+// The name of a kind of normals on the command line.
+std::string normals_name(Normals normals);
 
 // " extractor dual", for the comments of a mesh file; empty for the usual one.
 std::string extractor_text(const MeshArguments& arguments);

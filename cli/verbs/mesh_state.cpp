@@ -22,8 +22,8 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   arguments.input = {task.at("volume"),       task.at("raw"),         task.at("spacing"), task.at("origin"),
                      task.at("series"),       task.at("dataset"),     task.at("level"),   task.at("channel"),
                      task.at("time"),         task.at("slices_from"), task.at("roi"),     task.at("step"),
-                     task.at("even_spacing"), task.at("external")};
-  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment"), task.at("one_file")};
+                     task.at("even_spacing"), task.at("external"),    task.at("unit")};
+  arguments.output = {task.at("output"), "", task.at("compress"), task.at("segment"), task.at("one_file"), {}};
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
@@ -60,6 +60,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"step", arguments.input.step},
           {"even_spacing", arguments.input.even_spacing},
           {"external", arguments.input.external},
+          {"unit", arguments.input.unit},
           {"output", absolute_path(arguments.output.path)},
           {"compress", arguments.output.compress},
           {"one_file", arguments.output.one_file},

@@ -25,10 +25,13 @@ namespace {
 constexpr const char* kExamples = R"(
 Examples:
   isoweave render bone.ply -o bone.png
-  isoweave render bone.ply -o side.png --view right --size 1920x1080 --background transparent
+  isoweave render bone.ply -o side.png --view right --size 1920x1080 \
+    --background transparent
   isoweave render small.ply -o mesh.png --wireframe --shading flat --view 150,10
   isoweave render distances.ply -o error.png --color-by quality --range 0,0.5
-At --view 0,0 (front) the camera looks along +y with z up; azimuth turns it to the side of +x (right), elevation up.)";
+At --view 0,0 (front) the camera looks along +y with z up, in a mesh that says
+RAS along -y: at the face of a patient. Azimuth turns it to the side of +x
+(RAS: -x), elevation up.)";
 
 constexpr std::int64_t kMostPixels = 16384;
 constexpr std::int64_t kMostSamples = 8;
@@ -38,7 +41,7 @@ struct RenderArguments {
   std::string path, output, size = "1200x900", view = "35,20", background = "white", colour = "#decdb4", colour_by,
                             range;
   std::string shading = "smooth", samples = "3", threads = "all";
-  bool wireframe = false, quiet = false;
+  bool wireframe = false, quiet = false, no_clobber = false;
 };
 
 int parse_limited(std::string_view option, std::string_view text, std::int64_t most) {
@@ -70,13 +73,20 @@ View parse_view(std::string_view text) {
 }
 
 Colour parse_colour(std::string_view option, std::string_view text) {
-  if (text == "white") return {255, 255, 255};
-  if (text == "black") return {0, 0, 0};
+  constexpr std::pair<std::string_view, Colour> kNamed[] = {
+      {"white", {255, 255, 255}}, {"black", {0, 0, 0}},       {"grey", {128, 128, 128}}, {"gray", {128, 128, 128}},
+      {"red", {214, 69, 65}},     {"green", {76, 153, 80}},   {"blue", {66, 133, 199}},  {"yellow", {235, 199, 68}},
+      {"orange", {230, 140, 60}}, {"purple", {142, 92, 168}}, {"bone", {222, 205, 180}}};
+  for (const auto& [name, colour] : kNamed) {
+    if (text == name) return colour;
+  }
   unsigned bits = 0;
   const char* const end = text.data() + text.size();
   const bool is_colour =
       text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, bits, 16).ptr == end;
-  if (!is_colour) wrong_value(option, "a colour #rrggbb, white or black", text);
+  if (!is_colour)
+    wrong_value(option, "a colour: #rrggbb, white, black, grey, red, green, blue, yellow, orange, purple or bone",
+                text);
   return {static_cast<std::uint8_t>(bits >> 16U), static_cast<std::uint8_t>(bits >> 8U & 255U),
           static_cast<std::uint8_t>(bits & 255U)};
 }
@@ -90,7 +100,8 @@ std::array<double, 2> parse_range(std::string_view text) {
 
 RenderOptions parse_options(const RenderArguments& arguments) {
   RenderOptions options;
-  const auto [width, height] = halves(arguments.size, 'x');
+  auto [width, height] = halves(arguments.size, 'x');
+  if (arguments.size.find('x') == std::string::npos) height = width;
   options.width = parse_limited("--size", width, kMostPixels);
   options.height = parse_limited("--size", height, kMostPixels);
   options.view = parse_view(arguments.view);
@@ -122,9 +133,11 @@ void check_output(const std::string& path) {
   require_png(path);
 }
 
-void run_render(const RenderArguments& arguments) {
+void run_render(RenderArguments arguments) {
+  if (arguments.output.empty()) arguments.output = usual_output(arguments.path, "", ".png");
   const RenderOptions options = parse_options(arguments);
   check_different({arguments.path, arguments.output});
+  check_absent(arguments.no_clobber, {arguments.output});
   check_output(arguments.output);
   exit_on_signal();
   TriangleMesh mesh = read_named_mesh(arguments.path, arguments.reading);
@@ -145,10 +158,10 @@ void run_render(const RenderArguments& arguments) {
 }  // namespace
 
 void add_render_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("render", "A picture of a mesh as PNG, without a display");
+  CLI::App* verb = app.add_subcommand("render", "Draw a mesh as a PNG picture");
   const auto arguments = std::make_shared<RenderArguments>();
   verb->add_option("MESH", arguments->path, kMeshInputHelp)->required();
-  verb->add_option("-o,--output", arguments->output, "Picture to write: .png")->required();
+  verb->add_option("-o,--output", arguments->output, "Picture to write: .png (without it: the name of the mesh)");
   verb->add_option("--size", arguments->size, "Pixels: WxH")->capture_default_str();
   verb->add_option("--view", arguments->view, "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION")
       ->capture_default_str();
@@ -165,6 +178,7 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--samples", arguments->samples, "Samples along each side of a pixel")->capture_default_str();
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);
   verb->callback([arguments] { run_render(*arguments); });

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "isoweave/error.hpp"
 #include "isoweave/weld.hpp"
 #include "options/components.hpp"
 #include "options/files.hpp"
@@ -26,8 +27,9 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  isoweave simplify scan.stl -o smaller.ply --error 0.1
-  isoweave simplify brain.ply -o brain_fine.obj --error 0.5vox --quality fine
+  isoweave simplify scan.stl --error 0.1mm -o smaller.ply
+  isoweave simplify brain.ply --ratio 10% --quality fine -o brain.obj
+
 A vox is here the square root of twice the mean triangle area.)";
 
 struct SimplifyArguments {
@@ -72,6 +74,10 @@ MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleM
   return mesh_file_options(arguments.output, std::move(file));
 }
 
+std::string dropped_text(const DroppedComponents& dropped) {
+  return fmt::format("nothing is left: each of {} components is dropped", dropped.components);
+}
+
 // Reports dropped components of the input as if they had been extracted and dropped.
 void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.components_dropped = dropped.components;
@@ -79,7 +85,23 @@ void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
   report.triangles_extracted += dropped.triangles;
   report.vertices_extracted += dropped.vertices;
   if (dropped.components == 0 || report.triangles_dropped < report.triangles_extracted) return;
-  report.warnings.push_back(fmt::format("nothing is left: each of {} components is dropped", dropped.components));
+  report.warnings.push_back(dropped_text(dropped));
+}
+
+// The refusal of an empty mesh with the name of the input, which the library does not know.
+MeshReport simplify_named(const SimplifyArguments& arguments, const TriangleMesh& mesh, const LevelSinks& sinks,
+                          const SimplifyOptions& options, const RunControl& control, const DroppedComponents& dropped) {
+  try {
+    return simplify_mesh(mesh, sinks.pointers(), options, control);
+  } catch (const EmptySurface& empty) {
+    std::string reason = empty.what();
+    if (mesh.triangles.empty() && dropped.components > 0) {
+      reason = dropped_text(dropped);
+    } else if (mesh.triangles.empty() && !mesh.notes.empty()) {
+      reason = mesh.notes.front();  // what the file has instead
+    }
+    throw EmptySurface(fmt::format("{}: {}", arguments.input, reason));
+  }
 }
 
 // Warnings about parts of the input that the output will not have.
@@ -129,8 +151,8 @@ void check_possible(const SimplifyArguments& arguments, const SimplifyOptions& o
   require_possible({RunKind::kSimplify, "simplify", asked, control, arguments.stop, arguments.components});
 }
 
-void run_simplify(const SimplifyArguments& arguments) {
-  if (!arguments.output.given()) throw CLI::RequiredError("--output");
+void run_simplify(SimplifyArguments arguments) {
+  if (!arguments.output.given()) arguments.output.path = usual_output(arguments.input, "_simplified", ".ply");
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
@@ -141,8 +163,10 @@ void run_simplify(const SimplifyArguments& arguments) {
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({arguments.input, output.path, run.report, arguments.page.path});
+    check_absent(run.no_clobber, {output.path, run.report, arguments.page.path});
   }
   check_page(arguments.page, arguments.output);
+  check_placing(arguments.output, outputs.size() > 1);
 
   exit_on_signal();
   InputMesh input = read_input_mesh(arguments.input, arguments.reading, arguments.weld);
@@ -151,9 +175,6 @@ void run_simplify(const SimplifyArguments& arguments) {
   const Json place = place_json(mesh);
   const std::string unit = mesh.unit;
   options = simplify_options(arguments, unit);
-  if (!run.quiet && unit.empty() && has_metric_length(arguments.stop)) {
-    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
-  }
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
@@ -164,7 +185,8 @@ void run_simplify(const SimplifyArguments& arguments) {
                          [&](std::size_t level) { return file_options(arguments, mesh, level, options.triangles); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
+  MeshReport report = simplify_named(arguments, mesh, sinks, options, control, dropped);
+  sinks.tell_digests(report);
   report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
   add_seams(arguments, mesh, report);
   add_dropped(dropped, report);
@@ -175,22 +197,26 @@ void run_simplify(const SimplifyArguments& arguments) {
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
+  if (unit.empty() && (has_metric_length(arguments.stop) || states_unit(arguments.output))) {
+    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
+  }
   print_welded(arguments.input, arguments.weld, input.welded);
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());
   print_dropped(report);
   print_levels(report, outputs);
-  print_target(report, options.triangles, options.error, unit);
+  print_target(arguments.stop, report, options.triangles, options.error, unit);
   print_summary(report, outputs.back().name(), 0);
 }
 
 }  // namespace
 
 void add_simplify_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("simplify", "Triangle mesh to simplified triangle mesh");
+  CLI::App* verb = app.add_subcommand("simplify", "Simplify a triangle mesh");
   const auto arguments = std::make_shared<SimplifyArguments>();
   verb->add_option("MESH", arguments->input, kMeshInputHelp)->required();
   add_output_options(*verb, arguments->output);
+  add_placing_options(*verb, arguments->output.placing);
   add_stop_options(*verb, arguments->stop);
   add_weld_option(*verb, arguments->weld);
   add_component_options(*verb, arguments->components, "mesh as it is given");

@@ -8,6 +8,7 @@ namespace isoweave::cli {
 void add_mesh_verb(CLI::App& app);
 void add_simplify_verb(CLI::App& app);
 void add_info_verb(CLI::App& app);
+void add_index_verb(CLI::App& app);
 void add_check_verb(CLI::App& app);
 void add_compare_verb(CLI::App& app);
 void add_render_verb(CLI::App& app);

@@ -26,13 +26,15 @@ constexpr const char* kExamples = R"(
 Examples:
   isoweave view bone.ply
   isoweave view bone.json -o bone.html --before full.ply
-The report is one that mesh or simplify wrote (--report); the page shows the mesh that it names.)";
+
+The report is one that mesh or simplify wrote (--report); the page shows the
+mesh that it names.)";
 
 struct ViewArguments {
   ReadMeshOptions reading;
   std::string input, before, threads = "all";
   PageOptions page;
-  bool quiet = false;
+  bool quiet = false, no_clobber = false;
 };
 
 // Whether a file is a report. A scene of glTF begins like a report as well, and is told by its name. A pipe, which can
@@ -76,6 +78,7 @@ void run_view(ViewArguments arguments) {
   control.threads = parse_threads(arguments.threads);
   if (!arguments.page.given()) arguments.page.path = (arguments.input == "-" ? "stdin" : arguments.input) + ".html";
 
+  check_absent(arguments.no_clobber, {arguments.page.path});
   exit_on_signal();
   const bool reported = is_report(arguments.input);
   Json report = reported ? read_report(arguments.input) : Json::object();
@@ -99,6 +102,7 @@ void run_view(ViewArguments arguments) {
     report["before"] = arguments.before;
   }
   if (!reported) report["version"] = ISOWEAVE_VERSION;
+  if (!reported && !contents.mesh.space.empty()) report["space"] = contents.mesh.space;
   report["output"] = mesh_path;
   control.stop = borrow(stop_on_signal());
   OutputFile file(arguments.page.path);
@@ -109,7 +113,7 @@ void run_view(ViewArguments arguments) {
 }  // namespace
 
 void add_view_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("view", "A page that shows a mesh, or a report and its mesh, in a browser");
+  CLI::App* verb = app.add_subcommand("view", "Write a page that shows a mesh in a browser");
   const auto arguments = std::make_shared<ViewArguments>();
   verb->add_option("MESH|REPORT", arguments->input, "Mesh, or report that mesh or simplify wrote")->required();
   verb->add_option("-o,--output", arguments->page.path, "Page to write (default: the name and .html)");
@@ -117,6 +121,7 @@ void add_view_verb(CLI::App& app) {
   add_page_triangles(*verb, arguments->page);
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all")->capture_default_str();
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   verb->footer(kExamples);
   verb->callback([arguments] { run_view(*arguments); });

@@ -20,6 +20,12 @@ class BadInput : public Error {
   using Error::Error;
 };
 
+// A mesh without triangles, where the caller wants one (RunControl::allow_empty). what() says why nothing is there.
+class EmptySurface : public BadInput {
+ public:
+  using BadInput::BadInput;
+};
+
 // An output that cannot be created, written, completed or represented in its format.
 class CannotWrite : public Error {
  public:

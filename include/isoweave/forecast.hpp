@@ -24,7 +24,8 @@ struct Forecast {
 // Forecasts a run. Reads slices at up to 24 places, extracts the surface between them and simplifies a part of it, in a
 // small part of the time of the run. Dropped components are not known here: triangles and vertices are upper bounds
 // then. A source can be read once only, so this one is of no use afterwards. Where skipping slices means decompressing
-// them, only the first half gigabyte is looked at.
+// them, only the first half gigabyte is looked at. With RunControl::index these places are weighed by the bricks of the
+// whole volume that the surface crosses, and what the surface misses is not read.
 // @throws what mesh_volume throws
 // @determinism All fields but `seconds`.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "isoweave/label.hpp"
@@ -41,9 +43,44 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop = nu
 // iso-value it parts bright from dark. Nothing when there are not two different values.
 std::optional<double> otsu_threshold(const Histogram& histogram);
 
+// The values that split the histogram into `classes` classes with the largest variance between them, ascending (Otsu's
+// criterion for several thresholds, found exactly). Fewer where there are not so many different values.
+// @throws std::invalid_argument unless classes is from 2 to 8
+// @cost classes * kBins^2 steps.
+std::vector<double> otsu_thresholds(const Histogram& histogram, std::size_t classes);
+
+// A tissue in CT, by the iso-value in Hounsfield units that parts it from what is around it.
+struct HounsfieldPreset {
+  std::string_view name;
+  double iso;
+};
+
+// bone, skin and lung. The surface of the lungs is that of the air in them: inside is below.
+std::span<const HounsfieldPreset> hounsfield_presets();
+
+// Whether a range of values looks like that of CT in Hounsfield units: air, far below 0, and what is denser than water.
+bool is_hounsfield_range(double min, double max);
+
 // The counts of the histogram in fewer equal parts of its range.
 // @throws std::invalid_argument unless `parts` divides kBins
 std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts);
+
+// The edges of the lattice that the surface crosses, for iso-values over the range of a volume: the vertices that a run
+// extracts (MeshReport::vertices_extracted). A closed surface has two triangles for each, less twice its Euler number.
+struct CrossingCounts {
+  Histogram histogram;                // from the same pass
+  double first = 0, step = 1;         // iso-values: first + n * step
+  std::vector<std::uint64_t> counts;  // exact at these values; empty where all samples are one value
+};
+
+// Counts crossings for all iso-values in one pass over the volume. Integers of 8 and 16 bits get each value that a
+// sample can have, others up to 512 values at distances of a power of two, all times the slope.
+// @pre The volume has not been read.
+// @throws Interrupted when `stop` is set, and what the source throws
+// @cost Memory: two slices and about 4 MB.
+// @determinism Depends on the samples only.
+CrossingCounts count_crossings(SliceSource& volume, bool closed = true, bool inside_above = true,
+                               const std::atomic<bool>* stop = nullptr);
 
 }  // namespace isoweave
 #pragma GCC visibility pop

@@ -23,9 +23,10 @@
 namespace isoweave {
 
 // Meshes a volume into a sink, and finishes the sink. An iso-value outside the range of the samples gives an empty mesh
-// and a warning. With a checkpoint folder the state is saved before Interrupted is thrown, and before BadInput from a
-// source that fails in the middle. A mesh file kept in parts is read back when it is opened again and when it is
-// finished: its digest is that of the bytes in the file, or the run fails.
+// and a warning, or EmptySurface where the control says so. An iso-value below all samples gives the border of the
+// volume alone, and a warning. With a checkpoint folder the state is saved before Interrupted is thrown, and before
+// BadInput from a source that fails in the middle. A mesh file kept in parts is read back when it is opened again and
+// when it is finished: its digest is that of the bytes in the file, or the run fails.
 // @pre The volume has not been read. No other object reads it or writes to the sink meanwhile.
 // @throws BadInput, CannotWrite from the source and the sink; BadInput also when the volume's file has another size or
 //   time of change in the end than in the beginning, when components were chosen in another surface, and when a resumed

@@ -30,7 +30,8 @@ enum class RunFeature : std::uint8_t {
   kObserver,        // an observer (RunControl::observer)
   kMemoryCap,       // a cap on memory (RunControl::memory)
   kExtractor,       // an extractor other than marching cubes (SurfaceOptions::extractor)
-  kSchedule         // a schedule other than rounds (RunControl::schedule)
+  kSchedule,        // a schedule other than rounds (RunControl::schedule)
+  kIndex            // an index of the volume (RunControl::index)
 };
 
 // A run that was asked for with a feature which it does not have. what() names both.

@@ -19,8 +19,9 @@ struct Colour {
   bool operator==(const Colour&) const = default;
 };
 
-// The place of the camera, in degrees around the middle of the mesh. At 0, 0 it looks along +y with z up: in LPS
-// coordinates at the face of a patient who stands. Azimuth turns it to the side of +x, elevation up to +z.
+// The place of the camera, in degrees around the middle of the mesh. At 0, 0 it looks along +y with z up, in a mesh
+// whose space is RAS along -y: both at the face of a patient who stands. Azimuth turns it to the side of +x (RAS: -x),
+// elevation up to +z.
 struct View {
   double azimuth = 35;
   double elevation = 20;  // -90 ... 90

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct SurfaceReport {
   std::uint64_t digest = 0;
 };
 
+// The amounts that a run has not read, as an index told that the surface lies elsewhere.
+struct LeftOutReport {
+  // Chunks of Zarr, N5 and HDF5, strips and tiles of TIFF; 0 of other formats.
+  std::uint64_t chunks = 0, chunks_left_out = 0;
+  std::uint64_t bytes_left_out = 0;  // of samples as they are in memory
+};
+
 // The report of a run, and of its mesh with the largest error.
 struct MeshReport : SurfaceReport {
   int threads = 0;
@@ -41,7 +49,8 @@ struct MeshReport : SurfaceReport {
   std::int64_t resumed_at = 0;        // layers that an earlier process has done
   // Seconds by the clock. Finer levels are handed to their sinks while simplifying.
   double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
-  std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
+  std::uint64_t peak_bytes = 0;             // of the process, as the system counts it
+  std::optional<LeftOutReport> left_out{};  // where the run had an index
   std::vector<SlabRecord> sweep;
   std::vector<std::string> warnings;  // one line each
 };

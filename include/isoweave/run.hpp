@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "isoweave/index.hpp"
 #include "isoweave/mesh.hpp"
 
 #pragma GCC visibility push(default)
@@ -132,9 +133,18 @@ struct RunControl {
   CheckpointOptions checkpoint{};      // mesh_volume only. The sink must be able to give marks
   // mesh_volume only: the state to resume, with the same volume and options and a sink opened at its mark.
   std::optional<Checkpoint> resume{};
+  // The index of the volume (read_index, build_index): parts that the surface misses are not read, and min, max and nan
+  // of the report come from the index. Null: everything is read. Not for labels. A volume that is held in memory is not
+  // read anyway.
+  // @throws std::invalid_argument from the run for the index of a volume of another size or type
+  std::shared_ptr<const VolumeIndex> index{};
   // Whether to find the digest, the components, non-manifold edges and vertices, and the range of the samples. Without
   // it these stay empty in the report.
   bool measure = true;
+  // Whether a mesh without triangles is a result, with a warning. False for programs that would replace a good mesh by
+  // it.
+  // @throws EmptySurface from the run, before a sink is finished; no state is left in a checkpoint folder
+  bool allow_empty = true;
 };
 
 }  // namespace isoweave

@@ -56,7 +56,7 @@ struct Geometry {
   std::array<double, 3> origin{0, 0, 0};                       // of sample (0, 0, 0)
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; column a is axis a, unit length
   Space space = Space::kUnknown;
-  std::string unit;  // "mm", "um", "nm", "m", or empty: not said
+  std::string unit;  // "mm", "um", "nm", "m", or empty: not said, and millimetres wherever a length needs a unit
 };
 
 struct VolumeInfo {
@@ -64,6 +64,8 @@ struct VolumeInfo {
   std::string format;                         // "raw", "nrrd", "metaimage", "nifti", "pvm", "tiff", "png", "dicom", ...
   std::string part;                           // the chosen part of it: "dataset /raw, channel 1"; empty: all of it
   std::string header;                         // where `path` is a folder: the file that describes the volume, if any
+  std::vector<std::string> data_files;        // files with samples, where they are not all in `path` or its folder
+  std::string layout;                         // of headerless data, as parse_raw_layout takes it
   std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
   SampleType type = SampleType::kUint8;
   Geometry geometry;
@@ -138,6 +140,7 @@ struct OpenOptions {
   std::optional<RawLayout> raw;                  // read the file as headerless data of this layout
   std::optional<std::array<double, 3>> spacing;  // overrides the file's
   std::optional<std::array<double, 3>> origin;   // overrides the file's
+  std::string unit;                              // of spacing and origin, in any spelling; overrides the file's
   std::string series;                            // UID of a DICOM series, where there are several; "none": without UID
   std::string dataset;                  // path or name of an array in the file or folder (HDF5, Zarr, N5, VTK, NPZ)
   std::optional<std::int64_t> level;    // 0: full size; of an image kept at several (OME-Zarr, N5, Imaris)
@@ -155,7 +158,8 @@ struct OpenOptions {
 // stands for the series it belongs to, and a folder of DICOM for the folders below it too. docs/formats.md says what is
 // read of each format. Only headers are read here, and their claims are compared with the sizes of files.
 // @throws BadInput when there is no file, no slice, no known format or none of this build, when the header is wrong,
-//   and for options that the format has no place for; CannotWrite when there is no room for a pipe's content
+//   and for options that the format has no place for; std::invalid_argument for a unit that is not known; CannotWrite
+//   when there is no room for a pipe's content
 std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options = {});
 
 // A box of samples: [first, end) along each axis.
@@ -230,6 +234,14 @@ std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label>
 // The number of labels that are spread like the grey values of an image: thin, and hardly filling their box. A volume
 // in which most labels are is no label map, as a rule; docs/labels.md has the measurements.
 std::size_t count_scattered(std::span<const LabelExtent> labels);
+
+// Whether labels look like those of a label map: they are few, or no more than half of them are scattered.
+bool look_like_labels(std::span<const LabelExtent> labels);
+
+// Whether a volume looks like a mask or label map: whole numbers from 0 on that look like labels, in its middle slices.
+// @throws what the source throws; Interrupted when `stop` is set
+// @cost Reads at most 64 slices.
+bool looks_like_label_map(std::unique_ptr<SliceSource> volume, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace isoweave
 #pragma GCC visibility pop

@@ -1,5 +1,9 @@
-// The diagonals of the polygons of marching cubes: the shortest ones that do not lie in a cell face. Shared by host and
-// device.
+// The diagonals of the polygons of marching cubes, by their geometry: the shortest ones that do not lie in a cell face.
+// Shared by host and device.
+//
+// A polygon of five corners goes around three corners of a cell in an L. Its ear, the corner on the edge at the L's
+// elbow, is cut off first: the three edges there are parallel. On the steps of a mask both parts are flat then, and
+// simplification leaves fewer triangles.
 #pragma once
 
 #include <array>
@@ -18,6 +22,7 @@ inline constexpr std::size_t kMostCorners = 7;
 // A polygon of a case that has more than three corners.
 struct ChoicePolygon {
   std::uint8_t size = 0;
+  std::uint8_t ear = 0;                                // of five corners: the one between two on parallel edges
   std::uint8_t first = 0;                              // triangle of the case
   std::array<std::uint8_t, kMostCorners> at{};         // of each corner: its place among the corners of its triangles
   std::array<std::uint8_t, kMostCorners> diagonals{};  // of each corner: a bit for each one that it may be joined to
@@ -32,10 +37,21 @@ struct ChoicePolygons {
 
 namespace table_rules {
 
+// The corner of a polygon whose edge is parallel to those of both its neighbours, or -1. Five corners of a case have
+// one.
+constexpr int ear_of(const Polygon& polygon) {
+  const auto axis = [&](int n) { return cell_edge(polygon.edges[static_cast<std::size_t>(n % polygon.size)]).axis; };
+  for (int n = 0; n < polygon.size; ++n) {
+    if (axis(n) == axis(n + 1) && axis(n) == axis(n + polygon.size - 1)) return n;
+  }
+  return -1;
+}
+
 constexpr ChoicePolygon choice_polygon(const Polygon& polygon, const CellCase& shape, std::size_t first) {
   ChoicePolygon out;
   out.size = static_cast<std::uint8_t>(polygon.size);
   out.first = static_cast<std::uint8_t>(first);
+  out.ear = static_cast<std::uint8_t>(polygon.size == 5 ? ear_of(polygon) : 0);
   for (std::size_t a = 0; a < out.size; ++a) {
     while (shape.edges[3 * first + out.at[a]] != polygon.edges[a]) ++out.at[a];
     for (std::size_t b = 0; b < out.size; ++b) {
@@ -96,10 +112,21 @@ ISOWEAVE_HD inline void choose_diagonal(const ChoicePolygon& polygon, const Vert
   for (std::size_t n = 0; n < 6; ++n) vertex(n) = corners[n];
 }
 
+// Five corners lose their ear, and the four others get the shorter diagonal.
+template <class Vertex, class Place>
+ISOWEAVE_HD inline void cut_ear(const ChoicePolygon& polygon, const Vertex& vertex, const Place& place) {
+  std::uint32_t around[5];  // from the ear on
+  for (std::size_t n = 0; n < 5; ++n) around[n] = vertex(polygon.at[(polygon.ear + n) % 5]);
+  const auto [a, b, c, d, e] = around;
+  const bool from_b = !(squared_distance(place(c), place(e)) < squared_distance(place(b), place(d)));
+  const std::uint32_t corners[9] = {a, b, e, b, c, from_b ? d : e, from_b ? b : c, d, e};
+  for (std::size_t n = 0; n < 9; ++n) vertex(n) = corners[n];
+}
+
 template <class Vertex, class Place>
 ISOWEAVE_HD inline void choose_diagonals(const ChoicePolygon& polygon, const Vertex& vertex, const Place& place) {
   if (polygon.size == 4) return choose_diagonal(polygon, vertex, place);
-  if (polygon.size == 5) return choose_diagonals_of<5>(polygon, vertex, place);
+  if (polygon.size == 5) return cut_ear(polygon, vertex, place);
   if (polygon.size == 6) return choose_diagonals_of<6>(polygon, vertex, place);
   choose_diagonals_of<7>(polygon, vertex, place);
 }

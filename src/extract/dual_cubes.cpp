@@ -321,7 +321,7 @@ class DualCubes::VertexMaker {
     crossing.t = crossing_parameter(crossing.f0, crossing.f1, samples_.iso(), crossing.low_inside);
     std::array<double, 3> at{double(edge.dx), double(edge.dy), double(edge.dz)};
     at[edge.axis] += crossing.t;
-    const Point normal = normal_at(samples_, crossing, cubes_.spacing_, cubes_.options_.rule.above);
+    const Point normal = sharp_normal_at(samples_, crossing, cubes_.spacing_, cubes_.options_.rule.above);
     planes.add({at[0] * cubes_.spacing_[0], at[1] * cubes_.spacing_[1], at[2] * cubes_.spacing_[2]},
                {normal[0], normal[1], normal[2]});
   }
@@ -388,6 +388,8 @@ DualCubes::Place DualCubes::moved(const Place& from, int axis, int steps) {
 std::optional<std::uint32_t> DualCubes::vertex_at(const Place& place, int edge, bool in_face) const {
   const Cell& cell = cell_at(place.at, place.bit);
   if (in_face && cell.face < 0) return std::nullopt;
+  const bool whole = cell.border == 0 && place.at.layer > 0;
+  if (whole && !in_face) return cell.first + kDualNumbers[cell.inside][static_cast<std::size_t>(edge)];
   const DualCell vertices = vertices_of(cell);
   std::uint32_t number = cell.first;
   for (std::size_t n = 0; n < vertices.count; ++n) {

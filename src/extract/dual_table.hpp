@@ -153,6 +153,22 @@ constexpr DualCell make_cell(int inside, CellSides border, int face) {
   return out;
 }
 
+// The vertex of a case on each of its edges, where all polygons are whole.
+constexpr std::array<std::array<std::uint8_t, kCellEdges>, 256> make_numbers() {
+  std::array<std::array<std::uint8_t, kCellEdges>, 256> numbers{};
+  for (int inside = 0; inside < 256; ++inside) {
+    std::uint8_t number = 0;
+    table_rules::for_polygons(inside, [&](const table_rules::Polygon& polygon) {
+      for (int n = 0; n < polygon.size; ++n) {
+        const auto edge = static_cast<std::size_t>(polygon.edges[static_cast<std::size_t>(n)]);
+        numbers[static_cast<std::size_t>(inside)][edge] = number;
+      }
+      ++number;
+    });
+  }
+  return numbers;
+}
+
 constexpr std::array<DualCell, 256> make_cells() {
   std::array<DualCell, 256> cells{};
   for (int inside = 0; inside < 256; ++inside) cells[static_cast<std::size_t>(inside)] = make_cell(inside, 0, -1);
@@ -163,5 +179,6 @@ constexpr std::array<DualCell, 256> make_cells() {
 
 inline constexpr std::array<std::int8_t, 256> kTwiceMetFaces = dual::make_twice_met_faces();
 inline constexpr std::array<DualCell, 256> kDualCells = dual::make_cells();
+inline constexpr std::array<std::array<std::uint8_t, kCellEdges>, 256> kDualNumbers = dual::make_numbers();
 
 }  // namespace isoweave

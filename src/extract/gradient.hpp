@@ -49,8 +49,15 @@ struct SampleRow {
   }
 };
 
-// The central difference per unit length, of the samples times `scale`. It is one-sided where a neighbour is missing or
-// NaN, and 0 where both are.
+// The difference of samples over two steps, a mean. It is over one step where a neighbour is missing or NaN, and 0
+// where both are.
+ISOWEAVE_HD inline double central_slope(double low, double here, double high, double spacing) {
+  const bool has_low = low == low, has_high = high == high;
+  const int steps = has_low + has_high;
+  return steps > 0 ? ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing) : 0;
+}
+
+// The differences per unit length along the axes, of the samples times `scale`.
 template <class Samples>
 ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std::int64_t, 3>& at,
                                     const std::array<double, 3>& spacing, double scale) {
@@ -62,9 +69,7 @@ ISOWEAVE_HD inline Vec3 gradient_at(const Samples& samples, const std::array<std
     ++right[axis];
     const double low = scale * samples.row(left[1], left[2])[left[0]];
     const double high = scale * samples.row(right[1], right[2])[right[0]];
-    const bool has_low = low == low, has_high = high == high;
-    const int steps = has_low + has_high;
-    if (steps > 0) slope[axis] = ((has_high ? high : here) - (has_low ? low : here)) / (steps * spacing[axis]);
+    slope[axis] = central_slope(low, here, high, spacing[axis]);
   }
   return {slope[0], slope[1], slope[2]};
 }
@@ -129,6 +134,39 @@ ISOWEAVE_HD inline Point normal_at(const Samples& samples, const Crossing& cross
     if (is_finite(small)) g = small;
   }
   return unit_point(above ? -g : g);
+}
+
+// The mean of two differences that is 0 where they go apart and near the smaller one where they are far from alike: the
+// harmonic mean (van Leer, 1974). Beside a sharp edge of the surface one of them crosses the edge, and the other does
+// not.
+inline double limited_slope(double down, double up) {
+  if (down != down) return up == up ? up : 0;
+  if (up != up) return down;
+  return down * up > 0 ? 2 * (down * up / (down + up)) : 0;
+}
+
+// The normal at a crossing of an edge of a cube, outwards, from as few samples as tell it: those at the ends of the
+// edge, and the places beside the crossing on the edges beside its own. Sharp edges of a surface stay sharp.
+template <class Samples>
+inline Point sharp_normal_at(const Samples& samples, const Crossing& crossing, const std::array<double, 3>& spacing,
+                             bool above) {
+  if ((crossing.f0 == crossing.f0) != (crossing.f1 == crossing.f1)) return cap_normal(samples, crossing);
+  const auto at = [&](std::size_t axis, int step) {
+    std::array<std::int64_t, 3> low = crossing.low, high = crossing.high();
+    low[axis] += step;
+    high[axis] += step;
+    const double f0 = samples.row(low[1], low[2])[low[0]];
+    return f0 + crossing.t * (samples.row(high[1], high[2])[high[0]] - f0);
+  };
+  const double here = crossing.f0 + crossing.t * (crossing.f1 - crossing.f0);
+  std::array<double, 3> slope;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    slope[axis] =
+        (crossing.along(axis) ? crossing.f1 - crossing.f0 : limited_slope(here - at(axis, -1), at(axis, 1) - here)) /
+        spacing[axis];
+  }
+  const Vec3 gradient{slope[0], slope[1], slope[2]};
+  return unit_point(above ? -gradient : gradient);
 }
 
 // The normal at a place inside the cell that begins with a sample, outwards: the gradients at its corners, weighed.

@@ -216,14 +216,25 @@ class TrilinearCubes::RowWriter {
     return ring;
   }
 
-  // Adds the triangles of a loop between its own vertices.
+  // Adds the triangles of a loop between its own vertices, with the diagonals of marching cubes.
   void add_polygon(const CellLoop& loop, const Ring& ring) {
+    if (loop.size == 5 && table_rules::ear_of(loop) >= 0) return add_without_ear(loop, ring);
     const ShortestDiagonals<kCellEdges> shortest(ring.size, [&](std::size_t a, std::size_t b) {
       return table_rules::share_face(loop.edges[a], loop.edges[b]) ? std::numeric_limits<double>::infinity()
                                                                    : squared_distance(ring.place[a], ring.place[b]);
     });
     shortest.for_each_triangle(
         [&](std::size_t a, std::size_t b, std::size_t c) { add(ring.number[a], ring.number[b], ring.number[c]); });
+  }
+
+  void add_without_ear(const CellLoop& loop, const Ring& ring) {
+    const auto ear = static_cast<std::size_t>(table_rules::ear_of(loop));
+    const auto n = [&](std::size_t step) { return ring.number[(ear + step) % 5]; };
+    const auto place = [&](std::size_t step) { return ring.place[(ear + step) % 5]; };
+    const bool from_2 = squared_distance(place(2), place(4)) < squared_distance(place(1), place(3));
+    add(n(0), n(1), n(4));
+    add(n(1), n(2), from_2 ? n(4) : n(3));
+    add(from_2 ? n(2) : n(1), n(3), n(4));
   }
 
   // Adds the triangles of a loop around a vertex in its middle.

@@ -27,6 +27,10 @@ std::optional<LengthUnit> find_metric_unit(std::string_view text);
 std::optional<double> unit_in(const LengthUnit& unit, std::string_view other);
 std::optional<double> unit_in(std::string_view unit, std::string_view other);
 
+// The unit that lengths of an unknown one are in.
+inline constexpr std::string_view kUnitOfNone = "mm";
+inline std::string_view unit_or_usual(std::string_view unit) { return unit.empty() ? kUnitOfNone : unit; }
+
 // The factors that bring the numbers of three axes into one unit.
 struct CommonUnit {
   std::string unit;  // one that Geometry knows; empty where no axis has a known one

@@ -22,8 +22,9 @@ void StateWriter::commit() {
   file_.commit();
 }
 
-StateReader::StateReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) throw BadInput(path_ + ": expected a saved state, found no file that can be read");
+StateReader::StateReader(const std::string& path, const char* kind)
+    : path_(path), kind_(kind), file_(path, std::ios::binary) {
+  if (!file_) throw BadInput(path_ + ": expected a " + kind_ + ", found none that can be read");
   check_crc();
 }
 
@@ -32,7 +33,9 @@ void StateReader::check_crc() {
   const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
   std::uint32_t expected = 0;
   std::uint32_t crc = 0;
-  if (size < sizeof(crc)) throw BadInput(path_ + ": expected a saved state, found " + std::to_string(size) + " bytes");
+  if (size < sizeof(crc)) {
+    throw BadInput(path_ + ": expected a " + kind_ + ", found " + std::to_string(size) + " bytes");
+  }
   left_ = size - sizeof(crc);
   file_.seekg(0);
   std::vector<std::byte> block(kBlockBytes);
@@ -43,18 +46,18 @@ void StateReader::check_crc() {
   }
   file_.read(reinterpret_cast<char*>(&expected), sizeof(expected));
   if (!file_) throw BadInput(path_ + ": cannot be read to its end");
-  if (crc != expected) throw BadInput(path_ + ": the saved state is damaged: its checksum does not fit");
+  if (crc != expected) throw BadInput(path_ + ": the " + kind_ + " is damaged: its checksum does not fit");
   file_.seekg(0);
 }
 
 void StateReader::require_left(std::uint64_t count, std::uint64_t bytes_each) const {
   if (count <= left_ / bytes_each) return;
-  throw BadInput(path_ + ": expected " + std::to_string(count) + " items in the saved state, found " +
+  throw BadInput(path_ + ": expected " + std::to_string(count) + " items in the " + kind_ + ", found " +
                  std::to_string(left_ / bytes_each));
 }
 
 void StateReader::refuse(const char* expected) const {
-  throw BadInput(path_ + ": the saved state is damaged: expected " + expected + ", found something else");
+  throw BadInput(path_ + ": the " + kind_ + " is damaged: expected " + expected + ", found something else");
 }
 
 void StateReader::get(std::span<std::byte> bytes) {

@@ -66,8 +66,9 @@ class StateWriter {
 
 class StateReader {
  public:
-  // Reads the whole file once, for its CRC. Throws BadInput, as all members do.
-  explicit StateReader(const std::string& path);
+  // Reads the whole file once, for its CRC. Throws BadInput, as all members do. `kind`: the noun for such a file in
+  // messages.
+  explicit StateReader(const std::string& path, const char* kind = "saved state");
 
   template <class T>
   void value(T& value) {
@@ -119,6 +120,7 @@ class StateReader {
   void get(std::span<std::byte> bytes);
 
   std::string path_;
+  const char* kind_;
   std::ifstream file_;
   std::uint64_t left_ = 0;  // bytes of fields not read yet
 };

@@ -23,6 +23,14 @@ RunControl passing_control(const RunControl& control) {
   return passing;
 }
 
+// The options of a surface with the same connections and as many triangles, that is not smoothed where smoothing
+// changes neither: it does where samples decide how a cell is cut.
+SurfaceOptions unsmoothed(const SurfaceOptions& options) {
+  SurfaceOptions surface = options;
+  if (options.extractor != ExtractorKind::kTrilinear) surface.smooth = 0;
+  return surface;
+}
+
 // One pass over the volume, in which a stage looks at the surface.
 class Pass {
  public:
@@ -63,9 +71,8 @@ class Pass {
 ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& options, const ComponentRule& rule,
                                   const RunControl& control) {
   const StandardFloats floats;
-  SurfaceOptions all = options;
+  SurfaceOptions all = unsmoothed(options);
   all.components = nullptr;
-  all.smooth = 0;  // smoothing changes no connection
   Pass pass(volume, all, control);
   ComponentFinder finder(pass.numbering(), pass.executor());
   pass.run(&finder);
@@ -76,8 +83,7 @@ ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& opt
 
 std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options, const RunControl& control) {
   const StandardFloats floats;
-  SurfaceOptions counted = options;
-  counted.smooth = 0;  // the smoothed surface has as many triangles
+  const SurfaceOptions counted = unsmoothed(options);
   Pass pass(volume, counted, control);
   if (counted.components == nullptr) return pass.run(nullptr);
   ComponentFilter filter(*counted.components, pass.numbering(), volume.info().path, pass.executor());

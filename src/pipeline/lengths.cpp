@@ -19,7 +19,7 @@ constexpr double kShapePart = 0.05;  // of a diagonal
 std::optional<double> converted(double value, std::string_view suffix, std::string_view unit) {
   const std::optional<LengthUnit> length = find_length_unit(suffix);
   if (!length) return std::nullopt;
-  return unit_in(LengthUnit{value * length->scale, length->name}, unit.empty() ? "mm" : unit);
+  return unit_in(LengthUnit{value * length->scale, length->name}, unit_or_usual(unit));
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ class IsoSweep final : public StrandGuide {
       mesh.min = report_.total.min;
       mesh.max = report_.total.max;
       mesh.nan = report_.total.nan;
-      warn_of_nothing(tasks_[n], sweep_.range().empty(), mesh);
+      warn_of_border(tasks_[n], mesh);
+      warn_of_nothing(tasks_[n], control_.allow_empty, mesh);
     }
     for (const IsoSink& surface : surfaces_) surface.sink->finish();
   }

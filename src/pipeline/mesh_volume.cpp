@@ -112,7 +112,19 @@ class VolumeRun final : public SavedRun::State {
     require_decided();
     sweep_.finish();
     finish_components();
-    warn_of_nothing(task_, sweep_.pieces().range().empty(), report_);
+    warn_of_border(task_, report_);
+    judge_emptiness();
+  }
+
+  // A run that refuses its mesh is finished as well: there is nothing to be resumed.
+  void judge_emptiness() {
+    try {
+      warn_of_nothing(task_, control_.allow_empty, report_);
+    } catch (const EmptySurface&) {
+      saved_->clear();
+      for (MeshSink* sink : sinks_) sink->forget_marks();
+      throw;
+    }
   }
 
   // Refuses a state that leaves a surface which cannot be decided: no other run does.

@@ -32,7 +32,7 @@ struct Feature {
   unsigned refused_by;
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
-constexpr std::array<Feature, 12> kFeatures{{
+constexpr std::array<Feature, 13> kFeatures{{
     {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
     {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels,
@@ -59,6 +59,8 @@ constexpr std::array<Feature, 12> kFeatures{{
      [](const MeshOptions&, const RunControl& control) {
        return control.schedule != Schedule::kAutomatic && control.schedule != Schedule::kRounds;
      }},
+    {RunFeature::kIndex, "an index of the volume", kLabels | kIsoValues | kSimplify,
+     [](const MeshOptions&, const RunControl& control) { return control.index != nullptr; }},
 }};
 
 unsigned refusers_of(RunKind kind, const RunControl& control) {

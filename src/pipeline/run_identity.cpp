@@ -59,8 +59,12 @@ std::string simplify_text(const SimplifyTask& task) {
 
 std::string level_set_text(const SurfaceOptions& surface) {
   constexpr std::array<const char*, 4> kExtractors{"", " trilinear", " tetrahedra", " dual"};
-  return "iso" + numbers_text(std::array{surface.iso}) + (surface.inside_above ? " above" : " below") +
-         (surface.closed ? " closed" : " open") + kExtractors.at(static_cast<std::size_t>(surface.extractor));
+  std::string text = "iso" + numbers_text(std::array{surface.iso}) + (surface.inside_above ? " above" : " below") +
+                     (surface.closed ? " closed" : " open") +
+                     kExtractors.at(static_cast<std::size_t>(surface.extractor));
+  // Smoothing changes the connections of a trilinear surface only.
+  const bool smooth_counts = surface.smooth > 0 && surface.extractor == ExtractorKind::kTrilinear;
+  return smooth_counts ? text + " smooth " + std::to_string(surface.smooth) : text;
 }
 
 std::string surface_text(const SurfaceOptions& surface) {

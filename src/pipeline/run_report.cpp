@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "isoweave/error.hpp"
 #include "output/world.hpp"
 
 namespace isoweave {
@@ -30,6 +31,27 @@ std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, dou
   const std::string kept = "each of " + std::to_string(report.components) + " components keeps " +
                            std::to_string(kLeastTriangles) + " at least, " + std::to_string(least) + " in all";
   return report.triangles > least ? kept + "; " + held : kept;
+}
+
+std::string plain_number(double number) {
+  std::array<char, 32> digits{};
+  return {digits.begin(), std::to_chars(digits.begin(), digits.end(), number).ptr};
+}
+
+std::string range_text(const MeshReport& report) {
+  return "the samples go from " + plain_number(report.min) + " to " + plain_number(report.max);
+}
+
+// The reason why a mesh has no triangles.
+std::string why_empty(const Task& task, const MeshReport& report) {
+  if (report.components_dropped > 0) {
+    return "nothing is left: each of " + std::to_string(report.components_dropped) + " components has fewer than " +
+           std::to_string(task.surface.components->rule.min_triangles) + " triangles";
+  }
+  if (report.specks > 0) return "nothing is left: each component has shrunk to a speck within the error";
+  const std::string iso = ", iso is " + plain_number(task.surface.iso);
+  if (report.min > report.max) return "the surface is empty: no samples are numbers" + iso;
+  return "the surface is empty: " + range_text(report) + iso;
 }
 
 }  // namespace
@@ -84,8 +106,8 @@ void warn_of_values(const Task& task, MeshReport& report) {
 void report_samples(const VolumeInfo& volume, const SampleRange& range, MeshReport& report) {
   const double low = volume.slope * range.min + volume.intercept;
   const double high = volume.slope * range.max + volume.intercept;
-  report.min = volume.slope > 0 || range.empty() ? low : high;
-  report.max = volume.slope > 0 || range.empty() ? high : low;
+  report.min = range.empty() ? range.min : std::min(low, high);
+  report.max = range.empty() ? range.max : std::max(low, high);
   report.nan = range.nan;
   if (range.nan == 0) return;
   report.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
@@ -97,19 +119,22 @@ SampleRange range_of_constant(const SampleBytes& sample, const VolumeInfo& volum
   return range;
 }
 
-void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report) {
-  if (report.triangles > 0) return;
-  if (report.components_dropped > 0) {
-    report.warnings.push_back(task.volume.path + ": nothing is left: each of " +
-                              std::to_string(report.components_dropped) + " components has fewer than " +
-                              std::to_string(task.surface.components->rule.min_triangles) + " triangles");
-    return;
-  }
-  const std::string samples =
-      no_samples ? ", no samples are numbers"
-                 : ", samples from " + std::to_string(report.min) + " to " + std::to_string(report.max);
-  report.warnings.push_back(task.volume.path + ": the surface is empty: iso " + std::to_string(task.surface.iso) +
-                            samples);
+void warn_of_nothing(const Task& task, bool allow_empty, MeshReport& report) {
+  if (report.triangles == 0) report_nothing(task.volume.path + ": " + why_empty(task, report), allow_empty, report);
+}
+
+void report_nothing(const std::string& reason, bool allow_empty, MeshReport& report) {
+  if (!allow_empty) throw EmptySurface(reason);
+  report.warnings.push_back(reason);
+}
+
+void warn_of_border(const Task& task, MeshReport& report) {
+  const SurfaceOptions& surface = task.surface;
+  const bool known = report.min <= report.max && report.nan == 0;
+  const bool all_inside = surface.inside_above ? report.min >= surface.iso : report.max <= surface.iso;
+  if (!surface.closed || !known || !all_inside || report.triangles == 0) return;
+  report.warnings.push_back(task.volume.path + ": the surface is nothing but the border of the volume: " +
+                            range_text(report) + " and are all inside, iso is " + plain_number(surface.iso));
 }
 
 void add_extracted(const SlabCounts& slab, MeshReport& report) {

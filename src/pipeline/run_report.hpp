@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "extract/extractor.hpp"
@@ -46,9 +47,14 @@ void report_samples(const VolumeInfo& volume, const SampleRange& range, MeshRepo
 // The range of a volume whose samples are all the same.
 SampleRange range_of_constant(const SampleBytes& sample, const VolumeInfo& volume);
 
-// Warns of a mesh without triangles, with the reason: every component is dropped, or there is no surface. no_samples:
-// all samples were NaN.
-void warn_of_nothing(const Task& task, bool no_samples, MeshReport& report);
+// Warns of a mesh without triangles, with the reason. Throws EmptySurface instead where the run must not have one.
+void warn_of_nothing(const Task& task, bool allow_empty, MeshReport& report);
+
+// The same for any reason, in one line.
+void report_nothing(const std::string& reason, bool allow_empty, MeshReport& report);
+
+// Warns of a surface that is the border of the volume and nothing else, as all samples are inside.
+void warn_of_border(const Task& task, MeshReport& report);
 
 // Reports the outcome of a run to a number of triangles: `report.error`, the error that was asked for, becomes the
 // largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all else is in

@@ -58,6 +58,7 @@ class MeshRun {
           const RunControl& control)
       : mesh_(mesh),
         sinks_(sinks),
+        allow_empty_(control.allow_empty),
         executor_(control.threads),
         task_(resolve_simplification(options, measure_of(mesh, options, executor_))),
         world_(mesh.offset, common_offset(sinks)),
@@ -75,6 +76,10 @@ class MeshRun {
     loop_.wait_for_sinks();
     loop_.finish();
     warn();
+    if (report_.triangles == 0) {
+      report_nothing(mesh_.triangles.empty() ? "the mesh has no triangles" : "nothing is left of the triangles",
+                     allow_empty_, report_);
+    }
     Stopwatch finishing;
     for (MeshSink* sink : sinks_) sink->finish();
     finishing.lap(report_.seconds_write);
@@ -101,6 +106,7 @@ class MeshRun {
 
   const TriangleMesh& mesh_;
   const std::span<MeshSink* const> sinks_;
+  const bool allow_empty_;
   const Executor executor_;
   const SimplifyTask task_;
   const World world_;

@@ -7,6 +7,7 @@
 #include "extract/cube_rules.hpp"
 #include "isoweave/mesh_options.hpp"
 #include "parallel/parallel.hpp"
+#include "volume/row_source.hpp"
 #include "volume/smoothed_mask.hpp"
 
 namespace isoweave {
@@ -24,8 +25,14 @@ class SurfaceField {
   // The number of slices of the field that can be read once the slices of the volume below `end` can.
   std::int64_t slices_from(std::int64_t end) const;
 
-  // The range of the samples of slice k of the volume, if the volume is smoothed and measured.
-  const SampleRange* range(std::int64_t k) const { return smoothed_ ? smoothed_->range(k) : nullptr; }
+  // The range of the samples of slice k of the volume, where an index tells it, or the volume is smoothed and measured.
+  const SampleRange* range(std::int64_t k) const {
+    const SampleRange* const known = known_range(volume_, k);
+    return known == nullptr && smoothed_ ? smoothed_->range(k) : known;
+  }
+
+  // The CRC-32 of slice k of the field, where an index tells it: the samples that are read may stand for others.
+  std::optional<std::uint32_t> crc(std::int64_t k) const { return smoothed_ ? std::nullopt : known_crc(volume_, k); }
 
   // The most bytes that a field holds.
   static std::uint64_t memory(const VolumeInfo& volume, const SurfaceOptions& options);

@@ -85,6 +85,7 @@ void VolumePieces::measure_samples(std::int64_t slices) {
 std::optional<std::uint32_t> VolumePieces::crc_of_next_slice() const {
   const std::int64_t k = std::max<std::int64_t>(extractor_.slices_for(1).first, 0);
   if (!window_ || k >= window_->end()) return std::nullopt;
+  if (const std::optional<std::uint32_t> known = field_.crc(k)) return known;
   return add_to_crc(0, {window_->slice(k), field_.info().slice_bytes()});
 }
 

@@ -10,12 +10,13 @@ namespace isoweave {
 
 VolumeSweep::VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report)
     : source_(source),
+      indexed_(indexed(source, control.index, task.surface, task.has_normals())),
       task_(task),
       control_(control),
       report_(report),
-      reader_bytes_(held_by_slices(source)),
+      reader_bytes_(held_by_slices(this->source())),
       executor_(control.threads),
-      field_(source, task.surface, executor_, control.measure) {}
+      field_(this->source(), task.surface, executor_, control.measure) {}
 
 std::unique_ptr<Extractor> VolumeSweep::make_extractor() const {
   return isoweave::make_extractor(task_.surface.extractor, field_.info(), {field_.rule(), task_.has_normals()},
@@ -60,6 +61,9 @@ void VolumeSweep::tell(const SlabRecord& record) {
 void VolumeSweep::finish() {
   loop_->finish();
   report_samples(task_.volume, pieces_->range(), report_);
+  if (!indexed_) return;
+  const LeftOut left_out = indexed_->left_out();
+  report_.left_out = {left_out.chunks, left_out.chunks_left_out, left_out.bytes_left_out};
 }
 
 }  // namespace isoweave

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pipeline/surface_field.hpp"
 #include "pipeline/task.hpp"
 #include "pipeline/volume_pieces.hpp"
+#include "volume/indexed_source.hpp"
 
 namespace isoweave {
 
@@ -50,7 +52,10 @@ class VolumeSweep {
   void find_constant();
   void tell(const SlabRecord& record);
 
+  SliceSource& source() { return indexed_ ? *indexed_ : source_; }
+
   SliceSource& source_;
+  std::unique_ptr<IndexedSource> indexed_;  // the source where the run has an index
   const Task& task_;
   const RunControl& control_;
   MeshReport& report_;

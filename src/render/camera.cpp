@@ -25,7 +25,8 @@ Camera::Camera(const TriangleMesh& mesh, const RenderOptions& options)
   const double shorter = std::min(options.width, options.height);
   width_ = std::tan(kHalfAngle) * options.width / shorter;
   height_ = std::tan(kHalfAngle) * options.height / shorter;
-  const double azimuth = options.view.azimuth * kDegree;
+  // RAS is LPS turned by half a circle about z: the front of a patient is on the other side.
+  const double azimuth = (options.view.azimuth + (mesh.space == "RAS" ? 180 : 0)) * kDegree;
   const double elevation = options.view.elevation * kDegree;
   right_ = {std::cos(azimuth), std::sin(azimuth), 0};
   forward_ = {-std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation)};

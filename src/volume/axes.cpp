@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
+#include "files/length_units.hpp"
 
 namespace isoweave {
 namespace {
@@ -107,7 +109,24 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
   geometry.origin = axes.origin;
 }
 
-void apply_overrides(Geometry& geometry, const OpenOptions& options) {
+namespace {
+
+void apply_unit(VolumeInfo& volume, const std::string& text) {
+  const std::optional<LengthUnit> unit = find_metric_unit(text);
+  if (!unit) throw std::invalid_argument("unit: expected m, mm, um, nm or another length, found '" + text + "'");
+  Geometry& geometry = volume.geometry;
+  if (!geometry.unit.empty() && (geometry.unit != unit->name || unit->scale != 1)) {
+    volume.notes.push_back("the file says that its unit is " + geometry.unit + ", which is taken for " + text);
+  }
+  for (double& step : geometry.spacing) step *= unit->scale;
+  for (double& coordinate : geometry.origin) coordinate *= unit->scale;
+  geometry.unit = unit->name;
+}
+
+}  // namespace
+
+void apply_overrides(VolumeInfo& volume, const OpenOptions& options) {
+  Geometry& geometry = volume.geometry;
   if (options.spacing) {
     for (const double step : *options.spacing) {
       if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
@@ -121,6 +140,7 @@ void apply_overrides(Geometry& geometry, const OpenOptions& options) {
     }
     geometry.origin = *options.origin;
   }
+  if (!options.unit.empty()) apply_unit(volume, options.unit);
 }
 
 double cube_root(double x) {

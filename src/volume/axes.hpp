@@ -38,6 +38,6 @@ double cube_root(double x);
 double mean_voxel(const Geometry& geometry);
 
 // Applies the caller's overrides. Throws std::invalid_argument when they are not usable.
-void apply_overrides(Geometry& geometry, const OpenOptions& options);
+void apply_overrides(VolumeInfo& volume, const OpenOptions& options);
 
 }  // namespace isoweave

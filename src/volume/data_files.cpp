@@ -161,6 +161,7 @@ std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begi
 std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
                                            const DataLayout& layout, std::uint64_t bytes) {
   auto samples = open_samples(file, begin, layout, bytes);
+  if (file->path() != info.path) info.data_files = {file->path()};
   if (layout.encoding != DataLayout::Encoding::kRaw || layout.byte_skip < 0 || !file->jumps()) return samples;
   const std::uint64_t from = behind_lines(file, begin, layout.line_skip);
   const std::uint64_t behind = file->size() - from - static_cast<std::uint64_t>(layout.byte_skip) - bytes;
@@ -170,16 +171,19 @@ std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file
   return samples;
 }
 
-std::unique_ptr<ByteStream> open_samples(const DataFiles& files, const DataLayout& layout, std::uint64_t bytes,
-                                         const std::string& header_path) {
+std::unique_ptr<ByteStream> open_samples(VolumeInfo& info, const DataFiles& files, const DataLayout& layout,
+                                         std::uint64_t bytes) {
   const auto count = static_cast<std::uint64_t>(files.count);
   if (count == 0 || bytes % count != 0) {
-    bad_input(header_path, "files that share " + std::to_string(bytes) + " bytes equally",
+    bad_input(info.path, "files that share " + std::to_string(bytes) + " bytes equally",
               std::to_string(files.count) + " files");
   }
   const std::uint64_t each = bytes / count;
   const auto open = [=](std::int64_t n) { return open_samples(open_file(files.name(n)), 0, layout, each); };
-  for (std::int64_t n = 0; n < files.count; ++n) open(n);
+  for (std::int64_t n = 0; n < files.count; ++n) {
+    open(n);
+    info.data_files.push_back(files.name(n));
+  }
   return std::make_unique<FileSequence>(files.count, each, open, files.name);
 }
 

@@ -39,13 +39,14 @@ DataFiles numbered_files(const std::string& header_path, const std::string& patt
 std::unique_ptr<ByteStream> open_samples(const FilePtr& file, std::uint64_t begin, const DataLayout& layout,
                                          std::uint64_t bytes);
 
-// Opens the samples in the only file of a volume. Bytes behind the samples, as where a header's sizes are wrong, are
-// noted unless only reading would find them.
+// Opens the samples in the only file of a volume, which the header may have named. Bytes behind the samples, as where a
+// header's sizes are wrong, are noted unless only reading would find them.
 std::unique_ptr<ByteStream> open_only_file(VolumeInfo& info, const FilePtr& file, std::uint64_t begin,
                                            const DataLayout& layout, std::uint64_t bytes);
 
-// The samples in a series, `bytes` in all. Every file is looked at, so that a missing one is found now.
-std::unique_ptr<ByteStream> open_samples(const DataFiles& files, const DataLayout& layout, std::uint64_t bytes,
-                                         const std::string& header_path);
+// The samples in a series that the header `info.path` names, `bytes` in all. Every file is looked at, so that a missing
+// one is found now.
+std::unique_ptr<ByteStream> open_samples(VolumeInfo& info, const DataFiles& files, const DataLayout& layout,
+                                         std::uint64_t bytes);
 
 }  // namespace isoweave

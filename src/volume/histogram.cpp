@@ -70,6 +70,80 @@ std::optional<double> otsu_threshold(const Histogram& histogram) {
   return histogram.min * (1 - edge) + histogram.max * edge;
 }
 
+namespace {
+
+// Counts and moments of all bins before each bin.
+struct Sums {
+  std::array<double, Histogram::kBins + 1> counts{}, moments{};
+
+  explicit Sums(const Histogram& histogram) {
+    for (std::size_t n = 0; n < Histogram::kBins; ++n) {
+      const auto count = static_cast<double>(histogram.bins[n]);
+      counts[n + 1] = counts[n] + count;
+      moments[n + 1] = moments[n] + static_cast<double>(n) * count;
+    }
+  }
+
+  // The part of the variance between classes that the class of bins [first, end) has; below 0 for none.
+  double of_class(std::size_t first, std::size_t end) const {
+    const double count = counts[end] - counts[first];
+    const double moment = moments[end] - moments[first];
+    return count > 0 ? moment * moment / count : -1;
+  }
+};
+
+// best[end]: the largest variance of the first `end` bins in some classes; from[end]: the bin where the last begins.
+struct Row {
+  std::array<double, Histogram::kBins + 1> best{};
+  std::array<std::size_t, Histogram::kBins + 1> from{};
+};
+
+Row with_one_class_more(const Row& row, const Sums& sums, std::size_t classes) {
+  Row more;
+  more.best.fill(-1);
+  for (std::size_t end = classes; end <= Histogram::kBins; ++end) {
+    for (std::size_t first = classes - 1; first < end; ++first) {
+      const double last = sums.of_class(first, end);
+      if (row.best[first] < 0 || last < 0 || row.best[first] + last <= more.best[end]) continue;
+      more.best[end] = row.best[first] + last;
+      more.from[end] = first;
+    }
+  }
+  return more;
+}
+
+}  // namespace
+
+std::vector<double> otsu_thresholds(const Histogram& histogram, std::size_t classes) {
+  constexpr std::size_t kMostClasses = 8;
+  if (classes < 2 || classes > kMostClasses) throw std::invalid_argument("classes: expected 2 to 8");
+  if (histogram.empty() || histogram.min == histogram.max) return {};
+  const Sums sums(histogram);
+  std::vector<Row> rows(1);
+  for (std::size_t end = 0; end <= Histogram::kBins; ++end) rows[0].best[end] = sums.of_class(0, end);
+  for (std::size_t n = 2; n <= classes; ++n) rows.push_back(with_one_class_more(rows.back(), sums, n));
+  while (rows.back().best[Histogram::kBins] < 0) rows.pop_back();
+  std::vector<double> thresholds(rows.size() - 1);
+  std::size_t end = Histogram::kBins;
+  for (std::size_t n = thresholds.size(); n > 0; --n) {
+    end = rows[n].from[end];
+    const double edge = static_cast<double>(end) / static_cast<double>(Histogram::kBins);
+    thresholds[n - 1] = histogram.min * (1 - edge) + histogram.max * edge;
+  }
+  return thresholds;
+}
+
+std::span<const HounsfieldPreset> hounsfield_presets() {
+  static constexpr std::array<HounsfieldPreset, 3> kPresets{{{"bone", 226}, {"skin", -300}, {"lung", -500}}};
+  return kPresets;
+}
+
+bool is_hounsfield_range(double min, double max) {
+  constexpr double kAir = -500;
+  constexpr double kDense = 150;
+  return min <= kAir && max >= kDense;
+}
+
 std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts) {
   if (parts == 0 || Histogram::kBins % parts != 0) throw std::invalid_argument("the number of bins must divide 256");
   std::vector<std::uint64_t> bins(parts);

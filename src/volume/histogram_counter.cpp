@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <type_traits>
 
 #include "volume/samples.hpp"
@@ -132,6 +133,23 @@ void HistogramCounter::widen(int exponent) {
   counts_ = std::move(merged);
   first_ = first;
 }
+
+std::vector<std::uint64_t> HistogramCounter::below(double first, double width, std::size_t count) const {
+  std::vector<std::uint64_t> result(count);
+  auto bin = counts_.begin();
+  std::uint64_t sum = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double bins = bin_of((first + static_cast<double>(n)) * width, exponent_) - static_cast<double>(first_);
+    const auto end =
+        counts_.begin() + static_cast<std::ptrdiff_t>(std::clamp(bins, 0.0, static_cast<double>(kFineBins)));
+    sum = std::accumulate(bin, end, sum);
+    bin = end;
+    result[n] = sum;
+  }
+  return result;
+}
+
+double HistogramCounter::width() const { return std::ldexp(1.0, exponent_); }
 
 Histogram HistogramCounter::histogram(double slope, double intercept) const {
   Histogram result;

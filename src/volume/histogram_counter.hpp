@@ -24,6 +24,17 @@ class HistogramCounter {
   // Counts the same sample so many times.
   void add_equal(const std::byte* sample, std::uint64_t count);
 
+  // The finite samples that are less than (first + n) * width, for n from 0 on. The width must be a whole multiple of
+  // width(), and `first` a whole number.
+  std::vector<std::uint64_t> below(double first, double width, std::size_t count) const;
+
+  // The width of the bins.
+  double width() const;
+
+  // The range of the finite samples; min > max where there are none.
+  double min() const { return min_; }
+  double max() const { return max_; }
+
   // The histogram of slope * sample + intercept.
   Histogram histogram(double slope, double intercept) const;
 

@@ -170,4 +170,24 @@ std::size_t count_scattered(std::span<const LabelExtent> labels) {
   return static_cast<std::size_t>(std::ranges::count_if(labels, is_scattered));
 }
 
+bool look_like_labels(std::span<const LabelExtent> labels) {
+  constexpr std::size_t kFew = 16;
+  return labels.size() < kFew || 2 * count_scattered(labels) <= labels.size();
+}
+
+bool looks_like_label_map(std::unique_ptr<SliceSource> volume, const std::atomic<bool>* stop) {
+  constexpr std::int64_t kMostSlices = 64;
+  Region middle{{0, 0, 0}, volume->info().dims};
+  const std::int64_t more = std::max<std::int64_t>(volume->info().dims[2] - kMostSlices, 0);
+  middle.first[2] = more / 2;
+  middle.end[2] -= more - more / 2;
+  const std::unique_ptr<SliceSource> part = crop_volume(std::move(volume), middle);
+  try {
+    const std::vector<LabelExtent> labels = find_labels(*part, {}, stop);
+    return !labels.empty() && !labels.front().label.is_negative() && look_like_labels(labels);
+  } catch (const BadInput&) {
+    return false;  // fractions, or more values than a map has labels
+  }
+}
+
 }  // namespace isoweave

@@ -85,6 +85,7 @@ OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const Open
     const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
     OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described, options);
     volume.info.path = path;
+    volume.info.data_files = {header};
     return volume;
   }
   bad_input(path, format_of_name(name), what_else(head, path));
@@ -201,7 +202,7 @@ std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOpti
   if (!volume.unit_conflict.empty() && !options.spacing) {
     bad_input(volume.info.path, "units of length that can be made one, or --spacing", volume.unit_conflict);
   }
-  apply_overrides(volume.info.geometry, options);
+  apply_overrides(volume.info, options);
   return std::make_unique<StreamSource>(std::move(volume));
 }
 

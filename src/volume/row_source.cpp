@@ -35,4 +35,14 @@ std::optional<SampleBytes> constant_sample(const SliceSource& volume) {
   return rows != nullptr ? rows->constant() : std::nullopt;
 }
 
+const SampleRange* known_range(const SliceSource& volume, std::int64_t k) {
+  const auto* rows = dynamic_cast<const RowSource*>(&volume);
+  return rows != nullptr ? rows->range(k) : nullptr;
+}
+
+std::optional<std::uint32_t> known_crc(const SliceSource& volume, std::int64_t k) {
+  const auto* rows = dynamic_cast<const RowSource*>(&volume);
+  return rows != nullptr ? rows->crc(k) : std::nullopt;
+}
+
 }  // namespace isoweave

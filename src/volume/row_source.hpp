@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "isoweave/volume.hpp"
+#include "volume/gaps.hpp"
+#include "volume/samples.hpp"
 
 namespace isoweave {
 
@@ -26,6 +28,14 @@ class RowSource : public SliceSource {
 
   // The value of every sample, where it is known without reading any.
   virtual std::optional<SampleBytes> constant() const { return std::nullopt; }
+
+  // Where a source of chunks asks which of them are needed; null where all are read.
+  virtual Gaps* gaps() { return nullptr; }
+
+  // The range of the samples of a slice, and their CRC-32, where an index tells them. Samples of such a source may
+  // stand for others, which were not read.
+  virtual const SampleRange* range(std::int64_t) const { return nullptr; }
+  virtual std::optional<std::uint32_t> crc(std::int64_t) const { return std::nullopt; }
 };
 
 // Reads rows of any source. A source that has only slices is read by whole slices, and the reader holds one.
@@ -51,5 +61,9 @@ std::uint64_t held_by_slices(const SliceSource& volume);
 
 // The value of every sample (RowSource::constant); nothing for sources without rows.
 std::optional<SampleBytes> constant_sample(const SliceSource& volume);
+
+// The range and the CRC-32 of a slice (RowSource::range, crc); nothing for sources without rows.
+const SampleRange* known_range(const SliceSource& volume, std::int64_t k);
+std::optional<std::uint32_t> known_crc(const SliceSource& volume, std::int64_t k);
 
 }  // namespace isoweave

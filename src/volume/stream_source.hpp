@@ -23,6 +23,7 @@ struct OpenedVolume {
   std::string unit_conflict;  // units of the axes that cannot be made one: without --spacing no volume
   FilePtr input;  // what the user named, open as long as the volume: what came out of a pipe is kept with it
   std::uint64_t held_bytes = 0;           // by `samples`, at most: what must be decoded as a whole
+  std::shared_ptr<Gaps> gaps{};           // of `samples`, where they are chunks
   std::optional<SampleBytes> constant{};  // as stored: every sample is this one, and none is read
 };
 
@@ -36,6 +37,7 @@ class StreamSource final : public RowSource {
   bool skips() const override { return volume_.samples->skips(); }
   std::uint64_t held_bytes() const override { return volume_.held_bytes; }
   std::optional<SampleBytes> constant() const override;
+  Gaps* gaps() override { return volume_.gaps.get(); }
 
  private:
   void read_from(std::uint64_t place, std::span<std::byte> wanted);

@@ -79,16 +79,28 @@ TEST(CliComponents, OfAMeshAreThoseOfItsSurface) {
 TEST(CliComponents, NothingLeftIsAWarning) {
   const files::Folder folder;
   std::string err;
-  const Json report = report_of(folder, mesh({"--min-component", "1000000"}), &err);
+  const Json report = report_of(folder, mesh({"--min-component", "1000000", "--allow-empty"}), &err);
   EXPECT_EQ(report.at("triangles"), 0);
   EXPECT_NE(err.find("warning: generated noise: nothing is left"), std::string::npos) << err;
   report_of(folder, mesh({}));
-  const Json simplified = report_of(
-      folder,
-      {"simplify", "out.ply", "-o", "none.ply", "--error", "0.5", "--min-component", "1000000", "--report", "out.json"},
-      &err);
+  const Json simplified = report_of(folder,
+                                    {"simplify", "out.ply", "-o", "none.ply", "--error", "0.5", "--min-component",
+                                     "1000000", "--report", "out.json", "--allow-empty"},
+                                    &err);
   EXPECT_EQ(simplified.at("triangles"), 0);
   EXPECT_NE(err.find("warning: nothing is left"), std::string::npos) << err;
+}
+
+TEST(CliComponents, NothingLeftIsRefused) {
+  const files::Folder folder;
+  report_of(folder, mesh({}));
+  const std::string before = files::read_bytes(folder / "out.ply");
+  program::expect_failed(run(folder.path(), mesh({"--min-component", "1000000"})), 3, "nothing is left: each of ");
+  program::expect_failed(
+      run(folder.path(), {"simplify", "out.ply", "-o", "none.ply", "--error", "0.5", "--min-component", "1000000"}), 3,
+      "out.ply: nothing is left: each of ");
+  EXPECT_EQ(listing(folder), (Words{"out.json", "out.ply"}));
+  EXPECT_TRUE(files::read_bytes(folder / "out.ply") == before);
 }
 
 TEST(CliComponents, AForecastIsOfAll) {

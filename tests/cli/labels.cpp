@@ -107,8 +107,13 @@ TEST_F(CliLabels, OnlyThoseNamedInTheirOrder) {
   EXPECT_EQ(listing(folder_), (std::vector<std::string>{kMap, "r.json", "seg_label200.ply", "seg_label3.ply"}));
 }
 
+TEST_F(CliLabels, OneThatDoesNotOccurIsRefused) {
+  program::expect_failed(run(folder_.path(), mesh({"--labels", "3,77"})), 3, "label 77 does not occur");
+  EXPECT_EQ(listing(folder_), (std::vector<std::string>{kMap}));
+}
+
 TEST_F(CliLabels, OneThatDoesNotOccurIsAnEmptyMeshAndAWarning) {
-  const Result result = run(folder_.path(), mesh({"--labels", "3,77", "--progress", "always"}));
+  const Result result = run(folder_.path(), mesh({"--labels", "3,77", "--progress", "always", "--allow-empty"}));
   EXPECT_EQ(result.code, 0);
   EXPECT_NE(result.err.find("label 77 does not occur"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("layer 20 of 20"), std::string::npos) << result.err;
@@ -287,6 +292,19 @@ TEST_F(CliLabels, APartIsWhereItIsInTheWhole) {
   const json whole = report_of(folder_, mesh({"--labels", "8", "--error", "0"}));
   const json part = report_of(folder_, mesh({"--labels", "8", "--error", "0", "--roi", "2:,1:,1:"}));
   EXPECT_EQ(part.at("labels").at(0).at("digest"), whole.at("labels").at(0).at("digest"));
+}
+
+// Files far from the origin hold an offset, which is added once.
+TEST_F(CliLabels, LieWhereTheyShouldFarFromTheOrigin) {
+  const std::string header =
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 24 22 20\nspace dimension: 3\n"
+      "space directions: (0.001,0,0) (0,0.001,0) (0,0,0.001)\nspace origin: (400000,500000,600000)\nencoding: raw\n\n";
+  files::write_bytes(folder_ / "far.nrrd", header + map_bytes());
+  const json report = report_of(folder_, {"mesh", "far.nrrd", "-o", "f.ply", "--labels", "3"});
+  const std::string file = report.at("labels").at(0).at("output");
+  const json check = json::parse(run(folder_.path(), {"check", file, "--json"}).out);
+  EXPECT_EQ(check.at("digest"), report.at("labels").at(0).at("digest"));
+  EXPECT_NEAR(check.at("box").at("low").at(0).get<double>(), 400000, 1);
 }
 
 TEST(CliSmooth, WrongUseIsRefused) {

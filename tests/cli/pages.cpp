@@ -249,7 +249,8 @@ TEST(CliPage, WhatWasNotSimplifiedAndWhatIsEmptyIsSaid) {
   const files::Folder folder;
   expect_done(folder, mesh({"--error", "0", "--html", "out.html", "--report", "out.json"}));
   EXPECT_NE(report_of(folder, "out.json")["page"]["notes"].dump().find("Nothing was simplified"), std::string::npos);
-  expect_done(folder, {"mesh", kVolume, "--iso", "300", "-o", "none.ply", "--html", "none.html", "--quiet"});
+  expect_done(folder,
+              {"mesh", kVolume, "--iso", "300", "-o", "none.ply", "--html", "none.html", "--quiet", "--allow-empty"});
   const std::string page = files::read_bytes(folder / "none.html");
   const Json report = json_in(page, "report");
   EXPECT_EQ(report["page"]["surfaces"], Json::array());

@@ -60,10 +60,10 @@ TEST(CliPipes, StandardInputGivesTheMeshOfTheFile) {
   const std::string volume = files::read_bytes(folder / "in.nrrd");
   const std::vector<std::vector<std::string>> tasks{
       {"--iso", "auto"},
-      {"--iso", "127.5", "--largest", "--ratio", "0.5"},
-      {"--iso", "127.5", "--roi", "4:,2:18,5:"},
-      {"--iso", "127.5", "--memory", "500M", "--lods", "0.1vox,0.5vox"},
-      {"--iso", "127.5", "--color-by", "-"},
+      {"--iso", "0.1", "--largest", "--ratio", "0.5"},
+      {"--iso", "0.1", "--roi", "4:,2:18,5:"},
+      {"--iso", "0.1", "--memory", "500M", "--lods", "0.1vox,0.5vox"},
+      {"--iso", "0.1", "--color-by", "-"},
   };
   for (const std::vector<std::string>& task : tasks) {
     std::vector<std::string> from_file{"mesh", "in.nrrd", "-o", "out.ply"};

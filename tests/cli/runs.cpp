@@ -177,7 +177,8 @@ TEST(CliMesh, AFileAndItsFormulaAgree) {
 
 TEST(CliMesh, AnIsoValueOutsideTheRangeGivesAnEmptyMeshAndAWarning) {
   const files::Folder folder;
-  const Result result = succeed(folder, {"mesh", "generate:sphere:16x16x16", "-o", "out.ply", "--iso", "1e6"});
+  const Result result =
+      succeed(folder, {"mesh", "generate:sphere:16x16x16", "-o", "out.ply", "--iso", "1e6", "--allow-empty"});
   EXPECT_NE(result.err.find("isoweave: warning: "), std::string::npos) << result.err;
   EXPECT_EQ(Json::parse(succeed(folder, {"check", "out.ply", "--json"}).out)["triangles"], 0);
 }
@@ -202,8 +203,8 @@ TEST(CliMesh, NanIsOutsideAndCounted) {
     files::write_bytes(folder / "n_8x8x8_float32.raw", bytes);
   };
   write();
-  const std::vector<std::string> arguments{"mesh",  "n_8x8x8_float32.raw", "-o", "out.ply", "--iso", "1", "--report",
-                                           "r.json"};
+  const std::vector<std::string> arguments{"mesh",   "n_8x8x8_float32.raw", "-o", "out.ply", "--iso", "1", "--report",
+                                           "r.json", "--allow-empty"};
   EXPECT_NE(succeed(folder, arguments).err.find("warning: "), std::string::npos);
   Json report = json_file(folder / "r.json");
   EXPECT_EQ(report["triangles"], 0);
@@ -235,9 +236,9 @@ TEST(CliMesh, AutomaticIsoSplitsTwoValues) {
 
 TEST(CliMesh, QuietIsQuiet) {
   const files::Folder folder;
-  for (const std::string iso : {"0", "auto", "1e9"}) {
-    const Result result = succeed(
-        folder, {"mesh", "generate:sphere:16x16x16", "-o", "out.ply", "--iso", iso, "--quiet", "--progress", "always"});
+  for (const std::string iso : {"1e9", "0", "auto"}) {
+    const Result result = succeed(folder, {"mesh", "generate:sphere:16x16x16", "-o", "out.ply", "--iso", iso, "--quiet",
+                                           "--progress", "always", "--allow-empty"});
     EXPECT_EQ(result.out + result.err, "") << iso;
   }
   EXPECT_EQ(succeed(folder, {"simplify", "out.ply", "-o", "s.ply", "--error", "1", "--quiet"}).err, "");
@@ -251,7 +252,7 @@ TEST(CliMesh, ProgressGoesToStandardErrorWhenAskedFor) {
   std::vector<std::string> always = arguments;
   always.insert(always.end(), {"--progress", "always"});
   const Result result = succeed(folder, always);
-  EXPECT_NE(result.err.find("isoweave: layer "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("isoweave: 100 %, layer "), std::string::npos) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
 }

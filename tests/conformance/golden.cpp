@@ -65,6 +65,14 @@ class Arguments {
     return name == "quadric" ? Normals::kQuadric : name == "gradient" ? Normals::kGradient : Normals::kAbsent;
   }
 
+  ExtractorKind extractor() const {
+    const std::string name = value("--extractor", "cubes");
+    return name == "trilinear"    ? ExtractorKind::kTrilinear
+           : name == "tetrahedra" ? ExtractorKind::kTetrahedra
+           : name == "dual"       ? ExtractorKind::kDual
+                                  : ExtractorKind::kCubes;
+  }
+
   int smooth() const {
     for (const std::string& word : words_) {
       if (word.starts_with("--smooth=")) return std::stoi(word.substr(9));
@@ -115,6 +123,7 @@ MeshOptions mesh_options(const Arguments& arguments, const VolumeInfo& volume) {
   options.inside_above = arguments.value("--inside", "above") == "above";
   options.closed = !arguments.has("--open");
   options.smooth = arguments.smooth();
+  options.extractor = arguments.extractor();
   options.normals = arguments.normals();
   set_stop(arguments, most_shape_error(volume), options);
   return options;

@@ -101,6 +101,7 @@ struct LabelCase {
   bool closed;
   int smooth;
   double error;
+  ExtractorKind extractor = ExtractorKind::kCubes;
 };
 
 class LabelSweeps : public ::testing::TestWithParam<LabelCase> {};
@@ -110,6 +111,7 @@ TEST_P(LabelSweeps, GiveTheMeshesOfRunsOnTheMasks) {
   options.closed = GetParam().closed;
   options.smooth = GetParam().smooth;
   options.error = Length::voxels(GetParam().error);
+  options.extractor = GetParam().extractor;
   options.normals = options.closed ? Normals::kGradient : Normals::kQuadric;
   options.quality = options.closed ? Quality::kNormal : Quality::kFine;
   options.drop_specks = !options.closed;
@@ -136,7 +138,11 @@ TEST_P(LabelSweeps, GiveTheMeshesOfRunsOnTheMasks) {
 INSTANTIATE_TEST_SUITE_P(Options, LabelSweeps,
                          ::testing::Values(LabelCase{"Closed", true, 0, 0.2}, LabelCase{"Open", false, 0, 0.2},
                                            LabelCase{"Full", true, 0, 0}, LabelCase{"SmoothClosed", true, 3, 0.2},
-                                           LabelCase{"SmoothOpen", false, 2, 0.2}, LabelCase{"SmoothFull", true, 1, 0}),
+                                           LabelCase{"SmoothOpen", false, 2, 0.2}, LabelCase{"SmoothFull", true, 1, 0},
+                                           LabelCase{"Trilinear", true, 0, 0.2, ExtractorKind::kTrilinear},
+                                           LabelCase{"Tetrahedra", false, 0, 0.2, ExtractorKind::kTetrahedra},
+                                           LabelCase{"Dual", true, 0, 0.2, ExtractorKind::kDual},
+                                           LabelCase{"DualSmoothOpen", false, 2, 0.2, ExtractorKind::kDual}),
                          [](const auto& instance) { return instance.param.name; });
 
 template <class T>

@@ -19,10 +19,12 @@ SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
   return surface;
 }
 
-class Conformance : public ::testing::TestWithParam<std::tuple<std::string, bool, bool>> {
+class Conformance : public ::testing::TestWithParam<std::tuple<std::string, bool, bool, ExtractorKind>> {
  protected:
   SurfaceCase surface() const {
-    return make_case(std::get<0>(GetParam()), std::get<1>(GetParam()), std::get<2>(GetParam()));
+    SurfaceCase surface = make_case(std::get<0>(GetParam()), std::get<1>(GetParam()), std::get<2>(GetParam()));
+    surface.extractor = std::get<3>(GetParam());
+    return surface;
   }
 };
 
@@ -189,15 +191,24 @@ TEST(Starts, OfWalksDoNotMatter) {
 }
 
 std::string case_name(const ::testing::TestParamInfo<Conformance::ParamType>& info) {
+  constexpr std::array<const char*, 4> kExtractors{"", "Trilinear", "Tetrahedra", "Dual"};
   return std::get<0>(info.param) + (std::get<1>(info.param) ? "Closed" : "Open") +
-         (std::get<2>(info.param) ? "Anisotropic" : "Isotropic");
+         (std::get<2>(info.param) ? "Anisotropic" : "Isotropic") +
+         kExtractors.at(static_cast<std::size_t>(std::get<3>(info.param)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Conformance,
                          ::testing::Combine(::testing::Values("sphere", "torus", "gyroid", "box", "shells", "smooth",
                                                               "noise", "white", "specks"),
-                                            ::testing::Bool(), ::testing::Bool()),
+                                            ::testing::Bool(), ::testing::Bool(),
+                                            ::testing::Values(ExtractorKind::kCubes)),
                          case_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    Extractors, Conformance,
+    ::testing::Combine(::testing::Values("box", "noise", "white"), ::testing::Bool(), ::testing::Values(true),
+                       ::testing::Values(ExtractorKind::kTrilinear, ExtractorKind::kTetrahedra, ExtractorKind::kDual)),
+    case_name);
 
 }  // namespace
 }  // namespace isoweave::testing

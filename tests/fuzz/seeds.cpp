@@ -7,6 +7,7 @@
 
 #include "header_helpers.hpp"
 #include "isoweave/generate.hpp"
+#include "isoweave/index.hpp"
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 #include "meshes.hpp"
@@ -14,6 +15,7 @@
 #include "pvm_helpers.hpp"
 #include "saved_runs.hpp"
 #include "volume/formats/formats.hpp"
+#include "volume/volume_index.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
 #include "dicom_helpers.hpp"
@@ -408,6 +410,13 @@ void put_options(Seeds& seeds) {
   }
 }
 
+// A volume of 9 x 9 x 9 bytes, and calls with the defaults.
+void put_c_interface(Seeds& seeds) {
+  std::string seed{"\0\x09\x09\x09\0\0\1\1\1\1\0\1", 12};
+  for (int n = 0; n < 9 * 9 * 9; ++n) seed += static_cast<char>((n * n) % 251);
+  for (const char choice : {'\0', '\1', '\2', '\7'}) seeds.put("c_interface", seed + std::string(40, choice));
+}
+
 void put_state(Seeds& seeds) {
   const TempFolder folder;
   CheckpointFolder states(folder / "");
@@ -417,6 +426,20 @@ void put_state(Seeds& seeds) {
     const std::string state = get(folder / name);
     seeds.put("state", state.substr(0, state.size() - sizeof(std::uint32_t)));
   }
+}
+
+// What lies behind the format and the identity of an index, and a whole one.
+void put_indices(Seeds& seeds) {
+  const TempFolder folder;
+  const std::string volume = folder.put("a_18x2x20_float32.raw", std::string(18 * 2 * 20 * sizeof(float), '\x3f'));
+  const auto index = build_index(*open_volume(volume));
+  write_index(*index, folder / "i");
+  const std::string whole = get(folder / "i");
+  const std::string content = whole.substr(0, whole.size() - sizeof(std::uint32_t));
+  const std::size_t lengths = 2 * sizeof(std::uint64_t);
+  const std::size_t head = lengths + std::string("isoweave index 1").size() + index->identity().size();
+  seeds.put("index", '\0' + content);
+  seeds.put("index", '\1' + content.substr(head));
 }
 
 void put_state_bodies(Seeds& seeds) {
@@ -456,8 +479,10 @@ int main(int argc, char** argv) {
   put_meshes(seeds);
   fuzz::put_packages(seeds);
   put_options(seeds);
+  put_c_interface(seeds);
   put_label_names(seeds);
   put_state(seeds);
   put_state_bodies(seeds);
+  put_indices(seeds);
   return 0;
 }

@@ -117,6 +117,25 @@ TEST_P(Resumed, RunsMakeTheSameMesh) {
   }
 }
 
+class ResumedExtractors : public ::testing::TestWithParam<ExtractorKind> {};
+
+TEST_P(ResumedExtractors, MakeTheSameMesh) {
+  for (const bool closed : {true, false}) {
+    SurfaceCase surface{{"white", {12, 14, 17}, SampleType::kFloat32, {1, 1, 1.5}, 3}, closed, 0.3};
+    MeshOptions options = mesh_options(surface);
+    options.extractor = GetParam();
+    const MeshReport whole = run_whole(surface, options);
+    InterruptedRun run(surface, options);
+    const MeshReport resumed = run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, 3);
+    expect_same_result(resumed, whole);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ResumedExtractors,
+                         ::testing::Values(ExtractorKind::kTrilinear, ExtractorKind::kTetrahedra,
+                                           ExtractorKind::kDual));
+
 INSTANTIATE_TEST_SUITE_P(Volumes, Resumed, ::testing::Values("noise", "gyroid", "box", "specks", "white"));
 
 // What is smoothed is read again where the run goes on, and some slices below.

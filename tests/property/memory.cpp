@@ -2,6 +2,7 @@
 // Threads: none, a forecast is a run that surfaces.cpp has
 #include <gtest/gtest.h>
 
+#include "extract/marching_cubes.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
 #include "pipeline/memory_model.hpp"

@@ -8,6 +8,7 @@
 
 #include "device/bulk_engine.hpp"
 #include "device/simulated_device.hpp"
+#include "extract/marching_cubes.hpp"
 #include "files.hpp"
 #include "fuzz/saved_runs.hpp"
 #include "pipeline/device_back_end.hpp"

@@ -1,10 +1,13 @@
 // The case table: what makes the surface an oriented manifold, checked over all cases.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <random>
 #include <set>
+#include <vector>
 
-#include "extract/tables.hpp"
+#include "extract/choose_diagonals.hpp"
 
 namespace isoweave {
 namespace {
@@ -94,6 +97,95 @@ TEST(CaseTable, FacesOutwards) {
   EXPECT_EQ(corner.edges[0], 0);  // x, y, z: counter-clockwise seen from (1, 1, 1)
   EXPECT_EQ(corner.edges[1], 4);
   EXPECT_EQ(corner.edges[2], 8);
+}
+
+using Polygon = std::vector<std::uint32_t>;
+
+// The least sum of squared diagonals of a polygon over all its triangulations: one triangle is at its last side.
+double least_sum(const Polygon& polygon, const std::vector<Vec3>& places, const std::vector<int>& edges) {
+  const auto weigh = [&](std::size_t a, std::size_t b) {
+    if (a + 1 == b) return 0.0;
+    const std::uint32_t first = polygon[a], second = polygon[b];
+    const bool side = second == first + 1 || (first == 0 && second + 1 == edges.size());
+    if (side) return 0.0;
+    return share_face(edges[first], edges[second]) ? 1e30 : squared_distance(places[first], places[second]);
+  };
+  if (polygon.size() < 3) return 0;
+  double best = 1e30;
+  for (std::size_t apex = 1; apex + 1 < polygon.size(); ++apex) {
+    const Polygon left(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(apex) + 1);
+    const Polygon right(polygon.begin() + static_cast<std::ptrdiff_t>(apex), polygon.end());
+    best = std::min(best, weigh(0, apex) + weigh(apex, polygon.size() - 1) + least_sum(left, places, edges) +
+                              least_sum(right, places, edges));
+  }
+  return best;
+}
+
+// The squared diagonals of five corners where the ear, the only one between two parallel edges and parallel to them, is
+// cut off, and the rest has the shorter diagonal.
+double sum_without_ear(const std::vector<Vec3>& places, const std::vector<int>& edges) {
+  const auto axis = [&](std::size_t n) { return ends(edges[n % 5])[2]; };
+  double sum = 0;
+  int ears = 0;
+  for (std::size_t a = 0; a < 5; ++a) {
+    if (axis(a) != axis(a + 1) || axis(a) != axis(a + 4)) continue;
+    const auto squared = [&](std::size_t m, std::size_t n) {
+      return squared_distance(places[(a + m) % 5], places[(a + n) % 5]);
+    };
+    EXPECT_FALSE(share_face(edges[(a + 1) % 5], edges[(a + 4) % 5]));
+    EXPECT_FALSE(share_face(edges[(a + 1) % 5], edges[(a + 3) % 5]));
+    EXPECT_FALSE(share_face(edges[(a + 2) % 5], edges[(a + 4) % 5]));
+    sum = squared(1, 4) + std::min(squared(1, 3), squared(2, 4));
+    ++ears;
+  }
+  EXPECT_EQ(ears, 1);
+  return sum;
+}
+
+// The squared lengths of the diagonals of triangles: a diagonal is a side that two of them share.
+double sum_of_diagonals(const std::vector<std::uint32_t>& corners, const std::vector<Vec3>& places) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const std::uint32_t a = corners[c], b = corners[c % 3 == 2 ? c - 2 : c + 1];
+    ++uses[{std::min(a, b), std::max(a, b)}];
+  }
+  double sum = 0;
+  for (const auto& [side, count] : uses)
+    sum += count == 2 ? squared_distance(places[side.first], places[side.second]) : 0;
+  return sum;
+}
+
+TEST(Diagonals, AreTheShortestButForEars) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> place(0, 1);
+  for (int inside = 0; inside < 256; ++inside) {
+    std::size_t next = kChoicePolygons.first[static_cast<std::size_t>(inside)];
+    table_rules::for_polygons(inside, [&](const table_rules::Polygon& own) {
+      if (own.size < 4) return;
+      const ChoicePolygon& polygon = kChoicePolygons.polygons[next++];
+      ASSERT_EQ(polygon.size, own.size);
+      const std::vector<int> edges(own.edges.begin(), own.edges.begin() + own.size);
+      Polygon numbers(edges.size());
+      std::vector<Vec3> places(edges.size());
+      for (std::size_t n = 0; n < edges.size(); ++n) {
+        numbers[n] = static_cast<std::uint32_t>(n);
+        places[n] = {place(random), place(random), place(random)};
+      }
+      std::vector<std::uint32_t> corners(3 * (edges.size() - 2), 99);
+      const CellCase& shape = kCaseTable[static_cast<std::size_t>(inside)];
+      for (std::size_t c = 0; c < corners.size(); ++c) {
+        const auto edge = std::ranges::find(edges, int{shape.edges[3U * polygon.first + c]});
+        corners[c] = static_cast<std::uint32_t>(edge - edges.begin());
+      }
+      choose_diagonals(
+          polygon, [&](std::size_t at) -> std::uint32_t& { return corners[at]; },
+          [&](std::uint32_t v) -> const Vec3& { return places[v]; });
+      double expected = least_sum(numbers, places, edges);
+      if (edges.size() == 5) expected = sum_without_ear(places, edges);
+      EXPECT_NEAR(sum_of_diagonals(corners, places), expected, 1e-12) << "case " << inside;
+    });
+    EXPECT_EQ(next, kChoicePolygons.first[static_cast<std::size_t>(inside) + 1]);
+  }
 }
 
 }  // namespace

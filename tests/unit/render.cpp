@@ -155,6 +155,29 @@ TEST(RenderMesh, ViewsLookFromTheirSides) {
 }
 
 // The small square in front is nearer; it is told from the large one by the colour map.
+// A patient is seen from the same side in LPS and in RAS, whose x and y have the other sign.
+TEST(RenderMesh, TheFrontIsThatOfTheSpace) {
+  TriangleMesh lps = square(1, 0);
+  append(lps, {{{-1, -0.5F, -1}, {0.2F, -0.7F, -1}, {0, -0.5F, 0.6F}}, {{0, 1, 2}}, {}});
+  lps.space = "LPS";
+  TriangleMesh ras = lps;
+  ras.space = "RAS";
+  for (Point& point : ras.vertices) point = {-point[0], -point[1], point[2]};
+  RenderOptions options = front(60, 60);
+  options.view = {20, 10};
+  const Picture expected = render_mesh(lps, options);
+  const Picture found = render_mesh(ras, options);
+  std::size_t other = 0;
+  for (std::size_t n = 0; n < expected.pixels.size(); ++n) {
+    for (std::size_t part = 0; part < 4; ++part) {
+      if (std::abs(int{expected.pixels[n][part]} - int{found.pixels[n][part]}) > 2) ++other;
+    }
+  }
+  EXPECT_LT(other, 8U) << "but for pixels at an edge that rounding decides";
+  ras.space.clear();
+  EXPECT_NE(render_mesh(ras, options).pixels, found.pixels);
+}
+
 TEST(RenderMesh, NearerHidesFarther) {
   for (const bool near_first : {true, false}) {
     TriangleMesh mesh = square(near_first ? 0.2F : 1.0F, near_first ? -0.3F : 0.3F);

@@ -1,5 +1,6 @@
 // HDF5: files written through the library itself.
 #include "hdf5_helpers.hpp"
+#include "index_helpers.hpp"
 #include "volume/formats/chunked/lzf.hpp"
 #include "volume/formats/hdf5/hdf5_library.hpp"
 
@@ -259,6 +260,17 @@ TEST(Lzf, RunsAndCopies) {
   EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\x20\x03", 6), "(refused)");
   EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\xe0\x04", 16), "(refused)");
   EXPECT_EQ(lzf(std::string("\x02") + "abc" + "\x20", 6), "(refused)");
+}
+
+TEST(Hdf5, ChunksThatTheSurfaceMissesAreNotRead) {
+  const TempFolder folder;
+  Writer(folder / "a.h5").put_int16("/v", {60, 30, 17}, chunks({20, 8, 10}, [](hid_t p) { H5Pset_deflate(p, 4); }));
+  const MeshReport report = expect_same_with_index(folder / "a.h5", 4000.5, Normals::kGradient);
+  EXPECT_EQ(report.left_out->chunks, 24U);
+  EXPECT_EQ(report.left_out->chunks_left_out, 16U);
+  EXPECT_EQ(report.left_out->bytes_left_out, 2U * 40 * 30 * 17);
+  Writer(folder / "plain.h5").put_int16("/v", {60, 30, 17});
+  EXPECT_EQ(expect_same_with_index(folder / "plain.h5", 4000.5).left_out->chunks, 0U);
 }
 
 }  // namespace

@@ -108,6 +108,67 @@ TEST(Otsu, LiesInTheMiddleBetweenTwoValues) {
   EXPECT_NEAR(*otsu_threshold(histogram_of(SampleType::kFloat32, std::vector<float>{-1, -1, 1})), 0, 0.01);
 }
 
+// The variance between classes, by its definition.
+double variance_between(const std::vector<double>& samples, const std::vector<double>& thresholds) {
+  const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
+  double variance = 0;
+  for (std::size_t n = 0; n <= thresholds.size(); ++n) {
+    const double low = n == 0 ? -1e9 : thresholds[n - 1];
+    const double high = n == thresholds.size() ? 1e9 : thresholds[n];
+    double sum = 0, count = 0;
+    for (const double sample : samples) {
+      if (sample < low || sample >= high) continue;
+      sum += sample;
+      ++count;
+    }
+    if (count > 0) variance += count * (sum / count - mean) * (sum / count - mean);
+  }
+  return variance;
+}
+
+TEST(Otsu, SeveralThresholdsAreTheBestOfAll) {
+  std::vector<std::uint8_t> bytes{0, 255};
+  std::vector<double> samples{0, 255};
+  for (unsigned n = 0; n < 300; ++n) {
+    const unsigned value = n % 3 == 0 ? 20 + n * 7 % 31 : n % 3 == 1 ? 90 + n * 11 % 47 : 180 + n * 13 % 61;
+    bytes.push_back(static_cast<std::uint8_t>(value));
+    samples.push_back(value);
+  }
+  const Histogram histogram = histogram_of(SampleType::kUint8, bytes);
+  double best = 0;
+  for (int a = 1; a < 255; ++a) {
+    for (int b = a + 1; b < 256; ++b) {
+      best = std::max(best, variance_between(samples, {static_cast<double>(a), static_cast<double>(b)}));
+    }
+  }
+  const std::vector<double> found = otsu_thresholds(histogram, 3);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(variance_between(samples, found), best, 1e-9 * best);
+  const std::vector<double> two = otsu_thresholds(histogram, 2);
+  ASSERT_EQ(two.size(), 1U);
+  EXPECT_NEAR(variance_between(samples, two), variance_between(samples, {*otsu_threshold(histogram)}), 1e-9 * best);
+}
+
+TEST(Otsu, HasAsManyThresholdsAsThereAreValuesToPart) {
+  const auto count = [](const std::vector<std::uint8_t>& samples) {
+    return otsu_thresholds(histogram_of(SampleType::kUint8, samples), 4).size();
+  };
+  EXPECT_EQ(count({5, 5}), 0U);
+  EXPECT_EQ(count({5, 9}), 1U);
+  EXPECT_EQ(count({5, 9, 200}), 2U);
+  EXPECT_EQ(count({5, 9, 200, 220, 240}), 3U);
+  EXPECT_TRUE(otsu_thresholds(Histogram{}, 3).empty());
+  EXPECT_THROW(otsu_thresholds(Histogram{}, 1), std::invalid_argument);
+}
+
+TEST(Hounsfield, IsARangeFromAirToBone) {
+  EXPECT_TRUE(is_hounsfield_range(-1024, 3071));
+  EXPECT_TRUE(is_hounsfield_range(-3024, 1500));
+  EXPECT_FALSE(is_hounsfield_range(0, 4095));
+  EXPECT_FALSE(is_hounsfield_range(-1, 1));
+  EXPECT_FALSE(is_hounsfield_range(-1024, 50));
+}
+
 TEST(Otsu, SaysNothingAboutOneValue) {
   EXPECT_FALSE(otsu_threshold(histogram_of(SampleType::kUint8, std::vector<std::uint8_t>{7, 7, 7})));
   EXPECT_FALSE(otsu_threshold(Histogram{}));

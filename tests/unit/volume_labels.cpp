@@ -187,6 +187,19 @@ TEST(ScatteredLabels, AreThoseOfGreyImages) {
   EXPECT_EQ(atlas[0].runs, 16U);
   EXPECT_EQ(count_scattered(atlas), 0U);
   EXPECT_EQ(count_scattered(find_labels(*std::make_unique<LabelMap>(dims, single))), 0U);
+  EXPECT_TRUE(looks_like_label_map(std::make_unique<LabelMap>(dims, blocks)));
+  EXPECT_FALSE(looks_like_label_map(generate_volume(options)));
+}
+
+TEST(LabelMaps, AreToldByTheirValues) {
+  const auto looks = [](const std::vector<float>& samples) {
+    return looks_like_label_map(
+        volume_in_memory(row_of(samples, SampleType::kFloat32), std::as_bytes(std::span(samples))));
+  };
+  EXPECT_TRUE(looks({0, 1, 1, 0})) << "a mask in floats";
+  EXPECT_FALSE(looks({0, 0.5F, 1, 0}));
+  EXPECT_FALSE(looks({0, -1, 1, 0}));
+  EXPECT_FALSE(looks({0, 0, 0})) << "background alone";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // Series of one file per slice: how files are found and ordered, and what a series must have in common.
+#include "index_helpers.hpp"
 #include "tiff_helpers.hpp"
 #include "volume/formats/images/slice_files.hpp"
 #include "volume/formats/images/slice_numbers.hpp"
@@ -202,6 +203,21 @@ TEST(SliceSeries, ReadsAnOmeSeriesOfOneChannel) {
   page.description = pixels + "SizeC=\"2\"/></OME>";
   put_series(folder, page);
   EXPECT_TRUE(contains(refusal(folder / ""), "one channel and one frame"));
+}
+
+TEST(Tiff, TilesThatTheSurfaceMissesAreNotDecoded) {
+  const TempFolder folder;
+  for (const std::uint32_t tile : {0U, 16U}) {
+    TiffPage page;
+    page.width = 70, page.height = 50, page.tile = tile, page.rows_per_strip = 10;
+    page.compression = COMPRESSION_LZW;
+    std::vector<std::uint16_t> samples;
+    for (int n = 0; n < 70 * 50 * 40; ++n) samples.push_back(static_cast<std::uint16_t>(n / 70 % 50 + n / 3500));
+    const std::string path = write_stack(folder / ("a" + std::to_string(tile) + ".tif"), page, stored(samples));
+    const MeshReport report = expect_same_with_index(path, 20.5);
+    EXPECT_GT(report.left_out->chunks_left_out, report.left_out->chunks / 8);
+    EXPECT_LT(report.left_out->chunks_left_out, report.left_out->chunks);
+  }
 }
 
 }  // namespace

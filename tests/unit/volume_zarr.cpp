@@ -1,6 +1,7 @@
 // Zarr 2 and 3, OME-Zarr: folders written by hand.
 #include <sys/resource.h>
 
+#include "index_helpers.hpp"
 #include "sanitized.hpp"
 #include "zarr_helpers.hpp"
 
@@ -303,6 +304,33 @@ TEST(Zarr, LinksOutOfTheFolderAreRefusedWhereTheyAreNotTrusted) {
   std::filesystem::create_symlink("../metadata", folder / "a.zarr/.zarray");
   EXPECT_EQ(read_all(*open_volume(folder / "a.zarr")).size(), 120U);
   EXPECT_THROW(open_volume(folder / "a.zarr", options), BadInput);
+}
+
+// The chunks that are not needed cannot be read.
+TEST(Zarr, ChunksThatTheSurfaceMissesAreNotRead) {
+  const TempFolder folder;
+  const std::array<std::int64_t, 3> dims{70, 40, 100};
+  const ChunkOf chunks{dims, {20, 20, 20}};
+  const ArrayJson gzip = {{"id", "gzip"}, {"level", 1}};
+  put_zarr2(folder / "a.zarr", {{"shape", {100, 40, 70}}, {"chunks", {20, 20, 20}}, {"compressor", gzip}}, chunks,
+            gzipped);
+  const double iso = 131 * 30;  // between slices 26 and 31
+  const MeshReport whole = expect_same_with_index(folder / "a.zarr", iso, Normals::kGradient);
+  EXPECT_EQ(whole.left_out->chunks, 40U);
+  EXPECT_EQ(whole.left_out->chunks_left_out, 24U);
+  for (const char* name : {"3.0.0", "3.1.2", "4.0.1", "4.1.3"}) {
+    const std::string path = folder / "a.zarr/" + name;
+    const auto time = std::filesystem::last_write_time(path);
+    std::ofstream(path, std::ios::binary | std::ios::in) << std::string(std::filesystem::file_size(path), 'x');
+    std::filesystem::last_write_time(path, time);
+  }
+  EXPECT_THROW(run_file(folder / "a.zarr", iso, {}, Normals::kAbsent), BadInput);
+  const MeshReport kept = run_file(folder / "a.zarr", iso, folder / "a.zarr.test-index", Normals::kGradient);
+  EXPECT_EQ(kept.digest, whole.digest);
+  EXPECT_EQ(kept.max, whole.max);
+  // In an index of another state of the folder nobody trusts.
+  std::filesystem::remove(folder / "a.zarr/4.1.3");
+  EXPECT_THROW(run_file(folder / "a.zarr", iso, folder / "a.zarr.test-index", Normals::kAbsent), BadInput);
 }
 
 }  // namespace

@@ -76,6 +76,8 @@ void expect_levels(const std::string& path) {
   for (std::size_t n = 0; n < expected.size(); ++n) {
     const Json& node = glb.scene["nodes"][n + 1];
     EXPECT_EQ(node["extras"]["comments"][0], "level " + std::to_string(n));
+    EXPECT_EQ(node["scale"], nlohmann::json({1e-3, 1e-3, 1e-3})) << "each level is as large by itself";
+    EXPECT_TRUE(node.contains("rotation"));
     const Json& primitive = glb.scene["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
     EXPECT_EQ(glb.array<Point>(primitive["attributes"]["POSITION"]), expected[n].vertices);
     EXPECT_EQ(glb.array<Point>(primitive["attributes"]["NORMAL"]), expected[n].normals);

@@ -177,7 +177,9 @@ TEST(WritePackedGlb, LevelsAreMeshesInStepsOfTheirOwn) {
   EXPECT_EQ(scene["nodes"][1]["extensions"]["MSFT_lod"]["ids"].dump(), "[2]");
   EXPECT_EQ(scene["extensionsRequired"].size(), 2U) << "whoever does not know the levels sees the finest";
   for (std::size_t level = 0; level < 2; ++level) {
-    const Json& node = scene["nodes"][1 + level];
+    const Json& level_node = scene["nodes"][1 + level];
+    EXPECT_EQ(level_node["scale"], Json({1e-3, 1e-3, 1e-3}));
+    const Json& node = scene["nodes"][level_node["children"][0].get<std::size_t>()];
     const Json& primitive = scene["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
     const auto view = [&](const Json& accessor) {
       return unpack(bytes, scene, scene["accessors"][accessor.get<std::size_t>()]["bufferView"].get<std::size_t>());

@@ -23,7 +23,8 @@ std::array<double, 3> as_doubles(const Point& point) { return {point[0], point[1
 
 // Adds a mesh of so many vertices and triangles, whose data begin at byte `end` of the BIN chunk, and moves `end`
 // behind them.
-void add_mesh(GltfJson& json, bool normals, const Counts& counts, const Bounds& bounds, std::uint64_t& end) {
+void add_mesh(GltfJson& json, const std::string& path, bool normals, const Counts& counts, const Bounds& bounds,
+              std::uint64_t& end) {
   const auto add = [&](std::uint64_t bytes, int target, GltfJson accessor) {
     json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", end}, {"byteLength", bytes}, {"target", target}});
     accessor["bufferView"] = json["bufferViews"].size() - 1;
@@ -49,25 +50,24 @@ void add_mesh(GltfJson& json, bool normals, const Counts& counts, const Bounds& 
   } else {
     primitive["mode"] = kGltfPoints;
   }
-  GltfJson mesh;
-  mesh["primitives"] = GltfJson::array({primitive});
-  json["meshes"].push_back(std::move(mesh));
+  json["meshes"].push_back(gltf_mesh(path, std::move(primitive)));
 }
 
-std::string scene_text(const MeshFileOptions& options, const Counts& counts, const Bounds& bounds) {
+std::string scene_text(const std::string& path, const MeshFileOptions& options, const Counts& counts,
+                       const Bounds& bounds) {
   if (counts.vertices == 0) return gltf_text(gltf_empty_scene(options));
   GltfJson json = gltf_scene(options);
   std::uint64_t end = 0;
-  add_mesh(json, options.normals, counts, bounds, end);
+  add_mesh(json, path, options.normals, counts, bounds, end);
   json["buffers"] = {{{"byteLength", end}}};
   return gltf_text(json);
 }
 
 // The bytes to keep for the scene: as many as the longest numbers take, in a multiple of four.
-std::uint64_t reserved_bytes(const MeshFileOptions& options) {
+std::uint64_t reserved_bytes(const std::string& path, const MeshFileOptions& options) {
   constexpr float kLong = -1.17549435e-38F;
   constexpr std::uint64_t kMany = std::uint64_t{1} << 60;
-  const std::string longest = scene_text(options, {kMany, kMany}, {{kLong, kLong, kLong}, {kLong, kLong, kLong}});
+  const std::string longest = scene_text(path, options, {kMany, kMany}, {{kLong, kLong, kLong}, {kLong, kLong, kLong}});
   constexpr std::size_t kSpare = 32;
   return (longest.size() + kSpare) / 4 * 4;
 }
@@ -75,7 +75,9 @@ std::uint64_t reserved_bytes(const MeshFileOptions& options) {
 class GlbSink final : public MeshFileSink {
  public:
   GlbSink(const MeshTarget& target, const MeshFileOptions& options)
-      : MeshFileSink(target, options), json_bytes_(reserved_bytes(options)), faces_(open_side("faces.part")) {
+      : MeshFileSink(target, options),
+        json_bytes_(reserved_bytes(target.path, options)),
+        faces_(open_side("faces.part")) {
     if (options.normals) normals_ = &open_side("normals.part");
     if (continued()) {
       bounds_.load(saved_state(6));
@@ -108,7 +110,7 @@ class GlbSink final : public MeshFileSink {
     if (normals_ != nullptr) file().append(*normals_);
     file().append(faces_);
     const std::uint64_t total = data_begin() + vertices() * (options().normals ? 24 : 12) + triangles() * 12;
-    const std::string json = scene_text(options(), {vertices(), triangles()}, bounds_);
+    const std::string json = scene_text(path(), options(), {vertices(), triangles()}, bounds_);
     // An empty BIN chunk should not be there: the scene's blanks cover its header.
     const std::uint64_t json_bytes = json_bytes_ + (vertices() == 0 ? kGlbChunkHeaderBytes : 0);
     std::vector<std::byte> header = glb_begin(json, json_bytes, total);
@@ -159,7 +161,7 @@ class GlbLevels final : public LevelFile {
     GltfJson json = gltf_levels(level_options, std::move(nodes));
     for (const LevelParts& level : levels()) {
       if (level.vertices() == 0) continue;
-      add_mesh(json, options().normals, {level.vertices(), level.triangles()}, level.bounds(), end);
+      add_mesh(json, path(), options().normals, {level.vertices(), level.triangles()}, level.bounds(), end);
     }
     json["buffers"] = {{{"byteLength", end}}};
     return json;

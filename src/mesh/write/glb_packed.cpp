@@ -64,6 +64,8 @@ PackedView pack_indices(const std::vector<std::uint32_t>& indices, std::size_t v
 // for the data without packing.
 class PackedScene {
  public:
+  explicit PackedScene(std::string path) : path_(std::move(path)) {}
+
   // Adds positions, normals if there are any, and indices. Returns the number of the mesh.
   std::size_t add(TriangleMesh mesh, const Grid16& grid) {
     std::vector<std::uint32_t> indices(mesh.triangles.size() * 3);
@@ -102,12 +104,12 @@ class PackedScene {
     }
     const std::size_t corners = add_array(
         pack_indices(indices, used), {{"componentType", kGltfUint32}, {"count", indices.size()}, {"type", "SCALAR"}});
-    meshes_.push_back({{"primitives", {{{"attributes", attributes}, {"indices", corners}}}}});
+    meshes_.push_back(gltf_mesh(path_, {{"attributes", attributes}, {"indices", corners}}));
     return meshes_.size() - 1;
   }
 
   // Writes the file, with `json` around what was added.
-  void write(const std::string& path, GltfJson json, OutputDescriptor& file) {
+  void write(GltfJson json, OutputDescriptor& file) {
     GltfJson fallback{{"byteLength", plain_}};
     fallback["extensions"][kExtension] = {{"fallback", true}};
     if (!data_.empty()) {
@@ -120,11 +122,11 @@ class PackedScene {
     const std::uint64_t json_bytes = (text.size() + 3) / 4 * 4;
     const std::uint64_t chunk = data_.empty() ? 0 : kGlbChunkHeaderBytes + data_.size();
     const std::uint64_t total = kGlbHeaderBytes + json_bytes + chunk;
-    check_glb_fits(path, 0, 0, false, total);
+    check_glb_fits(path_, 0, 0, false, total);
     file.write(glb_begin(text, json_bytes, total));
     if (!data_.empty()) file.write(glb_chunk(data_.size()));
     file.write(data_);
-    if (file.size() != total) throw CannotWrite(path + ": its counts and its size differ");
+    if (file.size() != total) throw CannotWrite(path_ + ": its counts and its size differ");
   }
 
  private:
@@ -149,6 +151,7 @@ class PackedScene {
     return accessors_.size() - 1;
   }
 
+  std::string path_;
   GltfJson views_, accessors_, meshes_;
   std::vector<std::byte> data_;
   std::size_t plain_ = 0;
@@ -176,14 +179,14 @@ class PackedGlbSink final : public WholeMeshSink {
 
  private:
   void write_mesh(TriangleMesh mesh) override {
-    PackedScene scene;
-    if (mesh.triangles.empty()) return scene.write(path(), gltf_empty_scene(options()), file());
+    PackedScene scene(path());
+    if (mesh.triangles.empty()) return scene.write(gltf_empty_scene(options()), file());
     const Grid16 grid = Grid16::around(mesh.vertices);
     note(rounding_note(path(), grid, options().unit));
     const std::size_t number = scene.add(std::move(mesh), grid);
     GltfJson json = gltf_scene(options(), placed_node(number, grid, options().offset));
     add_requirements(json, grid.error());
-    scene.write(path(), std::move(json), file());
+    scene.write(std::move(json), file());
   }
 };
 
@@ -200,7 +203,7 @@ class PackedGlbLevels final : public LevelFile {
 
  private:
   void write() override {
-    PackedScene scene;
+    PackedScene scene(path());
     std::vector<MeshFileOptions> level_options;
     std::vector<GltfJson> nodes;
     Grid16 coarsest;
@@ -220,7 +223,7 @@ class PackedGlbLevels final : public LevelFile {
       json = gltf_levels(level_options, std::move(nodes));
       add_requirements(json, coarsest.error());
     }
-    scene.write(path(), std::move(json), file_.descriptor());
+    scene.write(std::move(json), file_.descriptor());
     file_.commit();
   }
 

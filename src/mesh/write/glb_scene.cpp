@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "files/length_units.hpp"
 #include "mesh/write/mesh_file_sink.hpp"
@@ -21,7 +23,22 @@ std::array<double, 4> turn_to_y_up(const std::string& space) {
   return {-half, 0, 0, half};
 }
 
+// Bone, as in pictures by render; linear, as glTF wants it.
+GltfJson gltf_material() {
+  GltfJson surface;
+  surface["baseColorFactor"] = {0.73, 0.61, 0.456, 1.0};
+  surface["metallicFactor"] = 0.0;
+  surface["roughnessFactor"] = 0.8;
+  return {{"name", "surface"}, {"pbrMetallicRoughness", surface}};
+}
+
 }  // namespace
+
+GltfJson gltf_mesh(const std::string& path, GltfJson primitive) {
+  primitive["material"] = 0;
+  const std::filesystem::path file(path);
+  return {{"name", file.stem().string()}, {"primitives", GltfJson::array({std::move(primitive)})}};
+}
 
 void Bounds::add(std::span<const Point> points) {
   for (const Point& point : points) {
@@ -55,10 +72,12 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   extras["unit"] = options.unit;
   extras["space"] = options.space;
   if (has_offset(options)) extras["offset"] = options.offset;
+  // Without a material a surface is of metal, which is dark in most lights.
+  json["materials"] = GltfJson::array({gltf_material()});
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   GltfJson root{{"rotation", turn_to_y_up(options.space)}};
-  const double metres = unit_in(options.unit, "m").value_or(1);
+  const double metres = unit_in(unit_or_usual(options.unit), "m").value_or(1);
   if (metres != 1) root["scale"] = {metres, metres, metres};
   if (placed.is_null() && has_offset(options)) {
     root["children"] = {1};
@@ -76,13 +95,23 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
 GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels) {
   GltfJson json = gltf_scene(options.front(), GltfJson::object());
   json["nodes"].erase(1);  // the root's child is the finest level
+  const GltfJson root = std::exchange(json["nodes"][0], GltfJson{{"children", {1}}});
+  std::vector<GltfJson> placed;
   for (std::size_t level = 0; level < levels.size(); ++level) {
     GltfJson& node = levels[level];
+    if (node.contains("translation") || node.contains("scale")) {
+      placed.push_back(std::exchange(node, GltfJson::object()));
+      node["children"] = {1 + levels.size() + placed.size() - 1};
+    }
+    for (const char* key : {"rotation", "scale"}) {
+      if (root.contains(key)) node[key] = root.at(key);
+    }
     node["name"] = "lod" + std::to_string(level);
     node["extras"]["comments"] = options[level].comments;
     if (level > 0) levels[0]["extensions"]["MSFT_lod"]["ids"].push_back(level + 1);
   }
   for (GltfJson& node : levels) json["nodes"].push_back(std::move(node));
+  for (GltfJson& node : placed) json["nodes"].push_back(std::move(node));
   if (levels.size() > 1) json["extensionsUsed"] = {"MSFT_lod"};
   return json;
 }
@@ -90,6 +119,7 @@ GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<Gl
 GltfJson gltf_empty_scene(const MeshFileOptions& options) {
   GltfJson json = gltf_scene(options);
   json.erase("nodes");
+  json.erase("materials");
   json["scenes"] = GltfJson::array({GltfJson::object({{"name", "empty"}})});
   return json;
 }

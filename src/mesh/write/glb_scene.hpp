@@ -1,7 +1,7 @@
 // What GLB files of all kinds share: the scene around the mesh, and the container around scene and data.
 //
 // Coordinates stay those of the volume. glTF means metres in a right-handed frame with y up and z to the front, so the
-// root node scales by the unit (not at all where it is not known) and turns the axes: the patient's superior is up and
+// root node scales by the unit (millimetres where it is not known) and turns the axes: the patient's superior is up and
 // anterior is in front for LPS and RAS; for anything else z is up.
 #pragma once
 
@@ -48,8 +48,12 @@ inline Point gltf_normal(const Point& normal) { return normal == Point{0, 0, 0} 
 // holds it, if that is given.
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
 
+// A mesh by the name of its file, of our material.
+GltfJson gltf_mesh(const std::string& path, GltfJson primitive);
+
 // The scene of several levels of detail (MSFT_lod), finest first: `levels` are the contents of their nodes. A viewer
-// that does not know the extension shows the finest level only.
+// that does not know the extension shows the finest level only. Each level turns and scales by itself: importers that
+// take all nodes see all levels in the same size.
 GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels);
 
 // The scene of a mesh without triangles: glTF has no empty meshes, nor scenes with an empty list of nodes.

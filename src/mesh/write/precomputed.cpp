@@ -15,8 +15,8 @@ class PrecomputedSink final : public MeshFileSink {
  public:
   PrecomputedSink(const MeshTarget& target, const MeshFileOptions& options)
       : MeshFileSink(target, without_normals(options)),
-        nanometres_(unit_in(options.unit, "nm")),
-        places_(path(), options, nanometres_.value_or(1)),
+        nanometres_(unit_in(unit_or_usual(options.unit), "nm").value_or(1)),
+        places_(path(), options, nanometres_),
         positions_(open_side("positions.part")),
         faces_(open_side("faces.part")) {
     if (continued() && has_offset()) places_.load(saved_state(1));
@@ -24,9 +24,7 @@ class PrecomputedSink final : public MeshFileSink {
 
   std::vector<std::string> notes() const override {
     std::vector<std::string> lines = places_.notes();
-    if (!nanometres_) {
-      lines.push_back(path() + ": the unit is not known, coordinates were written as if they were nanometres");
-    }
+    if (options().unit.empty()) lines.push_back(path() + ": the unit is not said, coordinates were taken for mm");
     return lines;
   }
 
@@ -47,7 +45,7 @@ class PrecomputedSink final : public MeshFileSink {
     if (has_offset()) return places_.point(point);
     Point result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      result[axis] = static_cast<float>(double{point[axis]} * nanometres_.value_or(1));
+      result[axis] = static_cast<float>(double{point[axis]} * nanometres_);
     }
     return result;
   }
@@ -79,7 +77,7 @@ class PrecomputedSink final : public MeshFileSink {
     fragment.commit();
   }
 
-  std::optional<double> nanometres_;  // of a unit
+  double nanometres_;  // of a unit
   RoundedPlaces places_;
   OutputDescriptor& positions_;
   OutputDescriptor& faces_;

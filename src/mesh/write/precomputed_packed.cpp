@@ -81,7 +81,7 @@ std::vector<std::byte> manifest(const Grid16& grid, std::span<const PackedLevel>
 
 void write_folder(const std::string& path, const MeshFileOptions& options, const Grid16& grid,
                   std::span<const PackedLevel> levels) {
-  const double scale = unit_in(options.unit, "nm").value_or(1);
+  const double scale = unit_in(unit_or_usual(options.unit), "nm").value_or(1);
   const nlohmann::ordered_json info{{"@type", "neuroglancer_multilod_draco"},
                                     {"vertex_quantization_bits", 16},
                                     {"transform",
@@ -103,7 +103,7 @@ void write_folder(const std::string& path, const MeshFileOptions& options, const
 }
 
 std::string unit_note(const std::string& path) {
-  return path + ": the unit is not known, coordinates were written as if they were nanometres";
+  return path + ": the unit is not said, coordinates were taken for mm";
 }
 
 class PackedPrecomputedSink final : public WholeMeshSink {
@@ -113,7 +113,7 @@ class PackedPrecomputedSink final : public WholeMeshSink {
 
  private:
   void write_mesh(TriangleMesh mesh) override {
-    if (!unit_in(options().unit, "nm")) note(unit_note(path()));
+    if (options().unit.empty()) note(unit_note(path()));
     const Grid16 grid = Grid16::around(mesh.vertices);
     PackedLevel level;
     level.scale = static_cast<float>(grid.step * kSteps);  // the size below which there would be a finer level
@@ -155,7 +155,7 @@ class PackedPrecomputedLevels final : public LevelFile {
   }
 
   void write() override {
-    if (!unit_in(options().unit, "nm")) note(unit_note(path()));
+    if (options().unit.empty()) note(unit_note(path()));
     const Grid16 finest = grid();
     std::vector<PackedLevel> packed;
     Grid16 grid = finest;

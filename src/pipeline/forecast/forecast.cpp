@@ -2,7 +2,9 @@
 #include "isoweave/forecast.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,6 +24,7 @@
 #include "simplify/count_target.hpp"
 #include "system/process_memory.hpp"
 #include "volume/axes.hpp"
+#include "volume/indexed_source.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -68,7 +71,12 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : volume_(volume), rows_(volume), info_(checked_volume(volume.info(), options.extractor)), options_(options) {
+      : indexed_(indexed(volume, control.index, options, options.normals != Normals::kAbsent)),
+        volume_(indexed_ ? *indexed_ : volume),
+        rows_(volume_),
+        info_(checked_volume(volume.info(), options.extractor)),
+        options_(options) {
+    if (control.index) bricks_.emplace(*control.index, stored_rule(info_, options));
     control_.threads = control.threads;
     control_.measure = true;
     control_.slab = control.slab;
@@ -153,6 +161,10 @@ class Forecaster {
     every_ = (blocks_ + thick_blocks - 1) / thick_blocks;
   }
 
+  // The triangles of a cap for each inside sample under it: a quadrilateral, or around the four edges of tetrahedra
+  // that lead out of the volume there twice as many triangles as vertices.
+  double cap_triangles() const { return options_.extractor == ExtractorKind::kTetrahedra ? 8 : 2; }
+
   // The triangles on one side of a slice that no block looks at, where the slice is an end of a closed volume.
   double end_cap(std::int64_t k) {
     double cap = 0;
@@ -161,7 +173,7 @@ class Forecaster {
     for (std::int64_t j = 0; j < info_.dims[1]; j += band_rows_) {
       const std::int64_t rows = std::min(band_rows_, info_.dims[1] - j);
       rows_.read(k, j, rows, band);
-      cap += 2 * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
+      cap += cap_triangles() * inside_in(std::span(band).first(static_cast<std::size_t>(rows) * row));
     }
     return cap;
   }
@@ -201,15 +213,16 @@ class Forecaster {
     Section section(rows_, info_, first, slices, band_, [&](std::int64_t n, std::span<const std::byte> slice) {
       if (tile != nullptr) tile->take(n, slice);
       if (options_.closed) inside += inside_on_sides(slice);
-      if (options_.closed && first + n == 0) first_cap_ = 2 * inside_in(slice) * rows_in_bands();
-      if (options_.closed && first + n == info_.dims[2] - 1) last_cap_ = 2 * inside_in(slice) * rows_in_bands();
+      if (options_.closed && first + n == 0) first_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
+      if (options_.closed && first + n == info_.dims[2] - 1)
+        last_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
     });
     Stopwatch watch;
     const MeshReport report = mesh(section, sink, 0, 0);
     watch.lap(seconds_extracting_);
     slices_read_ += static_cast<double>(slices) / rows_in_bands();
     return {static_cast<double>(report.triangles) / layers(section) * layers_in_bands(),
-            2.0 * inside / layers(section)};
+            cap_triangles() * inside / layers(section)};
   }
 
   // Simplifies a part of a tile that is a small part of the volume's surface.
@@ -334,8 +347,8 @@ class Forecaster {
     const bool inside = is_inside(*constant_sample(volume_), info_.type, stored_rule(info_, options_));
     const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
     const bool boxed = inside && options_.closed;
-    facts_.push_back({0, boxed ? 4 * sides : 0});
-    first_cap_ = boxed ? 2 * static_cast<double>(info_.slice_samples()) : 0;
+    facts_.push_back({0, boxed ? 2 * cap_triangles() * sides : 0});
+    first_cap_ = boxed ? cap_triangles() * static_cast<double>(info_.slice_samples()) : 0;
     last_cap_ = first_cap_;
     slices_read_ = 1;
     blocks_ = 1;
@@ -350,7 +363,9 @@ class Forecaster {
       caps.push_back(facts.caps);
     }
     const double distance = static_cast<double>(slices_) / static_cast<double>(blocks_);
-    return {Profile(std::move(open), distance), Profile(std::move(caps), distance)};
+    Profile at_caps(std::move(caps), distance);
+    if (bricks_) return {Profile(bricks_->spread(open, distance), static_cast<double>(kBrick)), std::move(at_caps)};
+    return {Profile(std::move(open), distance), std::move(at_caps)};
   }
 
   // Whether the error or the topology leaves more triangles than the number that was asked for.
@@ -439,6 +454,7 @@ class Forecaster {
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
 
+  const std::unique_ptr<IndexedSource> indexed_;  // the volume, where there is an index of it
   SliceSource& volume_;
   RowReader rows_;
   const VolumeInfo info_;
@@ -455,6 +471,7 @@ class Forecaster {
   std::int64_t blocks_ = 0;
   std::int64_t every_ = 1;  // so many blocks one is thick
   std::vector<BlockFacts> facts_;
+  std::optional<BricksOfLayers> bricks_;  // of the whole volume
   double slices_read_ = 0;                // in all blocks
   double simplified_ = 0;                 // triangles of tiles
   std::uint64_t before_ = 0, after_ = 0;  // of them in the middle

@@ -1,10 +1,13 @@
-// How the triangles of a volume are spread over its layers, told by the blocks that a forecast looks at.
+// How the triangles of a surface are spread over the layers of a volume, as a forecast sees it.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
+
+#include "extract/cube_rules.hpp"
+#include "volume/volume_index.hpp"
 
 namespace isoweave {
 
@@ -38,6 +41,20 @@ class Profile {
 // The profiles of the open surface, and of the caps.
 struct Profiles {
   Profile open, caps;
+};
+
+// The crossed bricks in each layer of bricks of a volume with an index.
+class BricksOfLayers {
+ public:
+  BricksOfLayers(const VolumeIndex& index, const IsoRule& rule);
+
+  // The triangles per layer of the volume in each layer of bricks. `per_layer`: those that blocks show, `distance`
+  // layers apart. Between the middles of two blocks the triangles per crossed brick go from those of the one to those
+  // of the other.
+  std::vector<double> spread(const std::vector<double>& per_layer, double distance) const;
+
+ private:
+  std::vector<double> crossed_;
 };
 
 }  // namespace isoweave

@@ -38,8 +38,10 @@ void for_shards(std::span<const Piece> pieces, const Visit& visit) {
 
 class ChunkStream final : public BandStream {
  public:
-  ChunkStream(const ChunkedArray& array, const VolumeInfo& info, AxisChoice choice, std::int64_t depth)
+  ChunkStream(const ChunkedArray& array, const VolumeInfo& info, AxisChoice choice, std::int64_t depth,
+              std::shared_ptr<Gaps> gaps)
       : BandStream(info.dims[2], info.slice_bytes(), depth),
+        gaps_(std::move(gaps)),
         reader_(array),
         choice_(std::move(choice)),
         dims_(info.dims),
@@ -55,7 +57,10 @@ class ChunkStream final : public BandStream {
     for_shards(rows, [&](std::span<const Piece> in_rows) {
       for_shards(columns, [&](std::span<const Piece> in_columns) {
         for (const Piece& j : in_rows) {
-          for (const Piece& i : in_columns) put_chunk({i, j, k}, band);
+          for (const Piece& i : in_columns) {
+            if (gaps_->leaves_out({{i.begin, j.begin, k.begin}, {i.end, j.end, k.end}})) continue;
+            put_chunk({i, j, k}, band);
+          }
         }
       });
     });
@@ -130,6 +135,7 @@ class ChunkStream final : public BandStream {
     copy_block(chunk_.samples.data() + from * bytes, band.data() + to * bytes, copy, bytes_each_);
   }
 
+  std::shared_ptr<Gaps> gaps_;
   ChunkReader reader_;
   AxisChoice choice_;
   std::array<std::int64_t, 3> dims_;
@@ -221,7 +227,8 @@ OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice) {
   volume.held_bytes =
       static_cast<std::uint64_t>(std::min(depth, info.dims[2])) * info.slice_bytes() + 2 * chunk_bytes(array);
   if (!stored) volume.constant = array.fill;
-  volume.samples = std::make_unique<ChunkStream>(array, info, choice, depth);
+  volume.gaps = std::make_shared<Gaps>();
+  volume.samples = std::make_unique<ChunkStream>(array, info, choice, depth, volume.gaps);
   if (array.is_half) read_halves(volume);
   return volume;
 }

@@ -232,6 +232,10 @@ OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std:
   info.dims[2] = grid.count;
   set_axes(info, placed, grid);
   set_scaling(info, slices);
+  for (const PlacedSlice& placed_slice : slices) {
+    const std::string& file = placed_slice.slice.file;
+    if (info.data_files.empty() || info.data_files.back() != file) info.data_files.push_back(file);
+  }
   checked_volume_bytes(info);
   note_header(info, slices.front().slice);
   note_bits(info, placed);

@@ -31,8 +31,12 @@ struct OpenDataset {
 
 class DatasetStream final : public BandStream {
  public:
-  DatasetStream(std::string path, OpenDataset open, const VolumeInfo& info, AxisChoice choice, std::int64_t depth)
+  // `chunk`: the samples of a chunk along each axis of the dataset; empty where samples lie in one piece.
+  DatasetStream(std::string path, OpenDataset open, const VolumeInfo& info, AxisChoice choice, std::int64_t depth,
+                std::vector<std::int64_t> chunk, std::shared_ptr<Gaps> gaps)
       : BandStream(info.dims[2], info.slice_bytes(), depth),
+        chunk_(std::move(chunk)),
+        gaps_(std::move(gaps)),
         path_(std::move(path)),
         open_(std::move(open)),
         dims_(info.dims),
@@ -80,6 +84,7 @@ class DatasetStream final : public BandStream {
     return j < i && (k == kNoAxis || k < j);
   }
 
+  // Reads the samples of a box of the dataset, or, where some of its chunks are not needed, the others.
   void read_slab(const std::vector<hsize_t>& begin, const std::vector<hsize_t>& size, std::span<std::byte> out) {
     const Hdf5Session session(path_);
     const Hdf5Functions& h5 = session.h5();
@@ -88,13 +93,53 @@ class DatasetStream final : public BandStream {
     const Hdf5Handle from(h5.dget_space(open_.dataset.id()), h5.sclose);
     const Hdf5Handle to(h5.screate_simple(static_cast<int>(size.size()), size.data(), nullptr), h5.sclose);
     // A type of another size would not fit the memory.
-    const bool ready =
-        type && from && to && h5.tget_size(type.id()) == bytes_each_ &&
-        h5.sselect_hyperslab(from.id(), H5S_SELECT_SET, begin.data(), nullptr, size.data(), nullptr) >= 0;
-    const bool read = ready && h5.dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefault, out.data()) >= 0;
-    if (!read) session.refuse(path_, "samples that libhdf5 can read");
+    const bool ready = type && from && to && h5.tget_size(type.id()) == bytes_each_;
+    const auto read = [&](const std::vector<hsize_t>& first, const std::vector<hsize_t>& count) {
+      std::vector<hsize_t> place(first.size());
+      for (std::size_t n = 0; n < first.size(); ++n) place[n] = first[n] - begin[n];
+      return h5.sselect_hyperslab(from.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) >= 0 &&
+             h5.sselect_hyperslab(to.id(), H5S_SELECT_SET, place.data(), nullptr, count.data(), nullptr) >= 0 &&
+             h5.dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefault, out.data()) >= 0;
+    };
+    const bool whole = chunk_.empty() || gaps_->needed == nullptr;
+    const bool done = ready && (whole ? read(begin, size) : read_chunks(begin, size, read));
+    if (!done) session.refuse(path_, "samples that libhdf5 can read");
   }
 
+  // Calls read(first, count) for the part of each needed chunk in a box of the dataset, until it returns false.
+  template <class Read>
+  bool read_chunks(const std::vector<hsize_t>& begin, const std::vector<hsize_t>& size, const Read& read) {
+    std::vector<hsize_t> first = begin;
+    while (true) {
+      std::vector<hsize_t> count(first.size());
+      for (std::size_t n = 0; n < first.size(); ++n) {
+        const auto step = static_cast<hsize_t>(chunk_[n]);
+        count[n] = std::min((first[n] / step + 1) * step, begin[n] + size[n]) - first[n];
+      }
+      if (!gaps_->leaves_out(box_of(first, count)) && !read(first, count)) return false;
+      std::size_t axis = first.size();
+      while (axis > 0 && (first[axis - 1] += count[axis - 1]) == begin[axis - 1] + size[axis - 1]) {
+        --axis;
+        first[axis] = begin[axis];
+      }
+      if (axis == 0) return true;
+    }
+  }
+
+  // A box of the dataset as one of the volume.
+  Region box_of(const std::vector<hsize_t>& first, const std::vector<hsize_t>& count) const {
+    Region box{{0, 0, 0}, {1, 1, 1}};
+    for (std::size_t a = 0; a < dims_.size(); ++a) {
+      const std::size_t axis = choice_.axis.at(a);
+      if (axis == kNoAxis) continue;
+      box.first.at(a) = static_cast<std::int64_t>(first[axis]);
+      box.end.at(a) = static_cast<std::int64_t>(first[axis] + count[axis]);
+    }
+    return box;
+  }
+
+  std::vector<std::int64_t> chunk_;
+  std::shared_ptr<Gaps> gaps_;
   std::string path_;
   OpenDataset open_;
   std::array<std::int64_t, 3> dims_;
@@ -371,7 +416,9 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const std::int64_t depth = band_depth(volume.info, choice, chunk);
   check_stored(volume.info, h5.dget_storage_size(open.dataset.id()), file->size(), depth, chunk);
   volume.held_bytes = 2 * static_cast<std::uint64_t>(depth) * volume.info.slice_bytes();
-  volume.samples = std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth);
+  if (!chunk.empty()) volume.gaps = std::make_shared<Gaps>();
+  volume.samples =
+      std::make_unique<DatasetStream>(path, std::move(open), volume.info, choice, depth, chunk, volume.gaps);
   if (dataset.type->is_half) read_halves(volume);
   if (found.place && !found.place->slope.empty()) {
     scale_samples(volume, scaling_of(*found.place, axes, choice, path));

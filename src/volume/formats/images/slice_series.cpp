@@ -47,11 +47,13 @@ OpenedVolume open_slice_series(const SliceFiles& slices, const OpenOptions& opti
     const auto count = static_cast<std::int64_t>(slices.files.size());
     const auto name = [slices](std::int64_t n) { return slices.files[static_cast<std::size_t>(n)]; };
     const auto open = [slices, name](std::int64_t n) { return open_slice(slices.kind, name(n), true, {}).samples; };
+    volume.gaps = nullptr;  // those of the first slice alone
     volume.samples = std::make_unique<FileSequence>(count, info.slice_bytes(), open, name);
     info.dims[2] = count;
     checked_volume_bytes(info);
   }
   info.path = slices.path;
+  info.data_files = slices.files;
   info.notes.insert(info.notes.begin(), slices.notes.begin(), slices.notes.end());
   const std::vector<std::string> numbers = notes_on_numbers(slices.files);
   info.notes.insert(info.notes.end(), numbers.begin(), numbers.end());

@@ -209,7 +209,8 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
     volume.swap_bytes = (TIFFIsBigEndian(tiff->handle()) != 0) != (std::endian::native == std::endian::big);
     volume.samples = contiguous_samples(*tiff, info, images, numbers);
   } else {
-    auto samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers));
+    volume.gaps = std::make_shared<Gaps>();
+    auto samples = std::make_unique<TiffPageStream>(std::move(tiff), pages.kind, pages_of(pages, numbers), volume.gaps);
     volume.held_bytes = samples->held_bytes();
     volume.samples = std::move(samples);
   }

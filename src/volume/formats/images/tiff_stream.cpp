@@ -9,8 +9,9 @@
 
 namespace isoweave {
 
-TiffPageStream::TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages)
-    : tiff_(std::move(tiff)), kind_(kind), pages_(std::move(pages)) {
+TiffPageStream::TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages,
+                               std::shared_ptr<Gaps> gaps)
+    : gaps_(std::move(gaps)), tiff_(std::move(tiff)), kind_(kind), pages_(std::move(pages)) {
   sample_bytes_ = sample_bytes(kind.type.type);
   row_bytes_ = to_size(kind.width, sample_bytes_);
 }
@@ -90,10 +91,15 @@ void TiffPageStream::decode() {
   band_.resize(band_bytes());
   if (tiled_) {
     decode_tiles();
-  } else {
+  } else if (!leaves_out(0, kind_.width)) {
     decode_strip();
   }
   decoded_ = true;
+}
+
+bool TiffPageStream::leaves_out(std::int64_t left, std::int64_t right) {
+  const auto k = static_cast<std::int64_t>(page_);
+  return gaps_->leaves_out({{left, row_, k}, {right, std::min(row_ + band_rows_, kind_.height), k + 1}});
 }
 
 std::string TiffPageStream::place(std::uint32_t strile) const {
@@ -116,6 +122,7 @@ void TiffPageStream::decode_strip() {
 // A row of tiles, of which the last may hang over the edge.
 void TiffPageStream::decode_tiles() {
   for (std::int64_t left = 0; left < kind_.width; left += tile_width_) {
+    if (leaves_out(left, std::min(left + tile_width_, kind_.width))) continue;
     const std::uint32_t tile =
         TIFFComputeTile(tiff_->handle(), static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(row_), 0, 0);
     decode_tile(tile);

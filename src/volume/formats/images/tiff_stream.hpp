@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,13 +11,15 @@
 #include "files/byte_stream.hpp"
 #include "volume/formats/images/tiff_file.hpp"
 #include "volume/formats/images/tiff_pages.hpp"
+#include "volume/gaps.hpp"
 
 namespace isoweave {
 
 // The samples of a list of pages, decoded band by band (a strip or a row of tiles), in the machine's byte order.
 class TiffPageStream final : public ByteStream {
  public:
-  TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages);
+  // `pages` are the slices of the volume that `gaps` speaks of.
+  TiffPageStream(TiffPtr tiff, const TiffPageKind& kind, std::vector<std::uint64_t> pages, std::shared_ptr<Gaps> gaps);
 
   std::size_t read(std::span<std::byte> out) override;
   std::uint64_t skip(std::uint64_t count) override;
@@ -36,6 +39,10 @@ class TiffPageStream final : public ByteStream {
   std::string place(std::uint32_t strile) const;
   void check_decoded(std::int64_t got, std::size_t wanted, std::uint32_t strile) const;
 
+  // Whether the columns [left, right) of the band are not needed.
+  bool leaves_out(std::int64_t left, std::int64_t right);
+
+  std::shared_ptr<Gaps> gaps_;
   TiffPtr tiff_;
   TiffPageKind kind_;
   std::vector<std::uint64_t> pages_;

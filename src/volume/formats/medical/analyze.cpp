@@ -125,7 +125,9 @@ OpenedVolume open_analyze(const FilePtr& file, const OpenOptions& options) {
   set_axes(*header, info);
   set_scale(*header, info);
   const std::uint64_t begin = data_offset(*header, info.path) + before;
-  volume.samples = samples_in(image_of_header(info.path), begin, checked_volume_bytes(info));
+  const FilePtr image = image_of_header(info.path);
+  info.data_files = {image->path()};
+  volume.samples = samples_in(image, begin, checked_volume_bytes(info));
   volume.swap_bytes = header->swapped;
   return volume;
 }

@@ -257,11 +257,12 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
     layout.byte_skip = 0;
     return open_only_file(info, file, fields.end, layout, bytes);
   }
-  if (is_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
-  if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
+  if (is_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
+  if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
   const FilePtr data = open_file(beside(path, value));
   if (layout.encoding == DataLayout::Encoding::kRaw) return open_only_file(info, data, 0, layout, bytes);
   const std::uint64_t begin = compressed_begin(data, fields, std::exchange(layout.byte_skip, 0));
+  info.data_files = {data->path()};
   return open_samples(data, begin, layout, bytes);
 }
 

@@ -335,6 +335,7 @@ OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options) {
   const std::uint64_t offset = data_offset(*header, file->path());
   if (!header->single_file) check_external(options, file->path(), "its image");
   const FilePtr image = header->single_file ? file : image_of_header(file->path());
+  if (!header->single_file) volume.info.data_files = {image->path()};
   const std::size_t each = sample_bytes(volume.info.type);
   samples_in(image, offset, picked_extent(axes, choice, each, file->path()));  // refuses a file that cannot hold them
   const std::uint64_t whole = offset + checked_bytes_of(axes, each, file->path());

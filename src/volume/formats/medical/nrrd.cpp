@@ -270,8 +270,8 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
     if (!fields.blank_line) bad_input(path, "a blank line behind the header, or a data file", "neither");
     return open_only_file(info, file, fields.end, layout, bytes);
   }
-  if (is_nrrd_list(value)) return open_samples(listed_files(path, fields.listed), layout, bytes, path);
-  if (const auto series = numbered_series(value, path)) return open_samples(*series, layout, bytes, path);
+  if (is_nrrd_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
+  if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
   return open_only_file(info, open_file(beside(path, std::string(value))), 0, layout, bytes);
 }
 

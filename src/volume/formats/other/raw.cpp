@@ -90,12 +90,20 @@ std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
 
 namespace {
 
+std::string layout_text(const RawLayout& layout) {
+  const auto& [nx, ny, nz] = layout.dims;
+  return std::to_string(nx) + "x" + std::to_string(ny) + "x" + std::to_string(nz) + ":" +
+         std::string(sample_type_name(layout.type)) + (layout.big_endian ? ":big" : "") +
+         ":skip=" + std::to_string(layout.skip_bytes);
+}
+
 VolumeInfo raw_info(const std::string& path, const RawLayout& layout) {
   VolumeInfo info;
   info.path = path;
   info.format = "raw";
   info.dims = layout.dims;
   info.type = layout.type;
+  info.layout = layout_text(layout);
   checked_volume_bytes(info);
   if (layout.skip_bytes < 0) bad_input(path, "a skip of at least 0", std::to_string(layout.skip_bytes));
   return info;
@@ -142,6 +150,7 @@ OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
   // A file that is missing or of another size is found now.
   for (std::int64_t n = 0; n < count; ++n) open(n);
   volume.info.notes = notes_on_numbers(files);
+  volume.info.data_files = files;
   volume.samples = std::make_unique<FileSequence>(count, slice, open, name);
   volume.swap_bytes = is_swapped(layout);
   return volume;

@@ -398,6 +398,7 @@ OpenedVolume open_vti(const FilePtr& file, const OpenOptions& options) {
   check_plausible(info.path, checked_volume_bytes(info), stored_bytes(headers), kLargestRatio);
   std::vector<VolumePiece> pieces;
   for (const auto& source : headers) {
+    if (header->is_list()) info.data_files.push_back(source->path);
     for (const ImagePiece& piece : source->pieces) {
       pieces.push_back(piece_of(source, piece, box_of(extent_of(piece.extent, source->path), whole, choice.cells),
                                 choice.cells, like));

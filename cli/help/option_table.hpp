@@ -1,0 +1,20 @@
+// What all options have in help, man pages and completions: the group in which they stand and the kind of their value.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "options/cli_app.hpp"
+
+namespace isoweave::cli {
+
+// Gives every option of the verb its group and the name of its value.
+void describe_options(CLI::App& verb);
+
+// The groups, in the order in which help shows them.
+const std::vector<std::string>& option_groups();
+
+// The words behind "isoweave VERB" in its usage: "VOLUME -o MESH --iso VALUE [options]".
+std::string usage_text(const std::string& verb);
+
+}  // namespace isoweave::cli

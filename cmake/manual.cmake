@@ -1,0 +1,41 @@
+# Man pages and completions, which the program itself writes from the options that it has. Not where it cannot run here.
+if(CMAKE_CROSSCOMPILING)
+  return()
+endif()
+set(manual ${PROJECT_BINARY_DIR}/manual)
+file(MAKE_DIRECTORY ${manual})
+set(ISOWEAVE_VERBS mesh simplify info check compare render view generate)
+
+# isoweave_manual_file(NAME ARGUMENTS...): what `isoweave help ARGUMENTS` prints.
+set(manual_files)
+function(isoweave_manual_file name)
+  add_custom_command(OUTPUT ${manual}/${name} COMMAND isoweave_cli help ${ARGN} > ${manual}/${name}
+                     DEPENDS isoweave_cli VERBATIM)
+  set(manual_files ${manual_files} ${manual}/${name} PARENT_SCOPE)
+endfunction()
+
+isoweave_manual_file(isoweave.1 --man)
+set(man_pages ${manual}/isoweave.1)
+foreach(verb ${ISOWEAVE_VERBS})
+  isoweave_manual_file(isoweave-${verb}.1 --man ${verb})
+  list(APPEND man_pages ${manual}/isoweave-${verb}.1)
+endforeach()
+foreach(shell bash zsh fish)
+  isoweave_manual_file(${shell} --completion ${shell})
+endforeach()
+# Debian wants man pages packed.
+find_program(ISOWEAVE_GZIP gzip)
+if(ISOWEAVE_GZIP)
+  set(packed_pages)
+  foreach(page ${man_pages})
+    add_custom_command(OUTPUT ${page}.gz COMMAND ${ISOWEAVE_GZIP} -9nkf ${page} DEPENDS ${page} VERBATIM)
+    list(APPEND packed_pages ${page}.gz)
+  endforeach()
+  set(man_pages ${packed_pages})
+endif()
+add_custom_target(isoweave_manual ALL DEPENDS ${manual_files} ${man_pages})
+
+install(FILES ${man_pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${manual}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME isoweave)
+install(FILES ${manual}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _isoweave)
+install(FILES ${manual}/fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME isoweave.fish)

@@ -1,0 +1,220 @@
+"""How a run behaves in Python: Ctrl-C stops it, exceptions of callbacks come out as they were, progress is told."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import threading
+from dataclasses import dataclass
+from typing import Any, Callable, Protocol, Union
+
+from . import _library as c
+
+_DEVICES = {"auto": 0, "cpu": 1, "cuda": 2}
+_BYTES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12, "Ki": 2**10, "Mi": 2**20, "Gi": 2**30, "Ti": 2**40}
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is."""
+
+    layer: int
+    """Layers that are done."""
+    layers: int
+    """Layers in all."""
+    voxels: int
+    """Samples read so far."""
+    live_triangles: int
+    """Triangles that are held."""
+    final_triangles: int
+    """Triangles that are written."""
+    bytes: int
+    """Bytes held by the slab and the undecided zone."""
+
+
+ProgressLike = Union[bool, Callable[[Progress], Any], None]
+
+
+class _Teller(Protocol):
+    def tell(self, progress: Progress) -> Any: ...
+
+    def close(self) -> None: ...
+
+
+class _Callback:
+    def __init__(self, callback: Callable[[Progress], Any]) -> None:
+        self.tell = callback
+
+    def close(self) -> None:
+        pass
+
+
+class _Lines:
+    """One line on standard error, rewritten."""
+
+    def tell(self, progress: Progress) -> None:
+        sys.stderr.write(f"\risoweave: layer {progress.layer} of {progress.layers}, {progress.final_triangles} triangles")
+        sys.stderr.flush()
+
+    def close(self) -> None:
+        sys.stderr.write("\n")
+
+
+class _Bar:
+    """A bar of tqdm."""
+
+    def __init__(self, tqdm: Any) -> None:
+        self._tqdm = tqdm
+        self._bar: Any = None
+
+    def tell(self, progress: Progress) -> None:
+        if self._bar is None:
+            self._bar = self._tqdm(total=progress.layers, unit="layer", desc="isoweave")
+        self._bar.update(progress.layer - self._bar.n)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _teller(progress: ProgressLike) -> _Teller | None:
+    if progress is None or progress is False:
+        return None
+    if callable(progress):
+        return _Callback(progress)
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return _Lines()
+    return _Bar(tqdm)
+
+
+def parse_bytes(memory: int | str | None) -> int:
+    """An amount of memory such as 800000000, "800M" or "2G"; 0 for None."""
+    if memory is None:
+        return 0
+    if isinstance(memory, str):
+        text = memory.strip().removesuffix("B")
+        digits = text.rstrip("KMGTi")
+        try:
+            memory = int(float(digits) * _BYTES[text[len(digits) :]])
+        except (KeyError, ValueError):
+            raise ValueError(f"memory: expected an amount such as 800M or 2G, found {memory!r}") from None
+    if memory < 1:
+        raise ValueError(f"memory: expected at least 1 byte, found {memory}")
+    return memory
+
+
+class RunState:
+    """A run that may be stopped: by Ctrl-C, by a callback's exception, or by False from a progress callback.
+
+    Callbacks are wrapped by :meth:`guarded`: an exception is kept, the run stops, and :meth:`call` raises it.
+    """
+
+    def __init__(self) -> None:
+        self._stop = c.Handle(c.library.iw_stop_new(), "iw_stop_free")
+        if not self._stop.pointer:
+            raise MemoryError("expected memory for a run, found none")
+        self._lock = threading.Lock()
+        self._error: BaseException | None = None
+
+    @property
+    def stop_pointer(self) -> int | None:
+        return self._stop.pointer
+
+    def stop(self) -> None:
+        c.library.iw_stop_set(self._stop.pointer)
+
+    def guarded(self, work: Callable[[], Any]) -> int:
+        """Does a callback's work. Returns 0, or 1 to stop the run."""
+        try:
+            return 1 if work() is False else 0
+        except BaseException as error:
+            with self._lock:
+                if self._error is None:
+                    self._error = error
+            self.stop()
+            return 1
+
+    def call(self, name: str, *arguments: Any) -> Any:
+        """Makes a call of the C interface, without the GIL.
+
+        In the main thread the call is made by a thread of its own, so that Ctrl-C arrives here.
+        """
+        if threading.current_thread() is not threading.main_thread():
+            return self._finish(lambda: c.call(name, *arguments))
+        outcome: list[Any] = []
+        done = threading.Event()
+
+        def work() -> None:
+            try:
+                outcome.append((c.call(name, *arguments), None))
+            except BaseException as error:
+                outcome.append((None, error))
+            done.set()
+
+        thread = threading.Thread(target=work, name="isoweave")
+        thread.start()
+        try:
+            while not done.wait(0.1):
+                pass
+        except BaseException:  # KeyboardInterrupt, or what a signal handler of the program raises
+            self.stop()
+            done.wait()
+            thread.join()
+            raise
+        thread.join()
+
+        def result() -> Any:
+            report, error = outcome[0]
+            if error is not None:
+                raise error
+            return report
+
+        return self._finish(result)
+
+    def _finish(self, result: Callable[[], Any]) -> Any:
+        try:
+            report = result()
+        except c.Stopped:
+            if self._error is not None:
+                raise self._error from None
+            raise
+        if self._error is not None:
+            raise self._error
+        return report
+
+
+class Runner:
+    """A run's settings for the C interface, and its progress."""
+
+    def __init__(
+        self, threads: int, device: str, memory: int | str | None, progress: ProgressLike, state: RunState | None = None
+    ) -> None:
+        self.state = RunState() if state is None else state
+        self._teller = _teller(progress)
+        if device not in _DEVICES:
+            raise ValueError(f"device: expected one of {', '.join(_DEVICES)}, found {device!r}")
+        self.struct = c.Run(
+            threads=threads, device=_DEVICES[device], memory=parse_bytes(memory), stop=self.state.stop_pointer
+        )
+        teller = self._teller
+        if teller is None:
+            return
+
+        def tell(_context: int | None, told: Any) -> int:
+            p = told.contents
+            now = Progress(p.layer, p.layers, p.voxels, p.live_triangles, p.final_triangles, p.bytes)
+            return self.state.guarded(lambda: teller.tell(now))
+
+        self.struct.progress = c.TellProgress(tell)
+
+    def call(self, name: str, *arguments: Any) -> Any:
+        try:
+            return self.state.call(name, *arguments)
+        finally:
+            if self._teller is not None:
+                self._teller.close()
+
+    def pointer(self) -> Any:
+        return ctypes.byref(self.struct)

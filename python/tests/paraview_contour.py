@@ -1,0 +1,22 @@
+"""Run by pvpython: loads the plugin, applies its filter to an image, and writes the surface.
+
+pvpython paraview_contour.py PLUGIN IMAGE LEVEL SURFACE
+"""
+
+import inspect
+import sys
+
+# ParaView 5.11 asks for a function that Python 3.11, beside which Debian 12 puts it, has no longer: it loads no plugin in
+# Python without that.
+if not hasattr(inspect, "getargspec"):
+    inspect.getargspec = inspect.getfullargspec  # type: ignore[attr-defined]
+
+from paraview import simple
+
+plugin, image, level, surface = sys.argv[1:]
+simple.LoadPlugin(plugin, ns=globals())
+contour = globals()["IsoweaveContour"](Input=simple.OpenDataFile(image))
+contour.Scalars = ["POINTS", "ct"]
+contour.Level = float(level)
+contour.UpdatePipeline()
+simple.SaveData(surface, proxy=contour, DataMode="Appended")

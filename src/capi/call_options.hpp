@@ -1,0 +1,33 @@
+// The options of runs, from the structs of the C interface.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "capi/handles.hpp"
+#include "isoweave/isoweave.h"
+#include "isoweave/mesh_options.hpp"
+#include "isoweave/run.hpp"
+
+namespace isoweave::capi {
+
+// How a run ends, with lengths in `unit`. A number of triangles that is a part of all is found by share_of. usual: the
+// error where the caller names nothing to stop at; empty: that is refused.
+// @throws std::invalid_argument
+SimplifyOptions simplify_options(const iw_simplify_options& given, const std::string& unit, const std::string& usual);
+
+// The number of triangles to stop at, where a part of `count()` is asked for.
+std::uint64_t share_of(double ratio, const std::function<std::uint64_t()>& count);
+
+ComponentRule component_rule(const iw_simplify_options& given);
+
+// Everything but the number of triangles and the choice of components, which take a pass over the volume.
+MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options& simplify, const VolumeInfo& info);
+
+RunControl run_control(const iw_run& given);
+
+// The name of the space of the coordinates of a volume's mesh: "LPS", "RAS", "index" or nothing.
+std::string space_of_mesh(const Geometry& geometry, OutputSpace space);
+
+}  // namespace isoweave::capi

@@ -1,0 +1,151 @@
+// Results that cannot mislead: empty surfaces, files that are kept, the border alone, what stopped a run, and what a
+// volume is.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace isoweave {
+namespace {
+
+using Json = nlohmann::json;
+using program::listing;
+using program::Result;
+using program::run;
+using Words = std::vector<std::string>;
+
+constexpr const char* kVolume = "ramp_8x8x8_uint8.raw";
+
+// Samples from 0 to 130 along x, as the skull has air and bone.
+void write_ramp(const files::Folder& folder) {
+  std::string samples;
+  for (int n = 0; n < 8 * 8 * 8; ++n) samples += static_cast<char>(n % 8 == 7 ? 130 : n % 8 * 18);
+  files::write_bytes(folder / kVolume, samples);
+}
+
+Words mesh(const std::string& iso, const Words& more = {}) {
+  Words words{"mesh", kVolume, "-o", "a.ply", "--iso", iso};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(CliEmptySurface, IsAnErrorAndReplacesNothing) {
+  const files::Folder folder;
+  write_ramp(folder);
+  ASSERT_EQ(run(folder.path(), mesh("60")).code, 0);
+  const std::string before = files::read_bytes(folder / "a.ply");
+  program::expect_failed(run(folder.path(), mesh("300")), 3,
+                         "the samples go from 0 to 130, iso is 300: try --iso auto (--allow-empty writes");
+  EXPECT_TRUE(files::read_bytes(folder / "a.ply") == before);
+  program::expect_failed(run(folder.path(), mesh("300", {"--checkpoint", "states", "--every", "1layers"})), 3, "empty");
+  EXPECT_EQ(listing(folder / "states"), Words{});
+  EXPECT_EQ(run(folder.path(), mesh("60", {"--checkpoint", "states"})).code, 0) << "nothing is left to be resumed";
+  const Result allowed = run(folder.path(), mesh("300", {"--allow-empty"}));
+  EXPECT_EQ(allowed.code, 0) << allowed.err;
+  EXPECT_EQ(Json::parse(run(folder.path(), {"check", "a.ply", "--json"}).out).at("triangles"), 0);
+}
+
+TEST(CliNoClobber, KeepsWhatIsThere) {
+  const files::Folder folder;
+  write_ramp(folder);
+  ASSERT_EQ(run(folder.path(), mesh("60", {"--report", "r.json", "--no-clobber"})).code, 0);
+  const auto kept = [&](const Words& words, const std::string& name) {
+    program::expect_failed(run(folder.path(), words), 4, name + ": exists, and --no-clobber keeps it");
+  };
+  kept(mesh("30", {"--no-clobber"}), "a.ply");
+  kept({"mesh", kVolume, "-o", "b.ply", "--iso", "30", "--report", "r.json", "--no-clobber"}, "r.json");
+  kept({"simplify", "a.ply", "-o", "r.json", "--error", "1", "--no-clobber"}, "r.json");
+  kept({"generate", "sphere", "--size", "8", "-o", "a.ply", "--no-clobber"}, "a.ply");
+  kept({"compare", "a.ply", "a.ply", "--distances", "r.json", "--no-clobber"}, "r.json");
+  kept({"render", "a.ply", "-o", "r.json", "--no-clobber"}, "r.json");
+  files::write_bytes(folder / "l_label1.ply", "kept");
+  kept({"mesh", kVolume, "-o", "l.ply", "--labels", "18,1", "--no-clobber", "--allow-empty"}, "l_label1.ply");
+  EXPECT_EQ(files::read_bytes(folder / "l_label1.ply"), "kept");
+  EXPECT_EQ(listing(folder), (Words{"a.ply", "l_label1.ply", "r.json", kVolume}));
+}
+
+TEST(CliBorder, OfTheVolumeAloneIsAWarning) {
+  const files::Folder folder;
+  write_ramp(folder);
+  const Result result = run(folder.path(), mesh("-40"));
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.err.find("warning: " + std::string(kVolume) + ": the surface is nothing but the border"),
+            std::string::npos)
+      << result.err;
+}
+
+TEST(CliTriangles, SayWhatStoppedThem) {
+  const files::Folder folder;
+  const auto err = [&](const Words& more) {
+    Words words{"mesh", "generate:gyroid:32x32x32", "--iso", "0", "-o", "a.ply", "--triangles", "500"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder.path(), words).err;
+  };
+  const std::string stopped = err({"--error", "0.05vox"});
+  EXPECT_NE(stopped.find("stopped by --error 0.05vox at "), std::string::npos) << stopped;
+  EXPECT_NE(stopped.find(" of 500 triangles\n"), std::string::npos) << stopped;
+  EXPECT_EQ(err({}).find("stopped by"), std::string::npos);
+}
+
+std::string nrrd(const std::string& type, const std::string& sizes, const std::string& samples) {
+  return "NRRD0005\ntype: " + type + "\ndimension: 3\nsizes: " + sizes + "\nendian: little\nencoding: raw\n\n" +
+         samples;
+}
+
+std::string int16_samples(const std::vector<int>& values, int count) {
+  std::string bytes;
+  for (int n = 0; n < count; ++n) {
+    const int value = values[static_cast<std::size_t>(n) % values.size()];
+    bytes += static_cast<char>(value & 255);
+    bytes += static_cast<char>(value >> 8 & 255);
+  }
+  return bytes;
+}
+
+TEST(CliTissues, HaveNamesInCt) {
+  const files::Folder folder;
+  files::write_bytes(folder / "ct.nrrd", nrrd("int16", "8 8 8", int16_samples({-1000, -1000, 40, 60, 700}, 512)));
+  const Json info = Json::parse(run(folder.path(), {"info", "ct.nrrd", "--json"}).out);
+  EXPECT_EQ(info.at("suggested_iso").at("presets"), Json({{"bone", 226}, {"skin", -300}, {"lung", -500}}));
+  EXPECT_EQ(info.at("suggested_iso").at("three_classes").size(), 2U);
+  EXPECT_FALSE(info.at("input").at("label_map").get<bool>());
+  const auto iso = [&](const std::string& name) {
+    const Result result = run(folder.path(), {"mesh", "ct.nrrd", "-o", "a.ply", "--iso", name, "--report", "r.json"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err.find("is it CT?"), std::string::npos);
+    return Json::parse(files::read_bytes(folder / "r.json")).at("iso");
+  };
+  EXPECT_EQ(iso("bone"), 226);
+  EXPECT_EQ(iso("skin"), -300);
+  EXPECT_EQ(iso("lung"), -500);
+  const Result found = run(folder.path(), {"mesh", "ct.nrrd", "-o", "a.ply", "--iso", "auto"});
+  EXPECT_NE(found.err.find("other surfaces of CT: --iso bone (226), skin (-300), lung (-500)"), std::string::npos)
+      << found.err;
+  write_ramp(folder);
+  const Result other = run(folder.path(), mesh("bone", {"--allow-empty"}));
+  EXPECT_NE(other.err.find("--iso bone is 226 in Hounsfield units, but the samples go from 0 to 130"),
+            std::string::npos)
+      << other.err;
+  program::expect_failed(run(folder.path(), mesh("teeth")), 2, "--iso: expected a number, auto, bone, skin or lung");
+}
+
+TEST(CliLabelMaps, AreRecognised) {
+  const files::Folder folder;
+  std::string blocks;
+  for (int n = 0; n < 24 * 24 * 24; ++n)
+    blocks += static_cast<char>(n / 576 / 6 * 16 + n / 24 % 24 / 6 * 4 + n % 24 / 6);
+  files::write_bytes(folder / "map_24x24x24_uint8.raw", blocks);
+  const Result info = run(folder.path(), {"info", "map_24x24x24_uint8.raw"});
+  EXPECT_NE(info.out.find("--labels all (looks like a mask or label map)"), std::string::npos) << info.out;
+  const Result meshed = run(folder.path(), {"mesh", "map_24x24x24_uint8.raw", "-o", "a.ply", "--iso", "auto"});
+  EXPECT_EQ(meshed.code, 0);
+  EXPECT_NE(meshed.err.find("looks like a mask or label map: --labels all"), std::string::npos) << meshed.err;
+  ASSERT_EQ(run(folder.path(), {"generate", "noise", "--size", "48x40x32", "--type", "uint8", "-o", "n.nrrd"}).code, 0);
+  EXPECT_EQ(run(folder.path(), {"info", "n.nrrd"}).out.find("label map"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isoweave
