@@ -55,7 +55,10 @@ void run_mesh(MeshArguments arguments) {
 }
 
 void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
-  verb.add_option("--iso", arguments.iso, "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT");
+  verb.add_option(
+      "--iso", arguments.iso,
+      "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT. Several with commas: a file "
+      "each, such as a_iso10.ply for a.ply");
   CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
   verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();

@@ -32,17 +32,19 @@ std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& argume
   return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
 }
 
-std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads) {
+std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads,
+                          bool takes_cap) {
   const bool out_of_reach = asked > 0 && forecast.triangles > asked;
   return fmt::format(
-      "triangles  about {}, {} of them left{}\noutput     about {}\nmemory     about {}, with --memory at least {}\n"
+      "triangles  about {}, {} of them left{}\noutput     about {}\nmemory     about {}{}\n"
       "time       about {:.2g} s on {} thread{}\n",
       short_count(static_cast<double>(forecast.triangles_extracted)),
       short_count(static_cast<double>(forecast.triangles)),
       out_of_reach ? fmt::format(": small components and the error keep more than the {} asked for",
                                  short_count(static_cast<double>(asked)))
                    : "",
-      byte_text(bytes), byte_text(forecast.peak_bytes), cap_text(forecast.least_bytes), forecast.seconds, threads,
+      byte_text(bytes), byte_text(forecast.peak_bytes),
+      takes_cap ? ", with --memory at least " + cap_text(forecast.least_bytes) : "", forecast.seconds, threads,
       threads == 1 ? "" : "s");
 }
 

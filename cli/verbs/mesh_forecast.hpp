@@ -14,8 +14,9 @@ namespace isoweave::cli {
 // The size of the file that is forecast. Throws CannotWrite where its format cannot hold the counts.
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file);
 
-// asked: the number of triangles to stop at, or 0.
-std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads);
+// asked: the number of triangles to stop at, or 0. takes_cap: whether the run goes with --memory.
+std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads,
+                          bool takes_cap = true);
 
 struct CheckedForecast {
   Forecast run;

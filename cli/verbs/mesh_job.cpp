@@ -26,6 +26,7 @@
 #include "report/report.hpp"
 #include "signals.hpp"
 #include "verbs/mesh_forecast.hpp"
+#include "verbs/mesh_isos.hpp"
 #include "verbs/mesh_labels.hpp"
 #include "verbs/mesh_options.hpp"
 #include "verbs/mesh_state.hpp"
@@ -153,6 +154,7 @@ class MeshJob {
       return tell_unit();
     }
     Evidence evidence(arguments_.run, arguments_.page);
+    if (has_several_isos(arguments_)) return mesh_isos(evidence);
     if (arguments_.iso == "auto") find_iso();
     find_target();
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
@@ -173,6 +175,7 @@ class MeshJob {
     check_watch(arguments_.watch);
     check_possible();
     check_labels(arguments_);
+    check_isos(arguments_);
     if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
       throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
     }
@@ -196,15 +199,19 @@ class MeshJob {
     if (arguments_.index.named()) control.index = build_index(*generate_volume({"box", {1, 1, 1}}));
     control.checkpoint.folder = arguments_.checkpoint;
     control.resume = resume_;
-    const RunKind kind = arguments_.labels.empty() ? RunKind::kMesh : RunKind::kLabels;
-    require_possible({kind, "--labels", asked, control, arguments_.stop, arguments_.components});
+    const bool labels = !arguments_.labels.empty();
+    const bool isos = has_several_isos(arguments_);
+    const RunKind kind = labels ? RunKind::kLabels : isos ? RunKind::kIsoValues : RunKind::kMesh;
+    const char* const name = labels ? "--labels" : "--iso with several values";
+    require_possible({kind, name, asked, control, arguments_.stop, arguments_.components});
   }
 
   // The volumes, and the options that depend on their units and sizes.
   void open() {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
-    if (arguments_.labels.empty()) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
+    const bool one_surface = arguments_.labels.empty() && !has_several_isos(arguments_);
+    if (one_surface) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
     control_.index = index_.index;
     options_.values = open_values(arguments_);
     // Viewers of GLB draw a surface without normals in facets.
@@ -218,8 +225,15 @@ class MeshJob {
     control_.stop = borrow(stop_on_signal());
   }
 
-  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant. When the run
-  // is done: a run that fails has one line.
+  // Makes a mesh for each iso-value. A share of the triangles would be another number for each, and is refused.
+  void mesh_isos(Evidence& evidence) {
+    options_.triangles = stop_triangles(arguments_.stop, [] { return std::uint64_t{0}; });
+    mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
+    tell_unit();
+  }
+
+  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant. When the
+  // run is done: a run that fails has one line.
   void tell_unit() const {
     if (quiet()) return;
     const bool matters = has_metric_length(arguments_.stop) || states_unit(arguments_.output);

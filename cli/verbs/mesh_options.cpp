@@ -14,6 +14,7 @@
 #include "options/values.hpp"
 #include "report/report.hpp"
 #include "report/suggestions.hpp"
+#include "verbs/mesh_isos.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -80,7 +81,7 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
 
 MeshOptions mesh_options(const MeshArguments& arguments) {
   MeshOptions options;
-  const bool known = arguments.iso != "auto" && arguments.labels.empty();
+  const bool known = arguments.iso != "auto" && arguments.labels.empty() && !has_several_isos(arguments);
   if (known) options.iso = parse_iso(arguments.iso);
   options.inside_above = parse_choice<bool>("--inside", arguments.inside, {{"above", true}, {"below", false}});
   options.closed = !arguments.open;

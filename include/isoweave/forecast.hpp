@@ -17,6 +17,7 @@ struct Forecast {
   std::uint64_t triangles = 0, vertices = 0;  // written
   std::uint64_t peak_bytes = 0;               // of the process
   std::uint64_t least_bytes = 0;              // the smallest RunControl::memory that should do
+  std::uint64_t surface_bytes = 0;            // the part of peak_bytes that the surface takes: its slab and zone
   double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
 };
 
@@ -28,6 +29,11 @@ struct Forecast {
 // @throws what mesh_volume throws
 // @determinism All fields but `seconds`.
 Forecast forecast_mesh(SliceSource& volume, const MeshOptions& options, const RunControl& control = {});
+
+// Adds the forecast of another iso-value of the same volume to that of a run of mesh_iso_values, which begins with an
+// empty one. Slices and the program are in memory once, and zones of all values; triangles and times add up. Runs with
+// several values have no cap on memory: least_bytes is what they are expected to take.
+void add_iso_value(Forecast& sum, const Forecast& value);
 
 // Adds memory that the process holds during the run beside it to the forecast: what sinks hold (mesh_file_memory), and
 // observers. The same bytes belong into RunControl::memory_elsewhere. The peak of the process until now counts as well,

@@ -79,6 +79,33 @@ LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels,
 // Adds the report of another layer of labels: another map of the same volume.
 void add_layer(LabelsReport& report, LabelsReport&& layer);
 
+// An iso-value, and the sink of its mesh.
+struct IsoSink {
+  double iso = 0;  // as SurfaceOptions::iso
+  MeshSink* sink = nullptr;
+};
+
+struct IsoValuesReport {
+  MeshReport total;                // sums over all meshes; warnings are those of the volume
+  std::vector<MeshReport> meshes;  // one each, in the order of the values; without threads, peak_bytes and sweep
+};
+
+// Meshes the surfaces of several iso-values in one sweep, each into a sink of its own: bit for bit the mesh that
+// mesh_volume makes with that `iso` and the same options. Every slice of the volume is read once, whatever the number
+// of values. `iso` of the options is not used; a number of triangles is one for each mesh. Surfaces are simplified
+// independently: neighbouring ones may cross, within the error.
+//
+// All threads work on one surface after the other, slab by slab. No sink is finished before the sweep is done.
+// @throws what mesh_volume throws
+// @throws std::invalid_argument for no values, one value given twice, one sink given twice, and for options of runs
+//   with one surface: levels, components to be dropped, values of another volume, a device, an observer, a memory cap,
+//   checkpoints
+// @cost Memory: the slices of a slab once, and for each value its part of the slab and its undecided zone; with
+//   `smooth` a smoothed field for each value besides. Slabs are as thick as in the run of the fullest surface.
+// @determinism As mesh_volume.
+IsoValuesReport mesh_iso_values(SliceSource& volume, std::span<const IsoSink> surfaces, const MeshOptions& options,
+                                const RunControl& control = {});
+
 // The number of triangles of the full surface, without dropped components, from a pass over the volume that keeps
 // nothing.
 // @throws what mesh_volume throws, and std::invalid_argument for a device

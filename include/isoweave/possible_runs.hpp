@@ -12,8 +12,9 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// The kinds of runs: the mesh of a volume, the meshes of labels, a choice of components, a mesh from a mesh.
-enum class RunKind : std::uint8_t { kMesh, kLabels, kComponents, kSimplify };
+// The kinds of runs: the mesh of a volume, the meshes of labels, those of several iso-values, a choice of components, a
+// mesh from a mesh.
+enum class RunKind : std::uint8_t { kMesh, kLabels, kIsoValues, kComponents, kSimplify };
 
 // The features that do not go with every kind of run, or not with a device. In parentheses the options that ask for
 // them.

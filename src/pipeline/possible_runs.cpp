@@ -11,13 +11,15 @@ constexpr unsigned kDevice = 1;      // a CUDA device
 constexpr unsigned kLabels = 2;      // meshes of labels
 constexpr unsigned kComponents = 4;  // the choice of components
 constexpr unsigned kSimplify = 8;    // a mesh from a mesh
+constexpr unsigned kIsoValues = 16;  // meshes of several iso-values
 
 struct Refuser {
   unsigned bit;
   const char* name;
   const char* reason;
 };
-constexpr std::array<Refuser, 4> kRefusers{{{kLabels, "labels", "which takes one surface"},
+constexpr std::array<Refuser, 5> kRefusers{{{kLabels, "labels", "which takes one surface"},
+                                            {kIsoValues, "several iso-values", "which takes one surface"},
                                             {kComponents, "a choice of components", "which takes processors"},
                                             {kSimplify, "a mesh", "which takes a volume"},
                                             {kDevice, "a CUDA device", "which takes processors"}}};
@@ -31,25 +33,25 @@ struct Feature {
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
 constexpr std::array<Feature, 13> kFeatures{{
-    {RunFeature::kDevice, "a CUDA device", kLabels | kComponents | kSimplify,
+    {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
     {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0; }},
-    {RunFeature::kLevels, "levels", kDevice | kLabels,
+    {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},
     {RunFeature::kMaxDistance, "a guaranteed distance", kDevice,
      [](const MeshOptions& options, const RunControl&) { return options.max_distance.value > 0; }},
-    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels,
+    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels | kIsoValues,
      [](const MeshOptions& options, const RunControl&) { return options.components != nullptr; }},
     {RunFeature::kQuadricNormals, "normals by quadrics", kDevice,
      [](const MeshOptions& options, const RunControl&) { return options.normals == Normals::kQuadric; }},
-    {RunFeature::kValues, "values of another volume", kDevice | kLabels,
+    {RunFeature::kValues, "values of another volume", kDevice | kLabels | kIsoValues,
      [](const MeshOptions& options, const RunControl&) { return options.values != nullptr; }},
-    {RunFeature::kStates, "states to be saved or resumed", kLabels | kSimplify,
+    {RunFeature::kStates, "states to be saved or resumed", kLabels | kIsoValues | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
-    {RunFeature::kObserver, "an observer", kDevice | kLabels | kSimplify,
+    {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
-    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kSimplify,
+    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
     {RunFeature::kExtractor, "an extractor other than marching cubes", kDevice | kSimplify,
      [](const MeshOptions& options, const RunControl&) { return options.extractor != ExtractorKind::kCubes; }},
@@ -57,13 +59,14 @@ constexpr std::array<Feature, 13> kFeatures{{
      [](const MeshOptions&, const RunControl& control) {
        return control.schedule != Schedule::kAutomatic && control.schedule != Schedule::kRounds;
      }},
-    {RunFeature::kIndex, "an index of the volume", kLabels | kSimplify,
+    {RunFeature::kIndex, "an index of the volume", kLabels | kIsoValues | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.index != nullptr; }},
 }};
 
 unsigned refusers_of(RunKind kind, const RunControl& control) {
   const unsigned device = control.device == Device::kCuda ? kDevice : 0;
   if (kind == RunKind::kLabels) return kLabels | device;
+  if (kind == RunKind::kIsoValues) return kIsoValues | device;
   if (kind == RunKind::kComponents) return kComponents | device;
   return (kind == RunKind::kSimplify ? kSimplify : 0) | device;
 }

@@ -103,6 +103,22 @@ void warn_of_values(const Task& task, MeshReport& report) {
                             " by its spacing, origin or axes; sample by sample it is taken for the same place");
 }
 
+void report_samples(const VolumeInfo& volume, const SampleRange& range, MeshReport& report) {
+  const double low = volume.slope * range.min + volume.intercept;
+  const double high = volume.slope * range.max + volume.intercept;
+  report.min = range.empty() ? range.min : std::min(low, high);
+  report.max = range.empty() ? range.max : std::max(low, high);
+  report.nan = range.nan;
+  if (range.nan == 0) return;
+  report.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
+}
+
+SampleRange range_of_constant(const SampleBytes& sample, const VolumeInfo& volume) {
+  SampleRange range = sample_range(sample.data(), volume.type, 1);
+  range.nan *= static_cast<std::uint64_t>(volume.slice_samples() * volume.dims[2]);
+  return range;
+}
+
 void warn_of_nothing(const Task& task, bool allow_empty, MeshReport& report) {
   if (report.triangles == 0) report_nothing(task.volume.path + ": " + why_empty(task, report), allow_empty, report);
 }

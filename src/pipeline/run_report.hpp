@@ -11,6 +11,8 @@
 #include "isoweave/pipeline.hpp"
 #include "pipeline/task.hpp"
 #include "simplify/simplifier.hpp"
+#include "volume/row_source.hpp"
+#include "volume/samples.hpp"
 
 namespace isoweave {
 
@@ -38,6 +40,12 @@ void warn_of_rounding(const Task& task, MeshReport& report);
 
 // Warns where a volume of values lies elsewhere than the volume.
 void warn_of_values(const Task& task, MeshReport& report);
+
+// Reports the range of the samples, as values, and warns of NaN.
+void report_samples(const VolumeInfo& volume, const SampleRange& range, MeshReport& report);
+
+// The range of a volume whose samples are all the same.
+SampleRange range_of_constant(const SampleBytes& sample, const VolumeInfo& volume);
 
 // Warns of a mesh without triangles, with the reason. Throws EmptySurface instead where the run must not have one.
 void warn_of_nothing(const Task& task, bool allow_empty, MeshReport& report);

@@ -1,17 +1,20 @@
 #include "pipeline/task.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "extract/make_extractor.hpp"
 #include "isoweave/error.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
 #include "volume/crossed_bricks.hpp"
+#include "volume/indexed_source.hpp"
 #include "volume/samples.hpp"
 #include "volume/threshold.hpp"
 
@@ -139,10 +142,14 @@ IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options) {
   return rule;
 }
 
-IndexedSurface indexed_surface(const IsoRule& rule, const SurfaceOptions& surface, bool has_normals) {
+std::unique_ptr<IndexedSource> indexed(SliceSource& volume, std::shared_ptr<const VolumeIndex> index,
+                                       const SurfaceOptions& surface, bool has_normals) {
+  if (index == nullptr) return nullptr;
   // Gradients are differences of neighbours. Dual marching cubes place vertices by them.
   const std::int64_t margin = has_normals || surface.extractor == ExtractorKind::kDual ? 1 : 0;
-  return {rule.iso, rule.above, rule.closed, margin};
+  const IsoRule rule = stored_rule(volume.info(), surface);
+  const std::array surfaces{IndexedSurface{rule.iso, rule.above, rule.closed, margin}};
+  return std::make_unique<IndexedSource>(volume, std::move(index), surfaces);
 }
 
 bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) {

@@ -71,9 +71,11 @@ const VolumeInfo& checked_volume(const VolumeInfo& volume, ExtractorKind extract
 // for an iso-value that is not finite.
 IsoRule stored_rule(const VolumeInfo& volume, const SurfaceOptions& options);
 
-// The surface as an index of the volume needs to know it.
-struct IndexedSurface;
-IndexedSurface indexed_surface(const IsoRule& rule, const SurfaceOptions& surface, bool has_normals);
+// The volume without the parts that an index shows to be missed by the surface; null without an index. The volume must
+// outlive it.
+class IndexedSource;
+std::unique_ptr<IndexedSource> indexed(SliceSource& volume, std::shared_ptr<const VolumeIndex> index,
+                                       const SurfaceOptions& surface, bool has_normals);
 
 // Whether a sample of that type lies inside.
 bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);

@@ -1,28 +1,16 @@
 #include "pipeline/volume_sweep.hpp"
 
-#include <algorithm>
-#include <array>
-#include <string>
 #include <utility>
 
 #include "extract/make_extractor.hpp"
+#include "pipeline/run_report.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
 
-namespace {
-
-std::unique_ptr<IndexedSource> indexed(SliceSource& source, const Task& task, const RunControl& control) {
-  if (!control.index) return nullptr;
-  const std::array surfaces{indexed_surface(task.rule, task.surface, task.has_normals())};
-  return std::make_unique<IndexedSource>(source, control.index, surfaces);
-}
-
-}  // namespace
-
 VolumeSweep::VolumeSweep(SliceSource& source, const Task& task, const RunControl& control, MeshReport& report)
     : source_(source),
-      indexed_(indexed(source, task, control)),
+      indexed_(indexed(source, control.index, task.surface, task.has_normals())),
       task_(task),
       control_(control),
       report_(report),
@@ -50,9 +38,7 @@ void VolumeSweep::find_constant() {
   const std::optional<SampleBytes> sample = constant_sample(source_);
   if (!sample || is_inside(*sample, volume.type, task_.rule)) return;
   all_outside_ = true;
-  SampleRange range = sample_range(sample->data(), volume.type, 1);
-  range.nan *= static_cast<std::uint64_t>(volume.slice_samples() * volume.dims[2]);
-  pieces_->set_range(range);
+  pieces_->set_range(range_of_constant(*sample, volume));
 }
 
 void VolumeSweep::step() {
@@ -74,22 +60,10 @@ void VolumeSweep::tell(const SlabRecord& record) {
 
 void VolumeSweep::finish() {
   loop_->finish();
-  report_samples();
+  report_samples(task_.volume, pieces_->range(), report_);
   if (!indexed_) return;
   const LeftOut left_out = indexed_->left_out();
   report_.left_out = {left_out.chunks, left_out.chunks_left_out, left_out.bytes_left_out};
-}
-
-void VolumeSweep::report_samples() {
-  const VolumeInfo& volume = task_.volume;
-  const SampleRange& range = pieces_->range();
-  const double low = volume.slope * range.min + volume.intercept;
-  const double high = volume.slope * range.max + volume.intercept;
-  report_.min = range.empty() ? range.min : std::min(low, high);
-  report_.max = range.empty() ? range.max : std::max(low, high);
-  report_.nan = range.nan;
-  if (range.nan == 0) return;
-  report_.warnings.push_back(volume.path + ": " + std::to_string(range.nan) + " samples are NaN and count as outside");
 }
 
 }  // namespace isoweave

@@ -51,7 +51,6 @@ class VolumeSweep {
  private:
   void find_constant();
   void tell(const SlabRecord& record);
-  void report_samples();
 
   SliceSource& source() { return indexed_ ? *indexed_ : source_; }
 

@@ -63,13 +63,6 @@ constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer u
 
 enum class Reachable : std::uint8_t { kYes, kNo };  // a number of triangles
 
-std::unique_ptr<IndexedSource> indexed(SliceSource& volume, const MeshOptions& options, const RunControl& control) {
-  if (!control.index) return nullptr;
-  const IsoRule rule = stored_rule(volume.info(), options);
-  const std::array surfaces{indexed_surface(rule, options, options.normals != Normals::kAbsent)};
-  return std::make_unique<IndexedSource>(volume, control.index, surfaces);
-}
-
 struct BlockFacts {
   double per_layer = 0;  // triangles of the open surface
   double caps = 0;       // triangles per layer on the four sides of a closed one
@@ -78,7 +71,7 @@ struct BlockFacts {
 class Forecaster {
  public:
   Forecaster(SliceSource& volume, const MeshOptions& options, const RunControl& control)
-      : indexed_(indexed(volume, options, control)),
+      : indexed_(indexed(volume, control.index, options, options.normals != Normals::kAbsent)),
         volume_(indexed_ ? *indexed_ : volume),
         rows_(volume_),
         info_(checked_volume(volume.info(), options.extractor)),
@@ -333,7 +326,9 @@ class Forecaster {
     forecast.triangles = to_count(left);
     if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
     forecast.vertices = forecast.triangles / 2;
-    forecast.peak_bytes = to_count(peak(profiles, control_.slab));
+    const Peak of_run = peak(profiles, control_.slab);
+    forecast.peak_bytes = to_count(of_run.bytes);
+    forecast.surface_bytes = to_count(of_run.surface);
     forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
     forecast.seconds = seconds_extracting_ / slices_read_ * layers;
     if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
@@ -359,11 +354,6 @@ class Forecaster {
     blocks_ = 1;
     return conclude();
   }
-
-  // The profiles of the open surface, and of the caps.
-  struct Profiles {
-    Profile open, caps;
-  };
 
   Profiles make_profiles() const {
     std::vector<double> open;
@@ -399,8 +389,13 @@ class Forecaster {
     return above(profiles.open, depth) + kCapWeight * above(profiles.caps, kCapDepth * depth);
   }
 
-  // The peak of a run's memory, found by going through its slabs.
-  double peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
+  // The peak of a run's memory, and the part of it that another surface would take once more.
+  struct Peak {
+    double bytes = 0, surface = 0;
+  };
+
+  // The peak is found by going through the slabs of the run.
+  Peak peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
     const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
                             field.slice_bytes(),
@@ -415,7 +410,7 @@ class Forecaster {
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
-    double most = model.fixed();
+    Peak most{model.fixed(), 0};
     double ring = 0;
     std::int64_t recent = 0;
     double per_layer = 0;
@@ -438,18 +433,23 @@ class Forecaster {
       const double fullest = 2 * static_cast<double>(goal.most_vertices);
       while (asked == 0 && recent > 1 && extracted() > fullest) --recent;
       const double triangles = extracted();
-      most = std::max(most, model.peak(static_cast<double>(planned), ring, triangles, undecided));
+      const double bytes = model.peak(static_cast<double>(planned), ring, triangles, undecided);
+      if (bytes > most.bytes) most = {bytes, bytes - model.peak(static_cast<double>(planned), ring, 0, 0)};
       per_layer = triangles / static_cast<double>(recent);
+    }
+    // A smoothed field is one surface's own, with the slices that come out of it.
+    if (options_.smooth > 0) {
+      most.surface = most.bytes - model.fixed() + static_cast<double>(SurfaceField::memory(info_, options_));
     }
     return most;
   }
 
   // The cap that a run should do with, without slack.
   double least_cap(const Profiles& profiles) const {
-    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1) / kUsedPart;
-    const double usual = kCountMargin * peak(profiles, 1) / kUsedPart;
+    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1).bytes / kUsedPart;
+    const double usual = kCountMargin * peak(profiles, 1).bytes / kUsedPart;
     if (!is_out_of_reach(profiles)) return usual;
-    return std::max(usual, peak(profiles, 1, Reachable::kNo) / kUsedPart);
+    return std::max(usual, peak(profiles, 1, Reachable::kNo).bytes / kUsedPart);
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }

@@ -7,6 +7,17 @@
 
 namespace isoweave {
 
+void add_iso_value(Forecast& sum, const Forecast& value) {
+  const bool is_first = sum.peak_bytes == 0;
+  sum.triangles_extracted += value.triangles_extracted;
+  sum.triangles += value.triangles;
+  sum.vertices += value.vertices;
+  sum.peak_bytes += is_first ? value.peak_bytes : value.surface_bytes;
+  sum.least_bytes = sum.peak_bytes;
+  sum.surface_bytes += value.surface_bytes;
+  sum.seconds += value.seconds;
+}
+
 void add_memory_during(Forecast& forecast, std::uint64_t bytes) {
   forecast.peak_bytes += bytes;
   forecast.least_bytes = std::max(forecast.least_bytes + bytes, with_slack(system::peak_bytes()));

@@ -1,7 +1,9 @@
 // How the triangles of a surface are spread over the layers of a volume, as a forecast sees it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "extract/cube_rules.hpp"
@@ -34,6 +36,11 @@ class Profile {
   std::vector<double> per_layer_;
   double distance_;
   std::vector<double> below_;  // the middle of each block
+};
+
+// The profiles of the open surface, and of the caps.
+struct Profiles {
+  Profile open, caps;
 };
 
 // The crossed bricks in each layer of bricks of a volume with an index.

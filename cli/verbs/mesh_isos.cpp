@@ -1,0 +1,177 @@
+#include "verbs/mesh_isos.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "isoweave/forecast.hpp"
+#include "options/files.hpp"
+#include "options/input_volume.hpp"
+#include "options/values.hpp"
+#include "report/print.hpp"
+#include "report/progress.hpp"
+#include "report/report.hpp"
+#include "verbs/mesh_forecast.hpp"
+#include "verbs/mesh_options.hpp"
+
+namespace isoweave::cli {
+namespace {
+
+std::vector<double> parse_isos(const std::string& text) {
+  std::vector<double> isos;
+  for (const std::string_view part : split(text, ',')) {
+    isos.push_back(parse_number("--iso", part));
+    if (std::ranges::count(isos, isos.back()) > 1) wrong_value("--iso", "each value once", text);
+  }
+  return isos;
+}
+
+// The output of a value: a.ply becomes a_iso10.ply.
+OutputOptions iso_output(const OutputOptions& output, double iso) {
+  const std::filesystem::path path(output.path);
+  OutputOptions of_value = output;
+  of_value.path =
+      (path.parent_path() / fmt::format("{}_iso{}{}", path.stem().string(), iso, path.extension().string())).string();
+  return of_value;
+}
+
+// A value that is meshed.
+struct MeshedIso {
+  MeshOptions options;
+  OutputOptions output;
+  MeshFileOptions file;
+};
+
+std::vector<MeshedIso> meshed_isos(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info) {
+  std::vector<MeshedIso> meshes;
+  for (const double iso : parse_isos(arguments.iso)) {
+    MeshedIso& mesh = meshes.emplace_back();
+    mesh.options = options;
+    mesh.options.iso = iso;
+    mesh.output = iso_output(arguments.output, iso);
+    mesh.file = file_options(arguments, arguments.stop, mesh.options, info);
+  }
+  return meshes;
+}
+
+// The forecast of all values, each from an opening of the volume of its own.
+Forecast forecast_all(const MeshArguments& arguments, const std::vector<MeshedIso>& meshes, const RunControl& control,
+                      std::uint64_t& bytes) {
+  Forecast sum;
+  for (const MeshedIso& mesh : meshes) {
+    const Forecast forecast = forecast_mesh(*open_input(arguments.input), mesh.options, control);
+    bytes += output_bytes(mesh.output, forecast.vertices, forecast.triangles, mesh.file);
+    add_iso_value(sum, forecast);
+    add_memory_during(sum, output_memory(mesh.output, forecast.vertices, forecast.triangles, mesh.file));
+  }
+  return sum;
+}
+
+void tell_forecast(const MeshArguments& arguments, const std::vector<MeshedIso>& meshes, const RunControl& control,
+                   Evidence& evidence) {
+  std::uint64_t bytes = 0;
+  const Forecast sum = forecast_all(arguments, meshes, control, bytes);
+  const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
+  print_to_reader(forecast_text(sum, 0, bytes, threads, false));
+  evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(sum, bytes)}});
+}
+
+Json entry_json(const MeshReport& report, const MeshedIso& mesh, const MeshSink& sink) {
+  Json json = {{"iso", mesh.options.iso},
+               {"output", mesh.output.name()},
+               {"cells_crossed", report.cells_crossed},
+               {"triangles_extracted", report.triangles_extracted},
+               {"vertices_extracted", report.vertices_extracted},
+               {"collapses", report.collapses},
+               {"postponed", report.postponed},
+               {"rekeyed", report.rekeyed},
+               {"specks", report.specks},
+               {"warnings", report.warnings},
+               {"notes", sink.notes()}};
+  json.update(surface_json(report));
+  return json;
+}
+
+Json report_json(const MeshArguments& arguments, const VolumeInfo& info, const IsoValuesReport& report,
+                 const std::vector<MeshedIso>& meshes, const std::vector<std::unique_ptr<MeshSink>>& files) {
+  Json input = volume_json(info, arguments.input.path);
+  add_range(input, report.total.min, report.total.max, report.total.nan);
+  Json json = run_json(report.total, std::move(input));
+  const MeshOptions& options = meshes.front().options;
+  json["inside"] = arguments.inside;
+  json["closed"] = options.closed;
+  json["smooth"] = options.smooth;
+  json["extractor"] = arguments.extractor;
+  if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
+  json["quality"] = arguments.quality;
+  json["normals"] = arguments.normals;
+  json["space"] = space_text(info.geometry, options.space);
+  json["offset"] = meshes.front().file.offset;
+  json["isos"] = Json::array();
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    json["isos"].push_back(entry_json(report.meshes[n], meshes[n], *files[n]));
+  }
+  return json;
+}
+
+void print_meshes(const MeshArguments& arguments, const VolumeInfo& info, const IsoValuesReport& report,
+                  const std::vector<MeshedIso>& meshes, const std::vector<std::unique_ptr<MeshSink>>& files) {
+  for (const std::string& warning : report.total.warnings) print_note("warning: " + warning);
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    for (const std::string& warning : report.meshes[n].warnings) print_note("warning: " + warning);
+    print_notes(*files[n]);
+    print_surface(report.meshes[n], meshes[n].output.name());
+  }
+  const double voxels = static_cast<double>(info.slice_samples()) * static_cast<double>(info.dims[2]);
+  print_summary(report.total, fmt::format("{}: {} iso-values", arguments.output.name(), meshes.size()), voxels);
+}
+
+}  // namespace
+
+bool has_several_isos(const MeshArguments& arguments) { return arguments.iso.find(',') != std::string::npos; }
+
+void check_isos(const MeshArguments& arguments) {
+  if (!has_several_isos(arguments)) return;
+  const std::vector<double> isos = parse_isos(arguments.iso);
+  const auto refuse = [](bool given, std::string_view option) {
+    if (!given) return;
+    throw std::invalid_argument(
+        fmt::format("--iso with several values: expected a run without {}, which takes one surface", option));
+  };
+  refuse(!arguments.output.to_stdout.empty(), "--to-stdout");
+  refuse(arguments.page.given(), "--html");
+  refuse(!arguments.stop.ratio.empty(), "--ratio");
+  for (const double iso : isos) {
+    check_different({arguments.input.path, iso_output(arguments.output, iso).path, arguments.run.report});
+  }
+}
+
+void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, SliceSource& volume, RunControl control,
+                    Evidence& evidence) {
+  const VolumeInfo info = volume.info();
+  const std::vector<MeshedIso> meshes = meshed_isos(arguments, options, info);
+  if (arguments.dry_run) return tell_forecast(arguments, meshes, control, evidence);
+  std::vector<std::unique_ptr<MeshSink>> files;
+  std::vector<IsoSink> sinks;
+  for (const MeshedIso& mesh : meshes) {
+    files.push_back(open_output(mesh.output, mesh.file));
+    sinks.push_back({mesh.options.iso, files.back().get()});
+  }
+  const bool quiet = arguments.run.quiet;
+  if (!quiet) {
+    for (const std::string& note : info.notes) print_note("warning: " + note);
+  }
+  ProgressPrinter printer(progress_mode(arguments.run.progress, quiet));
+  control.progress = [&](const Progress& progress) { printer.show(progress); };
+  const IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
+  printer.finish();
+  evidence.write(report_json(arguments, info, report, meshes, files), control, {});
+  if (!quiet) print_meshes(arguments, info, report, meshes, files);
+}
+
+}  // namespace isoweave::cli
