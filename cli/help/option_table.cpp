@@ -133,7 +133,7 @@ const std::vector<std::string>& option_groups() {
 }
 
 std::string usage_text(const std::string& verb) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kUsages{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUsages{
       {{"mesh", "VOLUME [-o MESH] --iso VALUE [options]"},
        {"simplify", "MESH [-o MESH] --error LENGTH [options]"},
        {"info", "VOLUME [options]"},
@@ -141,7 +141,8 @@ std::string usage_text(const std::string& verb) {
        {"compare", "A B [options]"},
        {"render", "MESH [-o PICTURE] [options]"},
        {"view", "MESH|REPORT [options]"},
-       {"generate", "KIND -o VOLUME --size SIZE [options]"}}};
+       {"generate", "KIND -o VOLUME --size SIZE [options]"},
+       {"index", "VOLUME [-o FILE] [options]"}}};
   for (const auto& [name, usage] : kUsages) {
     if (name == verb) return std::string(usage);
   }

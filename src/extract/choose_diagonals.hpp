@@ -68,7 +68,8 @@ constexpr ChoicePolygons make_choice_polygons() {
     out.first[static_cast<std::size_t>(inside)] = static_cast<std::uint16_t>(count);
     std::size_t triangle = 0;
     for_polygons(inside, [&](const Polygon& polygon) {
-      if (polygon.size > 3) out.polygons[count++] = choice_polygon(polygon, make_case(inside), triangle);
+      if (polygon.size > 3)
+        out.polygons[count++] = choice_polygon(polygon, kCaseTable[static_cast<std::size_t>(inside)], triangle);
       triangle += static_cast<std::size_t>(polygon.size) - 2;
     });
   }

@@ -56,12 +56,26 @@ constexpr std::uint8_t place_of(Edge edge) {
   throw "an edge without a row";
 }
 
+// The places of all edges, by corner and direction.
+inline constexpr std::array<std::array<std::uint8_t, 8>, 8> kPlaces = [] {
+  std::array<std::array<std::uint8_t, 8>, 8> places{};
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int direction = 1; direction < 8; ++direction) {
+      if ((corner & direction) != 0) continue;
+      places[static_cast<std::size_t>(corner)][static_cast<std::size_t>(direction)] = place_of({corner, direction});
+    }
+  }
+  return places;
+}();
+
 struct Case {
   std::uint8_t triangles = 0;
   std::array<std::uint8_t, 36> places{};  // of the corners, three a triangle
 
   constexpr void add(Edge a, Edge b, Edge c) {
-    for (const Edge edge : {a, b, c}) places[next_++] = place_of(edge);
+    for (const Edge edge : {a, b, c}) {
+      places[next_++] = kPlaces[static_cast<std::size_t>(edge.corner)][static_cast<std::size_t>(edge.direction)];
+    }
     ++triangles;
   }
 

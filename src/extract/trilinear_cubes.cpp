@@ -268,7 +268,8 @@ class TrilinearCubes::RowWriter {
     const auto distance = [&](std::size_t m, std::size_t n) {
       return squared_distance(loop.place[m % loop.size], ring.place[n % ring.size]);
     };
-    const auto [first, second] = nearest(loop, ring);
+    const std::pair<std::size_t, std::size_t> start = nearest(loop, ring);
+    const std::size_t first = start.first, second = start.second;
     const auto on_loop = [&](std::size_t m) { return loop.number[(first + m) % loop.size]; };
     const auto on_ring = [&](std::size_t n) { return ring.number[(second + n) % ring.size]; };
     StripPath path(loop.size, ring.size);

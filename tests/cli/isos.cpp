@@ -72,11 +72,13 @@ TEST(CliIsos, AForecastIsTheSum) {
   EXPECT_EQ(listing(folder), std::vector<std::string>{"r.json"});
 }
 
-TEST(CliIsos, OneThatIsMetNowhereIsAnEmptyMeshAndAWarning) {
+TEST(CliIsos, OneThatIsMetNowhereIsRefusedUnlessAllowed) {
   const files::Folder folder;
-  const Result result = run(folder.path(), {"mesh", kVolume, "-o", "a.ply", "--iso", "150,400"});
+  program::expect_failed(run(folder.path(), {"mesh", kVolume, "-o", "a.ply", "--iso", "150,400"}), 3, "iso is 400");
+  EXPECT_EQ(listing(folder), std::vector<std::string>{});
+  const Result result = run(folder.path(), {"mesh", kVolume, "-o", "a.ply", "--iso", "150,400", "--allow-empty"});
   EXPECT_EQ(result.code, 0);
-  EXPECT_NE(result.err.find("the surface is empty: iso 400"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("iso is 400"), std::string::npos) << result.err;
   EXPECT_EQ(run(folder.path(), {"mesh", kVolume, "-o", "a.ply", "--iso", "150,99", "--quiet"}).err, "");
 }
 
@@ -110,17 +112,17 @@ TEST(CliIsos, AFileThatCannotBeWrittenLeavesNoneHalfWritten) {
   const files::Folder folder;
   program::Setup setup;
   setup.file_limit = 60'000;  // enough for the sparse surface, not for the other one
-  const std::vector<std::string> few{"mesh", kVolume, "-o", "a.ply", "--iso", "225", "--error", "0"};
+  const std::vector<std::string> few{"mesh", kVolume, "-o", "a.ply", "--iso", "205", "--error", "0"};
   ASSERT_EQ(run(folder.path(), few, setup).code, 0);
   const auto fails = [&](const std::string& isos) {
     const Result result = run(folder.path(), {"mesh", kVolume, "-o", "b.ply", "--iso", isos, "--error", "0"}, setup);
     program::expect_failed(result, 4, "b_iso128.ply");
   };
-  fails("128,225");
+  fails("128,205");
   EXPECT_EQ(listing(folder), std::vector<std::string>{"a.ply"});
-  fails("225,128");
-  EXPECT_EQ(listing(folder), (std::vector<std::string>{"a.ply", "b_iso225.ply"}));
-  EXPECT_EQ(digest_of(folder, "b_iso225.ply"), digest_of(folder, "a.ply"));
+  fails("205,128");
+  EXPECT_EQ(listing(folder), (std::vector<std::string>{"a.ply", "b_iso205.ply"}));
+  EXPECT_EQ(digest_of(folder, "b_iso205.ply"), digest_of(folder, "a.ply"));
 }
 
 }  // namespace
