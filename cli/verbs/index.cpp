@@ -73,7 +73,7 @@ void run_index(const IndexArguments& arguments) {
 }  // namespace
 
 void add_index_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("index", "Index of a volume: later runs read what their surface needs");
+  CLI::App* verb = app.add_subcommand("index", "Index a volume, so that runs read less of it");
   const auto arguments = std::make_shared<IndexArguments>();
   add_input_options(*verb, arguments->input);
   verb->add_option("-o,--output", arguments->output,
