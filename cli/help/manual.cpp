@@ -163,7 +163,8 @@ std::string man_page(const CLI::App& app) {
     for (const OptionEntry& entry : list.entries) text += roff_entry(entry);
   }
   text += ".SH NOTES\n.nf\n";
-  for (const std::string_view line : split(app.get_footer(), '\n')) {
+  const std::string footer = app.get_footer();
+  for (const std::string_view line : split(footer, '\n')) {
     if (!line.empty()) text += roff(line) + "\n";
   }
   return text + ".fi\n";

@@ -310,7 +310,7 @@ class Checks:
             return
         write("far.precomputed", offset)
         _, _, origin, transform = read_packed_precomputed(self.path("far.precomputed"), 1, self.folder)
-        assert np.allclose(transform[:, 3], offset, rtol=1e-15) and (np.abs(origin) < 1).all()
+        assert np.allclose(transform[:, 3], offset * 1e6, rtol=1e-14) and (np.abs(origin) < 1).all()
 
 
 def main():
