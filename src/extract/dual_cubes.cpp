@@ -138,7 +138,7 @@ CellSides DualCubes::border_of(const Row& at, std::ptrdiff_t bit) const {
 // The lower face of a cell that its polygon and that of the cell behind it meet twice, or -1. Below the slab those
 // between slices are not looked for: their vertices are complete.
 int DualCubes::face_of(const Row& at, std::ptrdiff_t bit, const Cell& cell) const {
-  const auto face = static_cast<int>(kTwiceMetFaces[cell.inside]);
+  const int face = kTwiceMetFaces[cell.inside];
   const bool is_lower = face >= 0 && face % 2 == 0 && (cell.border >> face & 1) == 0;
   if (!is_lower || (face == 4 && at.layer == 0)) return -1;
   const Row behind{at.layer - (face == 4 ? 1 : 0), at.row - (face == 2 ? 1 : 0)};

@@ -99,10 +99,10 @@ constexpr int twice_met_face(int inside) {
   return found;
 }
 
-constexpr std::array<std::int8_t, 256> make_twice_met_faces() {
-  std::array<std::int8_t, 256> faces{};
+constexpr std::array<int, 256> make_twice_met_faces() {
+  std::array<int, 256> faces{};
   for (int inside = 0; inside < 256; ++inside) {
-    faces[static_cast<std::size_t>(inside)] = static_cast<std::int8_t>(twice_met_face(inside));
+    faces[static_cast<std::size_t>(inside)] = twice_met_face(inside);
   }
   return faces;
 }
@@ -177,7 +177,7 @@ constexpr std::array<DualCell, 256> make_cells() {
 
 }  // namespace dual
 
-inline constexpr std::array<std::int8_t, 256> kTwiceMetFaces = dual::make_twice_met_faces();
+inline constexpr std::array<int, 256> kTwiceMetFaces = dual::make_twice_met_faces();
 inline constexpr std::array<DualCell, 256> kDualCells = dual::make_cells();
 inline constexpr std::array<std::array<std::uint8_t, kCellEdges>, 256> kDualNumbers = dual::make_numbers();
 
