@@ -53,7 +53,7 @@ def test_options_are_those_of_the_command_line(
 def test_every_key_of_the_report_is_there(volume: np.ndarray, cli_report: Reporter) -> None:
     report = cli_report(volume, "--iso", 100)
     ours = isoweave.mesh(volume, 100).report
-    assert set(report) - set(ours) <= {"forecast", "quality", "normals", "output"}
+    assert set(report) - set(ours) <= {"extractor", "forecast", "quality", "normals", "output"}
     assert set(report["input"]) == set(ours["input"])
 
 
