@@ -1,4 +1,4 @@
-# What the Python package has beside its sources: the library and the program, without versions in their names, as
+# Files that the Python package has beside its sources: the library and the program, without versions in their names, as
 # pyproject.toml installs them. The C++ library is inside, so that the libraries of other packages do not matter.
 set_property(TARGET isoweave_c PROPERTY VERSION)
 set_property(TARGET isoweave_c PROPERTY SOVERSION)

@@ -1,4 +1,5 @@
-// What all options have in help, man pages and completions: the group in which they stand and the kind of their value.
+// The table of all options for help, man pages and completions: the group in which each stands and the kind of its
+// value.
 #pragma once
 
 #include <string>

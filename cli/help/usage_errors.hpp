@@ -11,13 +11,13 @@ namespace isoweave::cli {
 // The known name that is nearest to a mistyped one, or nothing where none is near.
 std::string nearest(const std::string& name, const std::vector<std::string>& known);
 
-// What to do about an option that the verb does not have; nothing where it has all of them.
+// The advice about an option that the verb does not have; empty where it has all of them.
 std::string unknown_option(const CLI::App& verb, const std::vector<std::string>& arguments);
 
-// What to do about arguments that a verb has no place for.
+// The advice about arguments that a verb has no place for.
 std::string extra_text(const CLI::App& verb, const std::vector<std::string>& arguments);
 
-// What CLI11 says of a missing option or value, with what to give.
+// CLI11's message about a missing option or value, with an example of what to give.
 std::string missing_text(const std::string& message);
 
 }  // namespace isoweave::cli

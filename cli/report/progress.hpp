@@ -35,7 +35,7 @@ class ProgressPrinter {
   Clock::time_point last_;
 };
 
-// What a run has done, in one line; `seconds` since the start. Percent and time left come first.
+// The line about the progress of a run; `seconds` since the start. Percent and time left come first.
 std::string progress_text(const Progress& progress, double seconds);
 
 // The same with a bar, for a terminal of so many columns: what does not fit is left out at the end.

@@ -298,7 +298,7 @@ iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options
 iw_status iw_simplify_mesh(const iw_mesh* mesh, const iw_simplify_options* options, const iw_run* run,
                            iw_output* outputs, size_t count, iw_result* result);
 
-// What a run would take, from a part of the volume: triangles_extracted, triangles, vertices, peak_bytes, least_bytes
+// The forecast of a run, from a part of the volume: triangles_extracted, triangles, vertices, peak_bytes, least_bytes
 // and seconds, into the report.
 iw_status iw_forecast(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_result* result);
 

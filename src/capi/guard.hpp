@@ -1,4 +1,4 @@
-// What stands between the C interface and C++: sizes of structs on their way in and out, exceptions as statuses.
+// The border between the C interface and C++: sizes of structs on their way in and out, exceptions as statuses.
 #pragma once
 
 #include <algorithm>

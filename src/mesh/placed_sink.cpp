@@ -27,7 +27,7 @@ Place scaled(const Point& point, const Place& offset, double scale) {
   return place;
 }
 
-// What is added to scaled coordinates.
+// The vector that is added to scaled coordinates.
 Place shift_of(std::span<const Point> points, const Place& offset, const MeshPlacing& placing) {
   Place low, high;
   low.fill(std::numeric_limits<double>::infinity());

@@ -100,7 +100,7 @@ std::optional<FileSum> sum_of_files(const VolumeInfo& volume) {
   return sum;
 }
 
-// What is common to the names of all indices of a volume's file: the part that was chosen is in the name.
+// The beginning that the names of all indices of a volume's file share: the part that was chosen is in the name.
 std::string index_name(const VolumeInfo& volume) {
   std::string name = name_of(fs::path(volume.path + "/").parent_path().string());
   if (!volume.part.empty()) name += "." + hexadecimal(add_text(0, volume.part));

@@ -428,7 +428,7 @@ void put_state(Seeds& seeds) {
   }
 }
 
-// What lies behind the format and the identity of an index, and a whole one.
+// The bytes behind the format and the identity of an index, and a whole index.
 void put_indices(Seeds& seeds) {
   const TempFolder folder;
   const std::string volume = folder.put("a_18x2x20_float32.raw", std::string(18 * 2 * 20 * sizeof(float), '\x3f'));

@@ -1,4 +1,4 @@
-// What every extractor promises: closed, oriented manifolds whatever the samples; and what each promises by itself.
+// The promises of every extractor: closed, oriented manifolds whatever the samples; and the promises of each by itself.
 // Threads: none, they are shown by the conformance of extractors
 #include <cmath>
 #include <functional>

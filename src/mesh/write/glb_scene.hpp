@@ -1,4 +1,4 @@
-// What GLB files of all kinds share: the scene around the mesh, and the container around scene and data.
+// The parts that GLB files of all kinds share: the scene around the mesh, and the container around scene and data.
 //
 // Coordinates stay those of the volume. glTF means metres in a right-handed frame with y up and z to the front, so the
 // root node scales by the unit (millimetres where it is not known) and turns the axes: the patient's superior is up and
