@@ -60,7 +60,7 @@ SlabCounts DualCubes::extract(const SliceWindow& window, std::int64_t layers, st
   find_cells(count);
   piece.inherited = number_inherited();
   count_rows(count);
-  count = layers_within(count, most_vertices);
+  count = layers_within(rows_, slab_.rows(), most_vertices);
   make_room(count, piece);
   visit_sample_type(type_, [&]<class T>() { make_vertices<T>(window, count, piece); });
   slab_.for_rows(count, [&](std::size_t n, std::size_t row, std::size_t) { write_triangles({n + 1, row}, piece); });
@@ -241,15 +241,6 @@ std::uint64_t DualCubes::crossings(const Row& at, int axis, std::size_t w) const
   }
   if (!slab_.has_z(n) || !inner_row) return 0;
   return (low[w] ^ slab_.inside(n + 1, at.row)[w]) & inner_points_[w];
-}
-
-std::size_t DualCubes::layers_within(std::size_t layers, std::uint64_t most_vertices) const {
-  std::uint64_t sum = 0;
-  for (std::size_t n = 0; n < layers; ++n) {
-    for (std::size_t row = 0; row < slab_.rows(); ++row) sum += rows_[n * slab_.rows() + row].vertices;
-    if (sum > most_vertices) return std::max<std::size_t>(n, 1);
-  }
-  return layers;
 }
 
 // Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.

@@ -81,7 +81,6 @@ class DualCubes final : public Extractor {
   void count_vertices(const Row& at);
   void add_extra(const Row& at, const DualVertex& vertex);
   std::uint64_t crossings(const Row& at, int axis, std::size_t w) const;
-  std::size_t layers_within(std::size_t layers, std::uint64_t most_vertices) const;
   void make_room(std::size_t layers, SurfacePiece& piece);
 
   template <class T>

@@ -69,7 +69,7 @@ SlabCounts EdgeExtractor<Edges>::extract(const SliceWindow& window, std::int64_t
   resize(count);
   slab_.classify(window, count);
   count_rows(window, count);
-  count = layers_within(count, most_vertices);
+  count = layers_within(rows_, slab_.rows(), most_vertices);
   make_room(count, piece);
   visit_sample_type(type_, [&]<class T>() {
     if (needs_places()) emit_front<T>(window);
@@ -178,17 +178,6 @@ void EdgeExtractor<Edges>::count_rows(const SliceWindow& window, std::size_t lay
     if (counts.cells > 0) count_cells(window, {n, row, number}, counts);
     rows_[number] = counts;
   });
-}
-
-// The largest number of layers with no more than `most_vertices` vertices, one at least.
-template <class Edges>
-std::size_t EdgeExtractor<Edges>::layers_within(std::size_t layers, std::uint64_t most_vertices) const {
-  std::uint64_t sum = 0;
-  for (std::size_t n = 0; n < layers; ++n) {
-    for (std::size_t row = 0; row < slab_.rows(); ++row) sum += rows_[n * slab_.rows() + row].vertices;
-    if (sum > most_vertices) return std::max<std::size_t>(n, 1);
-  }
-  return layers;
 }
 
 // Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.

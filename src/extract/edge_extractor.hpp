@@ -123,7 +123,6 @@ class EdgeExtractor : public Extractor {
   std::uint32_t count_crossings(std::size_t n, std::size_t row) const;
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
   void count_rows(const SliceWindow& window, std::size_t layers);
-  std::size_t layers_within(std::size_t layers, std::uint64_t most_vertices) const;
   void make_room(std::size_t layers, SurfacePiece& piece);
   void number_row(std::size_t n, std::size_t row, std::uint32_t base);
   template <class T>

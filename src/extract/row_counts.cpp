@@ -1,5 +1,6 @@
 #include "extract/row_counts.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -21,6 +22,15 @@ void require_numbers(std::size_t layers, std::uint64_t count, const char* what) 
   if (count <= std::numeric_limits<std::uint32_t>::max()) return;
   throw OverMemory("a slab of " + std::to_string(layers) + " layers holds " + std::to_string(count) + " " + what +
                    ", expected fewer than 2^32: choose thinner slabs");
+}
+
+std::size_t layers_within(std::span<const RowCounts> rows, std::size_t rows_of_layer, std::uint64_t most_vertices) {
+  std::uint64_t sum = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    sum += rows[row].vertices;
+    if (sum > most_vertices) return std::max<std::size_t>(row / rows_of_layer, 1);
+  }
+  return rows.size() / rows_of_layer;
 }
 
 RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited) {

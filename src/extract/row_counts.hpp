@@ -27,6 +27,9 @@ inline constexpr std::int64_t kMostRowSamples = std::int64_t{1} << 27;
 // Throws OverMemory where so many things of a slab cannot be numbered in 32 bits.
 void require_numbers(std::size_t layers, std::uint64_t count, const char* what);
 
+// The largest number of layers of so many rows each with no more than `most_vertices` vertices in all, one at least.
+std::size_t layers_within(std::span<const RowCounts> rows, std::size_t rows_of_layer, std::uint64_t most_vertices);
+
 // Gives every row the places where its vertices and triangles begin. Vertices are numbered after the `inherited` ones.
 // Throws OverMemory where numbers of 32 bits are not enough for a slab of `layers` layers.
 RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited);
