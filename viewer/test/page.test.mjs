@@ -35,7 +35,8 @@ before(async () => {
     'mesh.json', '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '-o', 'large.ply', '--page-triangles', '3000', '--html', 'large.html',
     '--report', 'large.json', '--quiet');
-  run('mesh', kVolume, '--iso', '300', '-o', 'empty.ply', '--html', 'empty.html', '--report', 'empty.json', '--quiet');
+  run('mesh', kVolume, '--iso', '300', '--allow-empty', '-o', 'empty.ply', '--html', 'empty.html', '--report', 'empty.json',
+    '--quiet');
   run('simplify', 'mesh.ply', '--triangles', '4000', '-o', 'small.stl', '--html', 'small.html', '--report', 'small.json', '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '-o', 'levels.ply', '--lods', '0.1vox,0.3vox,1vox', '--html', 'levels.html',
     '--report', 'levels.json', '--quiet');
