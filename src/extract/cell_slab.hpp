@@ -5,6 +5,7 @@
 // Layer k lies between slices k and k + 1.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -60,6 +61,11 @@ class CellSlab {
   // Finds the cells of a row that the surface crosses. Returns how many there are.
   std::uint32_t find_crossed(std::ptrdiff_t n, std::size_t row, std::span<std::uint64_t> crossed) const;
 
+  // Finds the crossings of the edges of a direction (bits x, y, z) that begin in a row of slice next_layer() + n. `out`
+  // has the words of a slice.
+  template <std::uint8_t Direction>
+  void find_along(std::ptrdiff_t n, std::size_t row, std::span<std::uint64_t> out) const;
+
   // Calls visit(layer, row, number of the row in the slab) for every row of so many layers, in parallel.
   template <class Visit>
   void for_rows(std::size_t layers, const Visit& visit) const;
@@ -88,6 +94,23 @@ class CellSlab {
   std::int64_t end_layer_;
   std::vector<std::vector<std::uint64_t>> slices_;  // from next_layer() - below on
 };
+
+template <std::uint8_t Direction>
+void CellSlab::find_along(std::ptrdiff_t n, std::size_t row, std::span<std::uint64_t> out) const {
+  constexpr bool kX = (Direction & 1) != 0, kY = (Direction & 2) != 0, kZ = (Direction & 4) != 0;
+  const std::span<std::uint64_t> words = out.subspan(row * words_, words_);
+  if ((kY && !has_y(row)) || (kZ && !has_z(n))) {
+    std::ranges::fill(words, 0);
+    return;
+  }
+  const std::uint64_t* const low = inside(n, row);
+  const std::uint64_t* const high = inside(kZ ? n + 1 : n, kY ? row + 1 : row);
+  if constexpr (kX) {
+    kernels_.differ_along(low, high, edge_mask_.data(), words_, words.data());
+  } else {
+    kernels_.differ(low, high, words_, words.data());
+  }
+}
 
 template <class Visit>
 void CellSlab::for_rows(std::size_t layers, const Visit& visit) const {

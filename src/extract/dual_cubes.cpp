@@ -7,11 +7,9 @@
 
 #include "extract/cell_cases.hpp"
 #include "extract/dual_place.hpp"
-#include "extract/gradient.hpp"
 #include "extract/shortest_diagonals.hpp"
 #include "parallel/atomics.hpp"
 #include "parallel/size.hpp"
-#include "volume/samples.hpp"
 
 namespace isoweave {
 namespace {
@@ -41,7 +39,6 @@ bool is_inner(std::int64_t at, std::int64_t size, bool closed) { return closed |
 DualCubes::DualCubes(const VolumeInfo& volume, const ExtractOptions& options, const Executor& executor)
     : numbering_(VertexNumbering::of_dual_cubes(options.whole(volume))),
       first_(options.part_of.value_or(PartOfLattice{}).first),
-      type_(volume.type),
       spacing_(volume.geometry.spacing),
       options_(options),
       slab_(volume, options.rule, 1, executor),
@@ -57,12 +54,15 @@ SlabCounts DualCubes::extract(const SliceWindow& window, std::int64_t layers, st
   piece.clear();
   auto count = to_size(layers);
   slab_.classify(window, count);
+  planes_.find(slab_, count + 2);
   find_cells(count);
   piece.inherited = number_inherited();
   count_rows(count);
   count = layers_within(rows_, slab_.rows(), most_vertices);
-  make_room(count, piece);
-  visit_sample_type(type_, [&]<class T>() { make_vertices<T>(window, count, piece); });
+  rows_.resize(count * slab_.rows());
+  make_room(rows_, count, options_.normals, piece);
+  planes_.make(slab_, window, spacing_, count + 2);
+  make_vertices(count, piece);
   slab_.for_rows(count, [&](std::size_t n, std::size_t row, std::size_t) { write_triangles({n + 1, row}, piece); });
   slab_.advance(count);
   front_size_ = 0;
@@ -146,11 +146,6 @@ int DualCubes::face_of(const Row& at, std::ptrdiff_t bit, const Cell& cell) cons
   return kTwiceMetFaces[static_cast<std::size_t>(other)] == face + 1 ? face : -1;
 }
 
-DualCell DualCubes::vertices_of(const Cell& cell) {
-  if (cell.border == 0 && cell.face < 0) return kDualCells[cell.inside];
-  return dual::make_cell(cell.inside, cell.border, cell.face);
-}
-
 const DualCubes::Cell& DualCubes::cell_at(const Row& at, std::ptrdiff_t bit) const {
   const auto b = static_cast<std::size_t>(bit);
   const std::size_t word = number_of(at) * slab_.words() + b / 64;
@@ -164,8 +159,7 @@ std::uint32_t DualCubes::number_inherited() {
   for (std::size_t row = 0; row < slab_.rows(); ++row) {
     for_cells_of({0, row}, [&](std::ptrdiff_t, Cell& cell) {
       cell.first = count;
-      const DualCell vertices = vertices_of(cell);
-      for (std::size_t n = 0; n < vertices.count; ++n) count += is_incomplete(vertices.vertices[n]) ? 1U : 0U;
+      for (const DualVertex& vertex : vertices_of(cell)) count += is_incomplete(vertex) ? 1U : 0U;
     });
   }
   front_places_.resize(count);
@@ -176,9 +170,10 @@ std::uint32_t DualCubes::number_inherited() {
 void DualCubes::list_front(std::size_t layer, SurfacePiece& piece) {
   for (std::size_t row = 0; row < slab_.rows(); ++row) {
     for_cells_of({layer, row}, [&](std::ptrdiff_t, const Cell& cell) {
-      const DualCell vertices = vertices_of(cell);
-      for (std::size_t n = 0; n < vertices.count; ++n) {
-        if (is_incomplete(vertices.vertices[n])) piece.incomplete.push_back(cell.first + static_cast<std::uint32_t>(n));
+      std::uint32_t number = cell.first;
+      for (const DualVertex& vertex : vertices_of(cell)) {
+        if (is_incomplete(vertex)) piece.incomplete.push_back(number);
+        ++number;
       }
     });
   }
@@ -203,11 +198,9 @@ void DualCubes::count_rows(std::size_t layers) {
 void DualCubes::count_vertices(const Row& at) {
   RowCounts counts;
   for_cells_of(at, [&](std::ptrdiff_t, const Cell& cell) {
-    const DualCell vertices = vertices_of(cell);
     ++counts.cells;
-    counts.vertices += vertices.count;
-    for (std::size_t n = 0; n < vertices.count; ++n) {
-      const DualVertex& vertex = vertices.vertices[n];
+    for (const DualVertex& vertex : vertices_of(cell)) {
+      ++counts.vertices;
       counts.on_border += vertex.slot >= dual::kBorderSlot ? 1U : 0U;
       if (vertex.in_face) add_extra(at, vertex);
     }
@@ -226,66 +219,38 @@ void DualCubes::add_extra(const Row& at, const DualVertex& vertex) {
 // The crossings of the edges along an axis that begin in word w of a row of points, where four cells are around them.
 std::uint64_t DualCubes::crossings(const Row& at, int axis, std::size_t w) const {
   const bool closed = options_.rule.closed;
-  const std::ptrdiff_t n = slice_of(at);
   const bool inner_row = is_inner(static_cast<std::int64_t>(at.row) - 1, slab_.dims()[1], closed);
-  const bool inner_slice = is_inner(slab_.next_layer() + n, slab_.dims()[2], closed);
-  const std::uint64_t* const low = slab_.inside(n, at.row);
-  if (axis == 0) {
-    if (!inner_row || !inner_slice) return 0;
-    const std::uint64_t next = low[w] >> 1 | (w + 1 < slab_.words() ? low[w + 1] << 63 : 0);
-    return (low[w] ^ next) & slab_.edge_mask()[w];
-  }
-  if (axis == 1) {
-    if (!slab_.has_y(at.row) || !inner_slice) return 0;
-    return (low[w] ^ slab_.inside(n, at.row + 1)[w]) & inner_points_[w];
-  }
-  if (!slab_.has_z(n) || !inner_row) return 0;
-  return (low[w] ^ slab_.inside(n + 1, at.row)[w]) & inner_points_[w];
+  const bool inner_slice = is_inner(slab_.next_layer() + slice_of(at), slab_.dims()[2], closed);
+  if ((axis != 1 && !inner_row) || (axis != 2 && !inner_slice)) return 0;
+  const std::uint64_t crossed = planes_.along(static_cast<std::size_t>(axis), at.layer, at.row)[w];
+  return axis == 0 ? crossed : crossed & inner_points_[w];
 }
 
-// Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.
-void DualCubes::make_room(std::size_t layers, SurfacePiece& piece) {
-  rows_.resize(layers * slab_.rows());
-  rows_.emplace_back();
-  const RowSums sums = place_rows(rows_, layers, piece.inherited);
-  piece.cells_crossed = sums.cells;
-  piece.open_edges = sums.on_border;
-  piece.positions.resize(to_size(sums.vertices));
-  piece.ids.resize(to_size(sums.vertices));
-  piece.normals.resize(options_.normals ? to_size(sums.vertices) : 0);
-  piece.triangles.resize(to_size(sums.triangles));
-}
-
-// Makes the vertices in cells.
-template <class T>
+// Makes the vertices in a cell.
 class DualCubes::VertexMaker {
  public:
-  VertexMaker(const DualCubes& cubes, const SliceWindow& window)
-      : cubes_(cubes), samples_(window, cubes.options_.rule.iso) {}
+  VertexMaker(const DualCubes& cubes, const Row& at, std::ptrdiff_t bit)
+      : cubes_(cubes),
+        at_(at),
+        bit_(static_cast<std::size_t>(bit)),
+        low_{cubes.first_[0] + bit - 1, cubes.first_[1] + static_cast<std::int64_t>(at.row) - 1,
+             cubes.first_[2] + cubes.slab_.next_layer() + cubes.slice_of(at)} {}
 
-  // Begins with a cell.
-  void begin(const Row& at, std::ptrdiff_t bit, std::uint8_t inside) {
-    low_ = {bit - 1, static_cast<std::int64_t>(at.row) - 1, cubes_.slab_.next_layer() + cubes_.slice_of(at)};
-    inside_ = inside;
-  }
-
-  Vec3 place(const DualVertex& vertex) {
+  Vec3 place(const DualVertex& vertex) const {
     const auto& spacing = cubes_.spacing_;
     const TangentPlanes planes = planes_of(vertex);
     const Vec3 at = vertex.in_face ? planes.mean() : planes.best();
     Vec3 in_cell{at.x / spacing[0], at.y / spacing[1], at.z / spacing[2]};
     if (!vertex.in_face) in_cell = {within_cell(in_cell.x), within_cell(in_cell.y), within_cell(in_cell.z)};
-    const auto& first = cubes_.first_;
-    return {(static_cast<double>(first[0] + low_[0]) + in_cell.x) * spacing[0],
-            (static_cast<double>(first[1] + low_[1]) + in_cell.y) * spacing[1],
-            (static_cast<double>(first[2] + low_[2]) + in_cell.z) * spacing[2]};
+    return {(static_cast<double>(low_[0]) + in_cell.x) * spacing[0],
+            (static_cast<double>(low_[1]) + in_cell.y) * spacing[1],
+            (static_cast<double>(low_[2]) + in_cell.z) * spacing[2]};
   }
 
   Point normal(const DualVertex& vertex) const { return unit_point(planes_of(vertex).normal()); }
 
   std::uint64_t id(const DualVertex& vertex) const {
-    const auto& first = cubes_.first_;
-    return cubes_.numbering_.id(first[0] + low_[0], first[1] + low_[1], first[2] + low_[2], vertex.slot);
+    return cubes_.numbering_.id(low_[0], low_[1], low_[2], vertex.slot);
   }
 
  private:
@@ -293,63 +258,51 @@ class DualCubes::VertexMaker {
   TangentPlanes planes_of(const DualVertex& vertex) const {
     TangentPlanes planes;
     for (unsigned edges = vertex.crossed; edges != 0; edges &= edges - 1) {
-      add_crossing(kEdgeTable[static_cast<std::size_t>(std::countr_zero(edges))], planes);
+      const CellEdge& edge = kEdgeTable[static_cast<std::size_t>(std::countr_zero(edges))];
+      const CrossingPlane& plane =
+          cubes_.planes_.plane(edge.axis, at_.layer + edge.dz, at_.row + edge.dy, bit_ + edge.dx);
+      std::array<double, 3> at{double(edge.dx), double(edge.dy), double(edge.dz)};
+      at[edge.axis] += plane.t;
+      planes.add({at[0] * cubes_.spacing_[0], at[1] * cubes_.spacing_[1], at[2] * cubes_.spacing_[2]},
+                 {plane.normal[0], plane.normal[1], plane.normal[2]});
     }
     return planes;
   }
 
-  void add_crossing(const CellEdge& edge, TangentPlanes& planes) const {
-    Crossing crossing{{low_[0] + edge.dx, low_[1] + edge.dy, low_[2] + edge.dz},
-                      static_cast<std::uint8_t>(1U << edge.axis),
-                      0,
-                      0,
-                      0,
-                      false};
-    const std::array<std::int64_t, 3> high = crossing.high();
-    crossing.low_inside = (inside_ >> (edge.dx + 2 * edge.dy + 4 * edge.dz) & 1) != 0;
-    crossing.f0 = samples_.row(crossing.low[1], crossing.low[2])[crossing.low[0]];
-    crossing.f1 = samples_.row(high[1], high[2])[high[0]];
-    crossing.t = crossing_parameter(crossing.f0, crossing.f1, samples_.iso(), crossing.low_inside);
-    std::array<double, 3> at{double(edge.dx), double(edge.dy), double(edge.dz)};
-    at[edge.axis] += crossing.t;
-    const Point normal = sharp_normal_at(samples_, crossing, cubes_.spacing_, cubes_.options_.rule.above);
-    planes.add({at[0] * cubes_.spacing_[0], at[1] * cubes_.spacing_[1], at[2] * cubes_.spacing_[2]},
-               {normal[0], normal[1], normal[2]});
-  }
-
   const DualCubes& cubes_;
-  SampleView<T> samples_;
-  std::array<std::int64_t, 3> low_{};
-  std::uint8_t inside_ = 0;
+  Row at_;
+  std::size_t bit_;
+  std::array<std::int64_t, 3> low_;  // sample of the whole
 };
 
 // Makes the vertices of the slab, and the places of the inherited ones again.
-template <class T>
-void DualCubes::make_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece) {
-  slab_.for_rows(layers + 1, [&](std::size_t layer, std::size_t row, std::size_t number) {
-    VertexMaker<T> maker(*this, window);
-    std::size_t next = layer > 0 ? rows_[number - slab_.rows()].vertices : 0;
-    for_cells_of({layer, row}, [&](std::ptrdiff_t bit, Cell& cell) {
-      const DualCell vertices = vertices_of(cell);
-      maker.begin({layer, row}, bit, cell.inside);
-      if (layer == 0) return make_front(maker, cell, vertices);
+void DualCubes::make_vertices(std::size_t layers, SurfacePiece& piece) {
+  slab_.for_rows(1, [&](std::size_t, std::size_t row, std::size_t) { make_front({0, row}); });
+  slab_.for_rows(layers, [&](std::size_t layer, std::size_t row, std::size_t number) {
+    std::size_t next = rows_[number].vertices;
+    const Row at{layer + 1, row};
+    for_cells_of(at, [&](std::ptrdiff_t bit, Cell& cell) {
       cell.first = piece.inherited + static_cast<std::uint32_t>(next);
-      for (std::size_t n = 0; n < vertices.count; ++n, ++next) {
-        piece.positions[next] = maker.place(vertices.vertices[n]);
-        piece.ids[next] = maker.id(vertices.vertices[n]);
-        if (options_.normals) piece.normals[next] = maker.normal(vertices.vertices[n]);
+      const VertexMaker maker(*this, at, bit);
+      for (const DualVertex& vertex : vertices_of(cell)) {
+        piece.positions[next] = maker.place(vertex);
+        piece.ids[next] = maker.id(vertex);
+        if (options_.normals) piece.normals[next] = maker.normal(vertex);
+        ++next;
       }
     });
   });
 }
 
-// Makes the places of the inherited vertices of a cell again.
-template <class Maker>
-void DualCubes::make_front(Maker& maker, const Cell& cell, const DualCell& vertices) {
-  std::size_t next = cell.first;
-  for (std::size_t n = 0; n < vertices.count; ++n) {
-    if (is_incomplete(vertices.vertices[n])) front_places_[next++] = maker.place(vertices.vertices[n]);
-  }
+// Makes the places of the inherited vertices in a row of cells again.
+void DualCubes::make_front(const Row& at) {
+  for_cells_of(at, [&](std::ptrdiff_t bit, const Cell& cell) {
+    const VertexMaker maker(*this, at, bit);
+    std::size_t next = cell.first;
+    for (const DualVertex& vertex : vertices_of(cell)) {
+      if (is_incomplete(vertex)) front_places_[next++] = maker.place(vertex);
+    }
+  });
 }
 
 // The vertices around a lattice edge, and the place of one in a face among them, if there is any.
@@ -381,10 +334,8 @@ std::optional<std::uint32_t> DualCubes::vertex_at(const Place& place, int edge, 
   if (in_face && cell.face < 0) return std::nullopt;
   const bool whole = cell.border == 0 && place.at.layer > 0;
   if (whole && !in_face) return cell.first + kDualNumbers[cell.inside][static_cast<std::size_t>(edge)];
-  const DualCell vertices = vertices_of(cell);
   std::uint32_t number = cell.first;
-  for (std::size_t n = 0; n < vertices.count; ++n) {
-    const DualVertex& vertex = vertices.vertices[n];
+  for (const DualVertex& vertex : vertices_of(cell)) {
     if (place.at.layer == 0 && !is_incomplete(vertex)) continue;
     if (vertex.in_face == in_face && (vertex.edges >> edge & 1) != 0) return number;
     ++number;

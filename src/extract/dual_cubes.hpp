@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "extract/cell_slab.hpp"
+#include "extract/crossing_planes.hpp"
 #include "extract/dual_table.hpp"
 #include "extract/edge_extractor.hpp"
 #include "extract/extractor.hpp"
 #include "extract/row_counts.hpp"
-#include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
 
 namespace isoweave {
@@ -59,7 +59,6 @@ class DualCubes final : public Extractor {
   };
 
   struct Polygon;
-  template <class T>
   class VertexMaker;
 
   std::size_t number_of(const Row& at) const { return at.layer * slab_.rows() + at.row; }
@@ -71,7 +70,7 @@ class DualCubes final : public Extractor {
   CellSides border_of(const Row& at, std::ptrdiff_t bit) const;
   int face_of(const Row& at, std::ptrdiff_t bit, const Cell& cell) const;
   const Cell& cell_at(const Row& at, std::ptrdiff_t bit) const;
-  static DualCell vertices_of(const Cell& cell);
+  static DualVertices vertices_of(const Cell& cell) { return {cell.inside, cell.border, cell.face}; }
   template <class Visit>
   void for_cells_of(const Row& at, const Visit& visit);
 
@@ -81,12 +80,8 @@ class DualCubes final : public Extractor {
   void count_vertices(const Row& at);
   void add_extra(const Row& at, const DualVertex& vertex);
   std::uint64_t crossings(const Row& at, int axis, std::size_t w) const;
-  void make_room(std::size_t layers, SurfacePiece& piece);
-
-  template <class T>
-  void make_vertices(const SliceWindow& window, std::size_t layers, SurfacePiece& piece);
-  template <class Maker>
-  void make_front(Maker& maker, const Cell& cell, const DualCell& vertices);
+  void make_vertices(std::size_t layers, SurfacePiece& piece);
+  void make_front(const Row& at);
   static Place moved(const Place& from, int axis, int steps);
   std::optional<std::uint32_t> vertex_at(const Place& place, int edge, bool in_face) const;
   Polygon polygon_around(const Place& place, int axis) const;
@@ -95,12 +90,12 @@ class DualCubes final : public Extractor {
 
   VertexNumbering numbering_;          // of the whole
   std::array<std::int64_t, 3> first_;  // sample in it
-  SampleType type_;
   std::array<double, 3> spacing_;
   ExtractOptions options_;
   CellSlab slab_;
   std::vector<std::uint64_t> inner_points_;  // per word of a row: with cells on both sides
   // Of the layer below the slab and those of the slab:
+  CrossingPlanes planes_;
   std::vector<std::uint64_t> crossed_;     // cells, in words
   std::vector<std::uint32_t> first_cell_;  // per word: the place of its first cell in the list
   std::vector<Cell> cells_;

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "extract/tables.hpp"
 
@@ -169,16 +170,41 @@ constexpr std::array<std::array<std::uint8_t, kCellEdges>, 256> make_numbers() {
   return numbers;
 }
 
-constexpr std::array<DualCell, 256> make_cells() {
+// The vertices of all cases away from the border; with_face: and that in the face that a cell may meet twice, where it
+// is a lower one.
+constexpr std::array<DualCell, 256> make_cells(bool with_face) {
   std::array<DualCell, 256> cells{};
-  for (int inside = 0; inside < 256; ++inside) cells[static_cast<std::size_t>(inside)] = make_cell(inside, 0, -1);
+  for (int inside = 0; inside < 256; ++inside) {
+    const int face = with_face ? twice_met_face(inside) : -1;
+    cells[static_cast<std::size_t>(inside)] = make_cell(inside, 0, face % 2 == 0 ? face : -1);
+  }
   return cells;
 }
 
 }  // namespace dual
 
 inline constexpr std::array<int, 256> kTwiceMetFaces = dual::make_twice_met_faces();
-inline constexpr std::array<DualCell, 256> kDualCells = dual::make_cells();
+inline constexpr std::array<DualCell, 256> kDualCells = dual::make_cells(false);
+inline constexpr std::array<DualCell, 256> kDualCellsWithFace = dual::make_cells(true);
 inline constexpr std::array<std::array<std::uint8_t, kCellEdges>, 256> kDualNumbers = dual::make_numbers();
+
+// The vertices of a cell of a case: those of the tables, or others at the border of an open volume.
+class DualVertices {
+ public:
+  DualVertices(std::uint8_t inside, CellSides border, int face) {
+    cell_ = border == 0 ? &(face < 0 ? kDualCells : kDualCellsWithFace)[inside]
+                        : &made_.emplace(dual::make_cell(inside, border, face));
+  }
+  DualVertices(const DualVertices&) = delete;
+  DualVertices& operator=(const DualVertices&) = delete;
+
+  std::size_t size() const { return cell_->count; }
+  const DualVertex* begin() const { return cell_->vertices.data(); }
+  const DualVertex* end() const { return begin() + size(); }
+
+ private:
+  std::optional<DualCell> made_;
+  const DualCell* cell_;
+};
 
 }  // namespace isoweave

@@ -70,7 +70,8 @@ SlabCounts EdgeExtractor<Edges>::extract(const SliceWindow& window, std::int64_t
   slab_.classify(window, count);
   count_rows(window, count);
   count = layers_within(rows_, slab_.rows(), most_vertices);
-  make_room(count, piece);
+  rows_.resize(count * slab_.rows());
+  make_room(rows_, count, options_.normals, piece);
   visit_sample_type(type_, [&]<class T>() {
     if (needs_places()) emit_front<T>(window);
     emit_vertices<T>(window, count, piece);
@@ -97,35 +98,16 @@ void EdgeExtractor<Edges>::resize(std::size_t layers) {
   rows_.resize(to_size(layers, slab_.rows()));
 }
 
-// Finds the crossings of the edges of a direction that begin in a row of slice n of the slab.
-template <class Edges>
-template <std::uint8_t Direction>
-void EdgeExtractor<Edges>::find_along(std::ptrdiff_t n, std::size_t row, std::vector<std::uint64_t>& out) const {
-  constexpr bool kX = (Direction & 1) != 0, kY = (Direction & 2) != 0, kZ = (Direction & 4) != 0;
-  std::uint64_t* const words = &out[row * slab_.words()];
-  if ((kY && !slab_.has_y(row)) || (kZ && !slab_.has_z(n))) {
-    std::fill_n(words, slab_.words(), 0);
-    return;
-  }
-  const std::uint64_t* const low = slab_.inside(n, row);
-  const std::uint64_t* const high = slab_.inside(kZ ? n + 1 : n, kY ? row + 1 : row);
-  if constexpr (kX) {
-    slab_.kernels().differ_along(low, high, slab_.edge_mask(), slab_.words(), words);
-  } else {
-    slab_.kernels().differ(low, high, slab_.words(), words);
-  }
-}
-
 template <class Edges>
 void EdgeExtractor<Edges>::find_on_slice(std::ptrdiff_t n, std::size_t row, OnSlice& slice) const {
   for_directions<Edges::kOnSlice>(
-      [&]<std::uint8_t Direction>(std::size_t d) { find_along<Direction>(n, row, slice.along[d]); });
+      [&]<std::uint8_t Direction>(std::size_t d) { slab_.find_along<Direction>(n, row, slice.along[d]); });
 }
 
 template <class Edges>
 void EdgeExtractor<Edges>::find_in_layer(std::ptrdiff_t n, std::size_t row, InLayer& layer) const {
   for_directions<Edges::kInLayer>(
-      [&]<std::uint8_t Direction>(std::size_t d) { find_along<Direction>(n, row, layer.along[d]); });
+      [&]<std::uint8_t Direction>(std::size_t d) { slab_.find_along<Direction>(n, row, layer.along[d]); });
 }
 
 // Counts the crossings of a row of layer n, and of the slice above it.
@@ -178,20 +160,6 @@ void EdgeExtractor<Edges>::count_rows(const SliceWindow& window, std::size_t lay
     if (counts.cells > 0) count_cells(window, {n, row, number}, counts);
     rows_[number] = counts;
   });
-}
-
-// Turns the counts of rows into the places where their vertices and triangles begin, and makes room for these.
-template <class Edges>
-void EdgeExtractor<Edges>::make_room(std::size_t layers, SurfacePiece& piece) {
-  rows_.resize(layers * slab_.rows());
-  rows_.emplace_back();
-  const RowSums sums = place_rows(rows_, layers, front_size_);
-  piece.cells_crossed = sums.cells;
-  piece.open_edges = sums.on_border;
-  piece.positions.resize(to_size(sums.vertices));
-  piece.ids.resize(to_size(sums.vertices));
-  piece.normals.resize(options_.normals ? to_size(sums.vertices) : 0);
-  piece.triangles.resize(to_size(sums.triangles));
 }
 
 // Numbers the crossings of a row word by word: those of the layer below the slice, then those on it.

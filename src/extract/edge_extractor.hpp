@@ -116,14 +116,11 @@ class EdgeExtractor : public Extractor {
   struct Vertices;
 
   void resize(std::size_t layers);
-  template <std::uint8_t Direction>
-  void find_along(std::ptrdiff_t n, std::size_t row, std::vector<std::uint64_t>& out) const;
   void find_on_slice(std::ptrdiff_t n, std::size_t row, OnSlice& slice) const;
   void find_in_layer(std::ptrdiff_t n, std::size_t row, InLayer& layer) const;
   std::uint32_t count_crossings(std::size_t n, std::size_t row) const;
   std::uint32_t crossings_on_border(std::size_t n, std::size_t row) const;
   void count_rows(const SliceWindow& window, std::size_t layers);
-  void make_room(std::size_t layers, SurfacePiece& piece);
   void number_row(std::size_t n, std::size_t row, std::uint32_t base);
   template <class T>
   void emit_front(const SliceWindow& window);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "isoweave/error.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave {
 namespace {
@@ -33,17 +34,21 @@ std::size_t layers_within(std::span<const RowCounts> rows, std::size_t rows_of_l
   return rows.size() / rows_of_layer;
 }
 
-RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited) {
-  RowSums sums;
+void make_room(std::vector<RowCounts>& rows, std::size_t layers, bool normals, SurfacePiece& piece) {
+  rows.emplace_back();
+  std::uint64_t vertices = 0, triangles = 0;
   for (RowCounts& row : rows) {
-    sums.cells += row.cells;
-    sums.on_border += row.on_border;
-    scan_one(row.vertices, sums.vertices);
-    scan_one(row.triangles, sums.triangles);
+    piece.cells_crossed += row.cells;
+    piece.open_edges += row.on_border;
+    scan_one(row.vertices, vertices);
+    scan_one(row.triangles, triangles);
   }
-  require_numbers(layers, sums.vertices + inherited, "vertices");
-  require_numbers(layers, sums.triangles, "triangles");
-  return sums;
+  require_numbers(layers, vertices + piece.inherited, "vertices");
+  require_numbers(layers, triangles, "triangles");
+  piece.positions.resize(to_size(vertices));
+  piece.ids.resize(to_size(vertices));
+  piece.normals.resize(normals ? to_size(vertices) : 0);
+  piece.triangles.resize(to_size(triangles));
 }
 
 }  // namespace isoweave
