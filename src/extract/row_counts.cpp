@@ -34,21 +34,28 @@ std::size_t layers_within(std::span<const RowCounts> rows, std::size_t rows_of_l
   return rows.size() / rows_of_layer;
 }
 
+RowSums place_rows(std::span<RowCounts> rows, std::size_t layers, std::uint32_t inherited) {
+  RowSums sums;
+  for (RowCounts& row : rows) {
+    sums.cells += row.cells;
+    sums.on_border += row.on_border;
+    scan_one(row.vertices, sums.vertices);
+    scan_one(row.triangles, sums.triangles);
+  }
+  require_numbers(layers, sums.vertices + inherited, "vertices");
+  require_numbers(layers, sums.triangles, "triangles");
+  return sums;
+}
+
 void make_room(std::vector<RowCounts>& rows, std::size_t layers, bool normals, SurfacePiece& piece) {
   rows.emplace_back();
-  std::uint64_t vertices = 0, triangles = 0;
-  for (RowCounts& row : rows) {
-    piece.cells_crossed += row.cells;
-    piece.open_edges += row.on_border;
-    scan_one(row.vertices, vertices);
-    scan_one(row.triangles, triangles);
-  }
-  require_numbers(layers, vertices + piece.inherited, "vertices");
-  require_numbers(layers, triangles, "triangles");
-  piece.positions.resize(to_size(vertices));
-  piece.ids.resize(to_size(vertices));
-  piece.normals.resize(normals ? to_size(vertices) : 0);
-  piece.triangles.resize(to_size(triangles));
+  const RowSums sums = place_rows(rows, layers, piece.inherited);
+  piece.cells_crossed = sums.cells;
+  piece.open_edges = sums.on_border;
+  piece.positions.resize(to_size(sums.vertices));
+  piece.ids.resize(to_size(sums.vertices));
+  piece.normals.resize(normals ? to_size(sums.vertices) : 0);
+  piece.triangles.resize(to_size(sums.triangles));
 }
 
 }  // namespace isoweave
