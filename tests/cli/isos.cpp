@@ -101,7 +101,6 @@ TEST(CliIsos, WrongUseIsRefused) {
     refused(joined({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2"}, more), 2,
             "--iso with several values: expected a run without " + more[0] + ", which takes one surface");
   }
-  refused({"mesh", kVolume, "-o", "a.glb", "--iso", "1,2", "--one-file"}, 2, "--one-file");
   refused({"mesh", kVolume, "--to-stdout", "ply", "--iso", "1,2"}, 2, "--to-stdout");
   refused({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2", "--report", "a_iso2.ply"}, 2, "a_iso2.ply");
   refused({"mesh", kVolume, "-o", "none/a.ply", "--iso", "1,2"}, 4, "none/a_iso1.ply");
