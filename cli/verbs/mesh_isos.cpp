@@ -156,11 +156,10 @@ void check_isos(const MeshArguments& arguments) {
         fmt::format("--iso with several values: expected a run without {}, which takes one surface", option));
   };
   refuse(!arguments.output.to_stdout.empty(), "--to-stdout");
-  refuse(arguments.page.given(), "--html");
   refuse(!arguments.stop.ratio.empty(), "--ratio");
   for (const double iso : isos) {
     const std::string path = iso_output(arguments.output, iso).path;
-    check_different({arguments.input.path, path, arguments.run.report});
+    check_different({arguments.input.path, path, arguments.run.report, arguments.page.path});
     check_absent(arguments.run.no_clobber, {path});
   }
 }
@@ -183,7 +182,11 @@ void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, 
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   const IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
   printer.finish();
-  evidence.write(report_json(arguments, info, report, meshes, files), control, {});
+  evidence.write(report_json(arguments, info, report, meshes, files), control, [&](const RunControl&) {
+    PageContents contents;
+    for (const SurfaceOutput& surface : surfaces) contents.isos.push_back(read_mesh(surface.output.path));
+    return contents;
+  });
   if (!quiet) print_meshes(arguments, info, report, meshes, files);
 }
 

@@ -95,8 +95,8 @@ TEST(CliIsos, WrongUseIsRefused) {
     refused({"mesh", kVolume, "-o", "a.ply", "--iso=" + isos}, 2, "--iso");
   }
   const std::vector<std::vector<std::string>> together{
-      {"--lods", "0.1,0.2"},   {"--ratio", "0.5"}, {"--memory", "1G"},       {"--checkpoint", "run"},
-      {"--color-by", "v.raw"}, {"--largest"},      {"--min-component", "9"}, {"--html", "a.html"}};
+      {"--lods", "0.1,0.2"},   {"--ratio", "0.5"}, {"--memory", "1G"},      {"--checkpoint", "run"},
+      {"--color-by", "v.raw"}, {"--largest"},      {"--min-component", "9"}};
   for (const std::vector<std::string>& more : together) {
     refused(joined({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2"}, more), 2,
             "--iso with several values: expected a run without " + more[0] + ", which takes one surface");

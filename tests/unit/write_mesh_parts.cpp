@@ -126,10 +126,11 @@ TEST(WriteParts, OfGlbAreNodesWithMeshesAndMaterials) {
 TEST(WriteParts, OfVtpArePiecesThatReadAsOne) {
   const files::Folder folder;
   for (const bool normals : {false, true}) {
-    write(folder / "a.vtp", surfaces(), parts_of(normals));
-    expect_read_back(folder / "a.vtp", normals);
+    const std::string path = folder / (normals ? "with.vtp" : "without.vtp");
+    write(path, surfaces(), parts_of(normals));
+    expect_read_back(path, normals);
   }
-  const std::string text = files::read_bytes(folder / "a.vtp");
+  const std::string text = files::read_bytes(folder / "with.vtp");
   EXPECT_NE(text.find("NumberOfTuples=\"4\" format=\"ascii\">105 115 111 32 49 48 0 60 "), std::string::npos) << text;
 }
 
