@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -34,7 +35,7 @@ std::array<double, 3> part_color(std::size_t n) {
 }
 
 std::string color_text(std::span<const double> color) {
-  const auto byte = [](double part) { return static_cast<int>(std::lround(255 * std::clamp(part, 0.0, 1.0))); };
+  const auto byte = [](double part) { return static_cast<int>(std::lround(255 * part)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]));
 }
 
@@ -67,6 +68,13 @@ std::vector<std::unique_ptr<MeshSink>> open_surfaces(std::span<const SurfaceOutp
   std::vector<std::unique_ptr<MeshSink>> files;
   for (const SurfaceOutput& surface : surfaces) files.push_back(open_output(surface.output, surface.part.options));
   return files;
+}
+
+void tell_digests(std::span<const std::unique_ptr<MeshSink>> files, std::span<MeshReport> surfaces, MeshReport& total) {
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    const std::uint64_t of_file = file_digest(*files[n], surfaces[n].digest);
+    total.digest += of_file - std::exchange(surfaces[n].digest, of_file);
+  }
 }
 
 }  // namespace isoweave::cli

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "isoweave/mesh.hpp"
+#include "isoweave/pipeline.hpp"
 #include "options/output_mesh.hpp"
 
 namespace isoweave::cli {
@@ -40,5 +41,9 @@ void check_parts(const OutputOptions& output);
 
 // Opens the files of all surfaces: a sink for each, in their order.
 std::vector<std::unique_ptr<MeshSink>> open_surfaces(std::span<const SurfaceOutput> surfaces);
+
+// Gives the reports of the surfaces, and of all of them together, the digests of the meshes as they are in their
+// files, which may be placed.
+void tell_digests(std::span<const std::unique_ptr<MeshSink>> files, std::span<MeshReport> surfaces, MeshReport& total);
 
 }  // namespace isoweave::cli

@@ -170,6 +170,7 @@ void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, 
   const std::vector<MeshedIso> meshes = meshed_isos(arguments, options, info);
   if (arguments.dry_run) return tell_forecast(arguments, meshes, control, evidence);
   std::vector<SurfaceOutput> surfaces;
+  surfaces.reserve(meshes.size());
   for (const MeshedIso& mesh : meshes) surfaces.push_back(mesh.surface);
   const std::vector<std::unique_ptr<MeshSink>> files = open_surfaces(surfaces);
   std::vector<IsoSink> sinks;
@@ -180,7 +181,8 @@ void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, 
   }
   ProgressPrinter printer(progress_mode(arguments.run.progress, quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
+  IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
+  tell_digests(files, report.meshes, report.total);
   printer.finish();
   evidence.write(report_json(arguments, info, report, meshes, files), control, [&](const RunControl&) {
     PageContents contents;

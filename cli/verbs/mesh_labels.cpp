@@ -54,7 +54,6 @@ std::vector<SurfaceOutput> label_surfaces(const LabelsTask& task, std::span<cons
     const auto [red, green, blue] = labels[n].color.value_or(part_color(n));
     MeshPart part{
         labels[n].name.empty() ? labels[n].label.text() : labels[n].name, {red, green, blue, 1}, task.file(labels[n])};
-    for (double& channel : part.color) channel = std::clamp(channel, 0.0, 1.0);
     if (numbers_objects(task)) part.options.segment = labels[n].label.bits();
     surfaces.push_back({surface_output(task.output, file_names[n]), std::move(part)});
   }
@@ -96,12 +95,8 @@ struct LabelFiles {
 
   // Finishes the files, and gives the report the digests of the meshes as they are in them.
   void finish(LabelsReport& report) {
-    for (std::size_t n = 0; n < files.size(); ++n) {
-      files[n]->finish();
-      const std::uint64_t of_run =
-          std::exchange(report.labels[n].digest, file_digest(*files[n], report.labels[n].digest));
-      report.total.digest += report.labels[n].digest - of_run;
-    }
+    for (const auto& file : files) file->finish();
+    tell_digests(files, report.labels, report.total);
   }
 };
 

@@ -23,12 +23,11 @@ constexpr const char* kMap = "map_24x22x20_uint8.raw";
 
 // Boxes of the labels 3, 8 and 200.
 void write_map(const files::Folder& folder) {
-  std::string bytes(24 * 22 * 20, '\0');
-  const auto fill = [&](int from, int to, int label) {
-    for (int k = 4; k < 15; ++k) {
-      for (int j = 3; j < 18; ++j) {
-        for (int i = from; i < to; ++i)
-          bytes[static_cast<std::size_t>((k * 22 + j) * 24 + i)] = static_cast<char>(label);
+  std::string bytes(std::size_t{24} * 22 * 20, '\0');
+  const auto fill = [&](std::size_t from, std::size_t to, int label) {
+    for (std::size_t k = 4; k < 15; ++k) {
+      for (std::size_t j = 3; j < 18; ++j) {
+        for (std::size_t i = from; i < to; ++i) bytes[(k * 22 + j) * 24 + i] = static_cast<char>(label);
       }
     }
   };

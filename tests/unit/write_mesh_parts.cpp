@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,16 +30,16 @@ std::vector<TriangleMesh> surfaces() {
   return meshes;
 }
 
-const std::array<std::string, 4> kNames{"iso 10", "<empty> & \"quoted\"",
-                                        "Gr\xc3\xb6\xc3\x9f"
-                                        "e \\ ]]> -->",
-                                        std::string("a\0b\xff\n", 5)};
+constexpr std::array<std::string_view, 4> kNames{"iso 10", "<empty> & \"quoted\"",
+                                                 "Gr\xc3\xb6\xc3\x9f"
+                                                 "e \\ ]]> -->",
+                                                 std::string_view("a\0b\xff\n", 5)};
 
 std::vector<MeshPart> parts_of(bool normals) {
   std::vector<MeshPart> parts;
-  for (const std::string& name : kNames) {
+  for (const std::string_view name : kNames) {
     const auto n = static_cast<double>(parts.size());
-    parts.push_back({name, {1, n / 4, 0.2, n == 3 ? 0.5 : 1}, {}});
+    parts.push_back({std::string(name), {1, n / 4, 0.2, n == 3 ? 0.5 : 1}, {}});
     parts.back().options.normals = normals;
     parts.back().options.unit = "um";
     parts.back().options.space = "RAS";
@@ -107,7 +108,7 @@ TEST(WriteParts, OfGlbAreNodesWithMeshesAndMaterials) {
     const Json& primitive = mesh["primitives"][0];
     const Json& material = glb.scene["materials"][primitive["material"].get<std::size_t>()];
     for (const Json& named : {node, mesh, material}) {
-      EXPECT_EQ(named["name"], n == 3 ? std::string("a\0b\xef\xbf\xbd\n", 7) : kNames[n]);
+      EXPECT_EQ(named["name"], n == 3 ? std::string("a\0b\xef\xbf\xbd\n", 7) : std::string(kNames[n]));
     }
     EXPECT_EQ(material["pbrMetallicRoughness"]["metallicFactor"], 0);
     const Json& color = material["pbrMetallicRoughness"]["baseColorFactor"];
@@ -131,6 +132,9 @@ TEST(WriteParts, OfVtpArePiecesThatReadAsOne) {
     expect_read_back(path, normals);
   }
   const std::string text = files::read_bytes(folder / "with.vtp");
+  for (const char* comment : {"<!-- comment 0 -->", "<!-- comment 3 -->"}) {
+    EXPECT_NE(text.find(comment), std::string::npos) << comment;
+  }
   EXPECT_NE(text.find("NumberOfTuples=\"4\" format=\"ascii\">105 115 111 32 49 48 0 60 "), std::string::npos) << text;
 }
 

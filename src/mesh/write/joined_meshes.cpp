@@ -1,5 +1,6 @@
 #include "mesh/write/joined_meshes.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -62,13 +63,14 @@ std::shared_ptr<JoinedFile> open_parts(const std::string& path, std::span<const 
 void check_alike(const std::string& path, std::span<const MeshFileOptions> meshes, const std::string& kind) {
   if (meshes.empty()) throw std::invalid_argument(path + ": expected one " + kind + " or more, found none");
   const MeshFileOptions& first = meshes.front();
-  for (const MeshFileOptions& options : meshes) {
-    if (options.compress != first.compress || options.normals != first.normals || options.values != first.values) {
-      throw std::invalid_argument(path + ": expected the same options for normals, values and packing of each " + kind);
-    }
-    if (options.offset != first.offset) {
-      throw std::invalid_argument(path + ": expected the same offset of each " + kind);
-    }
+  const bool alike = std::ranges::all_of(meshes, [&](const MeshFileOptions& options) {
+    return options.compress == first.compress && options.normals == first.normals && options.values == first.values;
+  });
+  if (!alike) {
+    throw std::invalid_argument(path + ": expected the same options for normals, values and packing of each " + kind);
+  }
+  if (!std::ranges::all_of(meshes, [&](const MeshFileOptions& options) { return options.offset == first.offset; })) {
+    throw std::invalid_argument(path + ": expected the same offset of each " + kind);
   }
 }
 

@@ -3,6 +3,7 @@
 // the head; normals and indices wait in files of their own.
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "files/xml_text.hpp"
@@ -220,11 +221,25 @@ class VtpParts final : public JoinedFile {
       names.push_back(parts_[n].name);
       pieces.push_back({mesh(n).vertices(), mesh(n).triangles(), true});
     }
-    const std::string head = head_text(options(), pieces, string_array("PartNames", names)).append(kDataBegin);
+    MeshFileOptions all = options();
+    all.comments = comments();
+    const std::string head = head_text(all, pieces, string_array("PartNames", names)).append(kDataBegin);
     file_.write(std::as_bytes(std::span(head)));
     for (std::size_t n = 0; n < parts_.size(); ++n) write_part(n);
     file_.write(std::as_bytes(std::span(kDataEnd)));
     file_.commit();
+  }
+
+  // The comments of all parts, each once.
+  std::vector<std::string> comments() const {
+    std::vector<std::string> lines;
+    std::set<std::string> known;
+    for (const MeshPart& part : parts_) {
+      for (const std::string& comment : part.options.comments) {
+        if (known.insert(comment).second) lines.push_back(comment);
+      }
+    }
+    return lines;
   }
 
   void write_part(std::size_t n) {
