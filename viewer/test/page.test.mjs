@@ -41,6 +41,10 @@ before(async () => {
   run('simplify', 'mesh.ply', '--triangles', '4000', '-o', 'small.stl', '--html', 'small.html', '--report', 'small.json', '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '-o', 'levels.ply', '--lods', '0.1vox,0.3vox,1vox', '--html', 'levels.html',
     '--report', 'levels.json', '--quiet');
+  run('generate', 'gyroid', '--size', '24', '-o', 'indexed.nrrd', '--quiet');
+  run('index', 'indexed.nrrd');
+  run('mesh', 'indexed.nrrd', '--iso', '0', '--extractor', 'dual', '-o', 'indexed.ply', '--html', 'indexed.html', '--report',
+    'indexed.json', '--quiet');
   run('view', 'mesh.ply', '--quiet');
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
   writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
@@ -60,6 +64,22 @@ describe('numbers', () => {
       ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
     assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
   }));
+
+  const row = (page, label) => page.evaluate(`[...document.querySelectorAll('dt')]
+    .filter((e) => e.innerText === '${label}').map((e) => e.nextElementSibling.innerText).join()`);
+  test('come with the extractor, and the index where there was one', async () => {
+    await withPage('mesh.html', kDesktop, async (page) => {
+      assert.equal(await row(page, 'Extractor'), 'cubes');
+      assert.equal(await row(page, 'Index'), 'none');
+    });
+    await withPage('indexed.html', kDesktop, async (page) => {
+      const { index } = json('indexed.json');
+      assert.equal(await row(page, 'Extractor'), 'dual');
+      assert.equal(await row(page, 'Index'), index.path);
+      assert.equal(numberIn(await row(page, 'Chunks left out by the index')), index.chunks_left_out);
+    });
+    await withPage('mesh.ply.html', kDesktop, async (page) => assert.equal(await row(page, 'Index'), '', 'no run'));
+  });
 
   test('of the plots are those of the report', () => withPage('mesh.html', kDesktop, async (page) => {
     const { sweep, page: { distance } } = json('mesh.json');
