@@ -9,6 +9,7 @@ import { fileURLToPath } from 'node:url';
 const here = dirname(fileURLToPath(import.meta.url));
 const kPages = {
   page: { template: 'page.html', style: 'style.css', code: 'main.js', uses: ['three', 'meshoptimizer', 'uplot'] },
+  range: { template: 'range/range.html', style: 'range/range.css', code: 'range/main.js', uses: ['uplot'] },
   watch: { template: 'watch/watch.html', style: 'watch/watch.css', code: 'watch/main.js', uses: ['three', 'uplot'] },
 };
 const [wanted, target, packages] = process.argv.slice(2);

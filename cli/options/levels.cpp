@@ -12,7 +12,10 @@ namespace isoweave::cli {
 namespace {
 
 void check_one_file(const OutputOptions& output, const StopOptions& stop) {
-  if (!stop.has_levels()) throw std::invalid_argument("--one-file: expected several levels by --lods, found none");
+  if (!stop.has_levels())
+    throw std::invalid_argument(
+        "--one-file: expected several levels by --lods or, of a volume, several surfaces by --iso or --labels, found "
+        "none");
   const MeshFormat format = output_format(output);
   if (format == MeshFormat::kGlb || (format == MeshFormat::kPrecomputed && output.compress)) return;
   wrong_value("--one-file", "a mesh named .glb, or .precomputed with --compress", output.path);

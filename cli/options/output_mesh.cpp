@@ -47,7 +47,8 @@ void add_output_options(CLI::App& verb, OutputOptions& output) {
   verb.add_flag("--compress", output.compress,
                 "Pack .glb (EXT_meshopt_compression) or .precomputed (multi-resolution, Draco), with rounding");
   verb.add_flag("--one-file", output.one_file,
-                "All levels of --lods in one .glb (MSFT_lod), or .precomputed with --compress")
+                "All levels of --lods in one .glb (MSFT_lod), or .precomputed with --compress; all iso-values or "
+                "labels, as parts with names and colours, in one .glb or .vtp")
       ->excludes("--to-stdout");
   verb.add_option("--segment", output.segment, "Segment ID in .precomputed")->capture_default_str();
 }

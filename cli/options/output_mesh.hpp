@@ -27,7 +27,7 @@ struct OutputOptions {
   std::string to_stdout;  // "ply" or "stl" instead of a path
   bool compress = false;
   std::uint64_t segment = 1;
-  bool one_file = false;  // for all levels of detail
+  bool one_file = false;  // for all levels of detail, iso-values or labels
   PlacingOptions placing;
 
   bool given() const { return !path.empty() || !to_stdout.empty(); }

@@ -1,6 +1,7 @@
 // The page in builds with the viewer.
 #include "page/page.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -42,19 +43,23 @@ Json surfaces_json(const std::vector<PageSurface>& surfaces) {
                     {"triangles", surface.mesh.triangles.size()},
                     {"vertices", surface.mesh.vertices.size()}});
     if (surface.level) json.back()["level"] = *surface.level;
+    if (surface.iso) json.back()["iso"] = *surface.iso;
   }
   return json;
 }
 
 bool has_stand_in(const std::vector<PageSurface>& surfaces) {
-  for (const PageSurface& surface : surfaces) {
-    if (surface.name == "stand-in") return true;
-  }
-  return false;
+  return std::ranges::any_of(surfaces, &PageSurface::stands_in);
+}
+
+// Whether the mesh of a file is another one than its run reported.
+bool differs(const Json& run, const Json& check) {
+  const auto digest = run.find("digest");
+  return digest != run.end() && digest->is_string() && *digest != check.at("digest");
 }
 
 // The notes that a reader of the page needs.
-Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& report, const std::string& full_note) {
+Json notes_json(const PageSurfaces& page, bool differs, const std::string& full_note) {
   Json notes = Json::array();
   if (page.surfaces.empty()) notes.push_back("The mesh has no triangles.");
   if (has_stand_in(page.surfaces)) {
@@ -66,19 +71,47 @@ Json notes_json(const PageSurfaces& page, const MeshCheck& check, const Json& re
     notes.push_back("Levels of detail with more triangles than a page shows (--page-triangles) are left out.");
   }
   if (!full_note.empty()) notes.push_back(full_note);
-  const auto digest = report.find("digest");
-  if (digest != report.end() && digest->is_string() && *digest != digest_text(check.digest)) {
+  if (differs) {
     notes.push_back("The mesh in the file has another digest than the run reported: it was rounded, or changed since.");
   }
   return notes;
 }
 
-void write_text(OutputFile& file, std::string_view text) { file.write(std::as_bytes(std::span(text))); }
+Json file_check_json(const TriangleMesh& mesh, const std::string& path) {
+  Json json = check_json(check_mesh(mesh), path);
+  json.update(place_json(mesh));
+  return json;
+}
 
-void write_script(OutputFile& file, std::string_view id, const Json& json) {
-  write_text(file, script_start(id));
-  write_text(file, script_text(json));
-  write_text(file, kScriptEnd);
+// Adds the page of one surface to the report, and makes its surfaces.
+PageSurfaces describe_surface(Json& report, PageContents contents, std::uint64_t most_triangles,
+                              const RunControl& control) {
+  Json& json = report["page"];
+  json["check"] = file_check_json(contents.mesh, report["output"]);
+  const std::string full_note = std::move(contents.full_note);
+  PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
+  json["surfaces"] = surfaces_json(shown.surfaces);
+  json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
+  json["notes"] = notes_json(shown, differs(report, json["check"]), full_note);
+  return shown;
+}
+
+// Adds the page of several iso-values to the report, and makes their surfaces.
+PageSurfaces describe_isos(Json& report, std::vector<TriangleMesh> isos, std::uint64_t most_triangles,
+                           const RunControl& control) {
+  Json& json = report["page"];
+  json["isos"] = Json::array();
+  bool any_differs = false;
+  for (std::size_t n = 0; n < isos.size(); ++n) {
+    const Json& run = report["isos"][n];
+    json["isos"].push_back(file_check_json(isos[n], run.at("output")));
+    any_differs = any_differs || differs(run, json["isos"].back());
+  }
+  PageSurfaces shown = iso_surfaces(std::move(isos), most_triangles, control);
+  json["surfaces"] = surfaces_json(shown.surfaces);
+  json["distance"] = nullptr;
+  json["notes"] = notes_json(shown, any_differs, "");
+  return shown;
 }
 
 }  // namespace
@@ -92,17 +125,8 @@ std::uint64_t page_memory(std::uint64_t triangles) {
 void write_page(OutputFile& file, const PageOptions& page, Json& report, PageContents contents,
                 const RunControl& control) {
   const auto most_triangles = static_cast<std::uint64_t>(parse_count("--page-triangles", page.triangles));
-  const MeshCheck check = check_mesh(contents.mesh);
-  const Json place = place_json(contents.mesh);
-  const std::string full_note = std::move(contents.full_note);
-  PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
-  Json& json = report["page"];
-  json["check"] = check_json(check, report["output"]);
-  json["check"].update(place);
-  json["surfaces"] = surfaces_json(shown.surfaces);
-  json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);
-  json["notes"] = notes_json(shown, check, report, full_note);
-
+  PageSurfaces shown = contents.isos.empty() ? describe_surface(report, std::move(contents), most_triangles, control)
+                                             : describe_isos(report, std::move(contents.isos), most_triangles, control);
   const std::string_view html = page_template();
   const std::size_t mark = html.find(kPageMark);
   write_text(file, html.substr(0, mark));

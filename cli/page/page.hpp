@@ -46,6 +46,7 @@ struct PageContents {
   std::optional<TriangleMesh> full{};  // before simplification
   std::string full_note{};             // why that is not there
   std::vector<TriangleMesh> finer{};   // levels of detail before `mesh`, finest first
+  std::vector<TriangleMesh> isos{};    // in place of `mesh`: those of the report's `isos`, in their order
 };
 
 // The note about a surface that is left out, as it has more than kMostFullTriangles.

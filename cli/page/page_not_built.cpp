@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "page/page.hpp"
+#include "page/range_page.hpp"
 
 namespace isoweave::cli {
 
@@ -10,5 +11,7 @@ std::uint64_t page_memory(std::uint64_t) { return 0; }
 void write_page(OutputFile&, const PageOptions&, Json&, PageContents, const RunControl&) {
   throw std::logic_error("a page in a build without the viewer");
 }
+
+void write_range_page(OutputFile&, const Json&) { throw std::logic_error("a page in a build without the viewer"); }
 
 }  // namespace isoweave::cli

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 namespace isoweave::cli {
 
 std::string script_start(std::string_view id) {
@@ -20,6 +22,14 @@ std::string script_text(const Json& json) {
     }
   }
   return safe;
+}
+
+void write_text(OutputFile& file, std::string_view text) { file.write(std::as_bytes(std::span(text))); }
+
+void write_script(OutputFile& file, std::string_view id, const Json& json) {
+  write_text(file, script_start(id));
+  write_text(file, script_text(json));
+  write_text(file, kScriptEnd);
 }
 
 }  // namespace isoweave::cli

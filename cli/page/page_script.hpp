@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "isoweave/output_file.hpp"
 #include "report/report.hpp"
 
 namespace isoweave::cli {
@@ -17,5 +18,9 @@ inline constexpr std::string_view kScriptEnd = "</script>\n";
 
 // JSON as text that cannot end the script element around it.
 std::string script_text(const Json& json);
+
+// Writes text, and a script element of JSON.
+void write_text(OutputFile& file, std::string_view text);
+void write_script(OutputFile& file, std::string_view id, const Json& json);
 
 }  // namespace isoweave::cli

@@ -62,7 +62,7 @@ PageErrors measured_errors(const PageSurface& surface, const TriangleMesh& full,
 // The mesh, or its stand-in, which has no distances yet.
 PageSurface shown_mesh(PageSurface surface, std::uint64_t most_triangles, const RunControl& control) {
   if (surface.mesh.triangles.size() <= most_triangles) return surface;
-  return {"stand-in", simplified(surface.mesh, most_triangles, control)};
+  return {"stand-in", simplified(surface.mesh, most_triangles, control), {}, {}, {}, true};
 }
 
 void add_coarser(std::vector<PageSurface>& surfaces, const RunControl& control) {
@@ -82,7 +82,7 @@ std::vector<PageSurface> shown_levels(std::vector<TriangleMesh> finer, std::uint
   for (std::size_t level = 0; level < finer.size(); ++level) {
     if (finer[level].triangles.size() > most_triangles || finer[level].triangles.empty()) continue;
     finer[level].normals = {};
-    levels.push_back({"finer", std::move(finer[level]), {}, level});
+    levels.push_back({"finer", std::move(finer[level]), {}, level, {}, false});
   }
   return levels;
 }
@@ -123,6 +123,24 @@ PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, 
       if (shown.distances.empty()) shown.distances = vertex_distances(shown.mesh, *full, control.threads);
     }
     page.surfaces.insert(page.surfaces.begin(), PageSurface{"full", std::move(*full)});
+  }
+  return page;
+}
+
+PageSurfaces iso_surfaces(std::vector<TriangleMesh> isos, std::uint64_t most_triangles, const RunControl& control) {
+  PageSurfaces page;
+  std::uint64_t all = 0;
+  for (const TriangleMesh& mesh : isos) all += mesh.triangles.size();
+  const double share = static_cast<double>(most_triangles) / static_cast<double>(std::max(all, most_triangles));
+  for (std::size_t n = 0; n < isos.size(); ++n) {
+    if (isos[n].triangles.empty()) continue;
+    isos[n].normals = {};
+    move_to_offset(isos[n], isos.front().offset);
+    const auto most = static_cast<std::uint64_t>(share * static_cast<double>(isos[n].triangles.size()));
+    PageSurface shown = shown_mesh({"iso", std::move(isos[n])}, std::max<std::uint64_t>(most, 1), control);
+    shown.name = "iso";
+    shown.iso = n;
+    page.surfaces.push_back(std::move(shown));
   }
   return page;
 }

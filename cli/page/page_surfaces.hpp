@@ -14,10 +14,13 @@
 namespace isoweave::cli {
 
 struct PageSurface {
-  std::string name;  // "full"; "finer" for levels of detail; "mesh" or "stand-in"; "level" for coarser ones of our own
+  std::string name;  // "full"; "finer" for levels of detail; "mesh" or "stand-in"; "level" for coarser ones of our
+                     // own; "iso" for several iso-values
   TriangleMesh mesh;
   std::vector<float> distances{};      // of the vertices from the full surface, or none yet
   std::optional<std::size_t> level{};  // number among the levels of detail of the run
+  std::optional<std::size_t> iso{};    // number among the iso-values of the run
+  bool stands_in = false;              // has fewer triangles than the mesh that it is shown for
 };
 
 // Distances of a mesh from the full surface.
@@ -38,5 +41,9 @@ struct PageSurfaces {
 // Makes the surfaces of a page. A mesh of more triangles is replaced by a stand-in of about so many. Coarser levels are
 // made where the run made none.
 PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control);
+
+// Makes the surfaces of several iso-values, all at one offset. Values without triangles have none. Stand-ins take the
+// place of surfaces so that all have about most_triangles together.
+PageSurfaces iso_surfaces(std::vector<TriangleMesh> isos, std::uint64_t most_triangles, const RunControl& control);
 
 }  // namespace isoweave::cli

@@ -9,8 +9,12 @@
 #include <optional>
 
 #include "isoweave/histogram.hpp"
+#include "isoweave/output_file.hpp"
 #include "isoweave/printable.hpp"
+#include "options/files.hpp"
 #include "options/input_volume.hpp"
+#include "page/page.hpp"
+#include "page/range_page.hpp"
 #include "report/print.hpp"
 #include "report/report.hpp"
 #include "report/suggestions.hpp"
@@ -24,14 +28,16 @@ constexpr const char* kExamples = R"(
 Examples:
   isoweave info scan.nii.gz
   isoweave info foot.raw --raw 256x256x256:uint8
-  isoweave info scan.nii.gz --json)";
+  isoweave info scan.nii.gz --json
+  isoweave info scan.nii.gz --isos --html isos.html)";
 
 constexpr std::size_t kParts = 16;
 constexpr std::size_t kBarLength = 40;
 
 struct InfoArguments {
   InputOptions input;
-  bool json = false, isos = false;
+  PageOptions page;
+  bool json = false, isos = false, no_clobber = false;
 };
 
 // The lengths of the box of the samples.
@@ -164,7 +170,12 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
 
 void run_info(const InfoArguments& arguments) {
   if (arguments.input.path.empty()) throw CLI::RequiredError("VOLUME");
+  if (arguments.page.given()) check_page(arguments.page, "--html");
+  check_different({arguments.input.path, arguments.page.path});
+  check_absent(arguments.no_clobber, {arguments.page.path});
   exit_on_signal();
+  std::optional<OutputFile> page;
+  if (arguments.page.given()) page.emplace(arguments.page.path);
   const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
   CrossingCounts crossings;
   if (arguments.isos) {
@@ -176,11 +187,10 @@ void run_info(const InfoArguments& arguments) {
   const Suggestions suggested = suggestions(histogram, arguments.input, nullptr);
   const VolumeInfo& info = volume->info();
   const std::string& path = arguments.input.path;
-  if (arguments.json) {
-    Json json = info_json(info, histogram, suggested, path);
-    if (arguments.isos) json["isos"] = isos_json(crossings);
-    return print_out(json_text(json));
-  }
+  Json json = info_json(info, histogram, suggested, path);
+  if (arguments.isos) json["isos"] = isos_json(crossings);
+  if (page) write_range_page(*page, json);
+  if (arguments.json) return print_out(json_text(json));
   print_to_reader(info_text(info, histogram, suggested, path) + (arguments.isos ? isos_text(crossings) : ""));
 }
 
@@ -192,6 +202,8 @@ void add_info_verb(CLI::App& app) {
   add_input_options(*verb, arguments->input);
   verb->add_flag("--json", arguments->json, "Print JSON");
   verb->add_flag("--isos", arguments->isos, "Triangles of the surface for iso-values over the whole range");
+  verb->add_option("--html", arguments->page.path, "Write a page with a chart of --isos to this file")->needs("--isos");
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->footer(kExamples);
   verb->callback([arguments] { run_info(*arguments); });
 }

@@ -27,6 +27,7 @@ Examples:
     --iso 226 --error 0.1mm -o scan.obj
   isoweave mesh mask.nii.gz --iso 0.5 --smooth --center --ground -o print.stl
   isoweave mesh segmentation.nii.gz --labels all --smooth -o seg.ply
+  isoweave mesh ct.nii.gz --iso -300,200 --one-file -o skin-and-bone.glb
   isoweave mesh huge.zarr --iso 100 --memory 2G --checkpoint run -o huge.ply
   isoweave mesh --resume run
 
@@ -58,7 +59,7 @@ void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option(
       "--iso", arguments.iso,
       "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT. Several with commas: a file "
-      "each, such as a_iso10.ply for a.ply");
+      "each, such as a_iso10.ply for a.ply, or one with --one-file");
   CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
   verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
   verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
@@ -76,7 +77,8 @@ void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
 void add_label_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option(
       "--labels", arguments.labels,
-      "Labels of a label map by number or name, such as 1,2,5, or all: one surface each, in a file of its own");
+      "Labels of a label map by number or name, such as 1,2,5, or all: one surface each, in a file of its own, or all "
+      "in one with --one-file");
   verb.add_option("--label-names", arguments.label_names,
                   "Names of labels for files and reports: a FreeSurfer, ITK-SNAP or BIDS table")
       ->needs("--labels");
@@ -122,8 +124,7 @@ void add_way_options(CLI::App& verb, MeshArguments& arguments) {
 // require_possible.
 void exclude_from_labels(CLI::App& verb) {
   verb.get_option("--labels")
-      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--one-file", "--dry-run", "--every", "--html",
-                 "--page-triangles");
+      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--dry-run", "--every", "--html", "--page-triangles");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
@@ -12,6 +11,7 @@
 #include "isoweave/forecast.hpp"
 #include "options/files.hpp"
 #include "options/input_volume.hpp"
+#include "options/parts.hpp"
 #include "options/values.hpp"
 #include "report/print.hpp"
 #include "report/progress.hpp"
@@ -31,30 +31,38 @@ std::vector<double> parse_isos(const std::string& text) {
   return isos;
 }
 
-// The output of a value: a.ply becomes a_iso10.ply.
 OutputOptions iso_output(const OutputOptions& output, double iso) {
-  const std::filesystem::path path(output.path);
-  OutputOptions of_value = output;
-  of_value.path =
-      (path.parent_path() / fmt::format("{}_iso{}{}", path.stem().string(), iso, path.extension().string())).string();
-  return of_value;
+  return surface_output(output, fmt::format("iso{}", iso));
+}
+
+// Surfaces of other values lie within one another: the innermost is opaque, the others let it be seen, the outermost
+// most of all. depth: from 0, outermost, to `count` - 1.
+double opacity_at(std::size_t depth, std::size_t count) {
+  constexpr double kOutermost = 0.3;
+  const double inwards = static_cast<double>(depth) / static_cast<double>(count - 1);
+  return kOutermost + (1 - kOutermost) * inwards * inwards;
 }
 
 // A value that is meshed.
 struct MeshedIso {
   MeshOptions options;
-  OutputOptions output;
-  MeshFileOptions file;
+  SurfaceOutput surface;
 };
 
 std::vector<MeshedIso> meshed_isos(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info) {
+  const std::vector<double> isos = parse_isos(arguments.iso);
   std::vector<MeshedIso> meshes;
-  for (const double iso : parse_isos(arguments.iso)) {
+  for (const double iso : isos) {
+    const auto outside =
+        std::ranges::count_if(isos, [&](double other) { return options.inside_above ? other < iso : other > iso; });
+    const auto [red, green, blue] = part_color(meshes.size());
     MeshedIso& mesh = meshes.emplace_back();
     mesh.options = options;
     mesh.options.iso = iso;
-    mesh.output = iso_output(arguments.output, iso);
-    mesh.file = file_options(arguments, arguments.stop, mesh.options, info);
+    mesh.surface.output = iso_output(arguments.output, iso);
+    mesh.surface.part = {fmt::format("iso {}", iso),
+                         {red, green, blue, opacity_at(static_cast<std::size_t>(outside), isos.size())},
+                         file_options(arguments, arguments.stop, mesh.options, info)};
   }
   return meshes;
 }
@@ -65,9 +73,10 @@ Forecast forecast_all(const MeshArguments& arguments, const std::vector<MeshedIs
   Forecast sum;
   for (const MeshedIso& mesh : meshes) {
     const Forecast forecast = forecast_mesh(*open_input(arguments.input), mesh.options, control);
-    bytes += output_bytes(mesh.output, forecast.vertices, forecast.triangles, mesh.file);
+    bytes += output_bytes(mesh.surface.output, forecast.vertices, forecast.triangles, mesh.surface.part.options);
     add_iso_value(sum, forecast);
-    add_memory_during(sum, output_memory(mesh.output, forecast.vertices, forecast.triangles, mesh.file));
+    add_memory_during(
+        sum, output_memory(mesh.surface.output, forecast.vertices, forecast.triangles, mesh.surface.part.options));
   }
   return sum;
 }
@@ -83,7 +92,10 @@ void tell_forecast(const MeshArguments& arguments, const std::vector<MeshedIso>&
 
 Json entry_json(const MeshReport& report, const MeshedIso& mesh, const MeshSink& sink) {
   Json json = {{"iso", mesh.options.iso},
-               {"output", mesh.output.name()},
+               {"output", mesh.surface.output.name()},
+               {"name", mesh.surface.part.name},
+               {"color", color_text(mesh.surface.part.color)},
+               {"opacity", mesh.surface.part.color[3]},
                {"cells_crossed", report.cells_crossed},
                {"triangles_extracted", report.triangles_extracted},
                {"vertices_extracted", report.vertices_extracted},
@@ -111,7 +123,7 @@ Json report_json(const MeshArguments& arguments, const VolumeInfo& info, const I
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
   json["space"] = space_text(info.geometry, options.space);
-  json["offset"] = meshes.front().file.offset;
+  json["offset"] = meshes.front().surface.part.options.offset;
   json["isos"] = Json::array();
   for (std::size_t n = 0; n < meshes.size(); ++n) {
     json["isos"].push_back(entry_json(report.meshes[n], meshes[n], *files[n]));
@@ -125,7 +137,7 @@ void print_meshes(const MeshArguments& arguments, const VolumeInfo& info, const 
   for (std::size_t n = 0; n < meshes.size(); ++n) {
     for (const std::string& warning : report.meshes[n].warnings) print_note("warning: " + warning);
     print_notes(*files[n]);
-    print_surface(report.meshes[n], meshes[n].output.name());
+    print_surface(report.meshes[n], meshes[n].surface.name());
   }
   const double voxels = static_cast<double>(info.slice_samples()) * static_cast<double>(info.dims[2]);
   print_summary(report.total, fmt::format("{}: {} iso-values", arguments.output.name(), meshes.size()), voxels);
@@ -144,10 +156,11 @@ void check_isos(const MeshArguments& arguments) {
         fmt::format("--iso with several values: expected a run without {}, which takes one surface", option));
   };
   refuse(!arguments.output.to_stdout.empty(), "--to-stdout");
-  refuse(arguments.page.given(), "--html");
   refuse(!arguments.stop.ratio.empty(), "--ratio");
   for (const double iso : isos) {
-    check_different({arguments.input.path, iso_output(arguments.output, iso).path, arguments.run.report});
+    const std::string path = iso_output(arguments.output, iso).path;
+    check_different({arguments.input.path, path, arguments.run.report, arguments.page.path});
+    check_absent(arguments.run.no_clobber, {path});
   }
 }
 
@@ -156,21 +169,26 @@ void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, 
   const VolumeInfo info = volume.info();
   const std::vector<MeshedIso> meshes = meshed_isos(arguments, options, info);
   if (arguments.dry_run) return tell_forecast(arguments, meshes, control, evidence);
-  std::vector<std::unique_ptr<MeshSink>> files;
+  std::vector<SurfaceOutput> surfaces;
+  surfaces.reserve(meshes.size());
+  for (const MeshedIso& mesh : meshes) surfaces.push_back(mesh.surface);
+  const std::vector<std::unique_ptr<MeshSink>> files = open_surfaces(surfaces);
   std::vector<IsoSink> sinks;
-  for (const MeshedIso& mesh : meshes) {
-    files.push_back(open_output(mesh.output, mesh.file));
-    sinks.push_back({mesh.options.iso, files.back().get()});
-  }
+  for (std::size_t n = 0; n < meshes.size(); ++n) sinks.push_back({meshes[n].options.iso, files[n].get()});
   const bool quiet = arguments.run.quiet;
   if (!quiet) {
     for (const std::string& note : info.notes) print_note("warning: " + note);
   }
   ProgressPrinter printer(progress_mode(arguments.run.progress, quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };
-  const IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
+  IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);
+  tell_digests(files, report.meshes, report.total);
   printer.finish();
-  evidence.write(report_json(arguments, info, report, meshes, files), control, {});
+  evidence.write(report_json(arguments, info, report, meshes, files), control, [&](const RunControl&) {
+    PageContents contents;
+    for (const SurfaceOutput& surface : surfaces) contents.isos.push_back(read_mesh(surface.output.path));
+    return contents;
+  });
   if (!quiet) print_meshes(arguments, info, report, meshes, files);
 }
 

@@ -19,6 +19,7 @@
 #include "isoweave/printable.hpp"
 #include "options/files.hpp"
 #include "options/levels.hpp"
+#include "options/parts.hpp"
 #include "options/possible.hpp"
 #include "options/values.hpp"
 #include "report/evidence.hpp"
@@ -139,7 +140,7 @@ class MeshJob {
         resume_(std::move(resume)),
         lock_(std::move(lock)),
         rule_(component_rule(arguments.components)),
-        outputs_(level_outputs(arguments.output, arguments.stop)),
+        outputs_(one_surface() ? level_outputs(arguments.output, arguments.stop) : std::vector{arguments.output}),
         options_(mesh_options(arguments)),
         control_(run_control(arguments.run)) {
     if (!arguments.memory.empty()) control_.memory = parse_bytes("--memory", arguments.memory);
@@ -166,6 +167,9 @@ class MeshJob {
   }
 
  private:
+  // Whether there is one surface, of levels or not.
+  bool one_surface() const { return arguments_.labels.empty() && !has_several_isos(arguments_); }
+
   bool quiet() const { return arguments_.run.quiet; }
   bool no_clobber() const { return arguments_.run.no_clobber; }
 
@@ -182,11 +186,12 @@ class MeshJob {
     for (const OutputOptions& output : outputs_) {
       check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
       check_different({arguments_.color_by, output.path});
-      if (arguments_.labels.empty()) check_absent(no_clobber(), {output.path});
+      if (one_surface()) check_absent(no_clobber(), {output.path});
     }
     check_absent(no_clobber(), {arguments_.run.report, arguments_.page.path});
     check_page(arguments_.page, arguments_.output);
-    check_placing(arguments_.output, outputs_.size() > 1 || !arguments_.labels.empty());
+    check_placing(arguments_.output, outputs_.size() > 1 || !one_surface());
+    if (!one_surface()) check_parts(arguments_.output);
   }
 
   // Refuses options that do not go together, before any file is looked at. A volume, an index and an observer that
@@ -210,8 +215,7 @@ class MeshJob {
   void open() {
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
-    const bool one_surface = arguments_.labels.empty() && !has_several_isos(arguments_);
-    if (one_surface) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
+    if (one_surface()) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
     control_.index = index_.index;
     options_.values = open_values(arguments_);
     // Viewers of GLB draw a surface without normals in facets.

@@ -4,8 +4,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <utility>
@@ -14,6 +12,7 @@
 #include "isoweave/label_names.hpp"
 #include "options/files.hpp"
 #include "options/input_volume.hpp"
+#include "options/parts.hpp"
 #include "options/run.hpp"
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -47,12 +46,18 @@ struct LabelLayer {
   std::vector<MeshedLabel> labels;
 };
 
-// The output of a label: a.ply becomes a_Name.ply.
-OutputOptions label_output(const OutputOptions& output, const std::string& name) {
-  const std::filesystem::path path(output.path);
-  OutputOptions of_label = output;
-  of_label.path = (path.parent_path() / (path.stem().string() + "_" + name + path.extension().string())).string();
-  return of_label;
+// The outputs of labels, in their order: a file each, by the name, or the parts of one.
+std::vector<SurfaceOutput> label_surfaces(const LabelsTask& task, std::span<const LabelName> labels) {
+  const std::vector<std::string> file_names = label_file_names(labels);
+  std::vector<SurfaceOutput> surfaces;
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    const auto [red, green, blue] = labels[n].color.value_or(part_color(n));
+    MeshPart part{
+        labels[n].name.empty() ? labels[n].label.text() : labels[n].name, {red, green, blue, 1}, task.file(labels[n])};
+    if (numbers_objects(task)) part.options.segment = labels[n].label.bits();
+    surfaces.push_back({surface_output(task.output, file_names[n]), std::move(part)});
+  }
+  return surfaces;
 }
 
 // A sink that passes on everything but the end, which comes when all layers are done.
@@ -70,7 +75,7 @@ class UnfinishedSink final : public MeshSink {
 
 // The files of all labels, open.
 struct LabelFiles {
-  std::vector<OutputOptions> outputs;
+  std::vector<SurfaceOutput> surfaces;
   std::vector<std::unique_ptr<MeshSink>> files;
   std::vector<UnfinishedSink> sinks;
 
@@ -79,28 +84,19 @@ struct LabelFiles {
     for (const LabelLayer& layer : layers) {
       for (const MeshedLabel& label : layer.labels) names.push_back(label.name);
     }
-    const std::vector<std::string> file_names = label_file_names(names);
-    sinks.reserve(names.size());
-    for (std::size_t n = 0; n < names.size(); ++n) {
-      OutputOptions output = label_output(task.output, file_names[n]);
-      check_different({task.input.path, output.path, task.run.report, task.names});
-      check_absent(task.run.no_clobber, {output.path});
-      MeshFileOptions options = task.file(names[n]);
-      if (numbers_objects(task)) options.segment = names[n].label.bits();
-      files.push_back(open_output(output, options));
-      sinks.emplace_back(*files.back());
-      outputs.push_back(std::move(output));
+    surfaces = label_surfaces(task, names);
+    for (const SurfaceOutput& surface : surfaces) {
+      check_different({task.input.path, surface.output.path, task.run.report, task.names});
+      check_absent(task.run.no_clobber, {surface.output.path});
     }
+    files = open_surfaces(surfaces);
+    for (const auto& file : files) sinks.emplace_back(*file);
   }
 
   // Finishes the files, and gives the report the digests of the meshes as they are in them.
   void finish(LabelsReport& report) {
-    for (std::size_t n = 0; n < files.size(); ++n) {
-      files[n]->finish();
-      const std::uint64_t of_run =
-          std::exchange(report.labels[n].digest, file_digest(*files[n], report.labels[n].digest));
-      report.total.digest += report.labels[n].digest - of_run;
-    }
+    for (const auto& file : files) file->finish();
+    tell_digests(files, report.labels, report.total);
   }
 };
 
@@ -192,18 +188,14 @@ LabelsReport mesh_layers(const LabelsTask& task, std::span<const LabelLayer> lay
   return report;
 }
 
-std::string color_text(const std::array<double, 3>& color) {
-  const auto byte = [](double part) { return static_cast<int>(std::lround(255 * std::clamp(part, 0.0, 1.0))); };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]));
-}
-
-Json entry_json(const MeshedLabel& label, const MeshReport& report, const std::string& output) {
+Json entry_json(const MeshedLabel& label, const MeshReport& report, const SurfaceOutput& surface) {
+  const bool colored = label.name.color || surface.output.one_file;
   Json json = {{"label", label_json(label.name.label)},
                {"name", label.name.name},
-               {"color", label.name.color ? Json(color_text(*label.name.color)) : Json(nullptr)},
+               {"color", colored ? Json(color_text(surface.part.color)) : Json(nullptr)},
                {"layer", label.name.layer},
                {"samples", label.extent.samples},
-               {"output", output},
+               {"output", surface.output.name()},
                {"cells_crossed", report.cells_crossed},
                {"triangles_extracted", report.triangles_extracted},
                {"vertices_extracted", report.vertices_extracted},
@@ -226,7 +218,7 @@ Json report_json(const LabelsTask& task, const VolumeInfo& info, const LabelsRep
   for (const LabelLayer& layer : layers) {
     for (const MeshedLabel& label : layer.labels) {
       const std::size_t n = labels.size();
-      labels.push_back(entry_json(label, report.labels[n], files.outputs[n].name()));
+      labels.push_back(entry_json(label, report.labels[n], files.surfaces[n]));
       labels.back()["notes"] = files.files[n]->notes();
     }
   }
@@ -240,7 +232,7 @@ void print_labels(const LabelsTask& task, const VolumeInfo& info, const LabelsRe
   for (std::size_t n = 0; n < report.labels.size(); ++n) {
     for (const std::string& warning : report.labels[n].warnings) print_note("warning: " + warning);
     print_notes(*files.files[n]);
-    print_surface(report.labels[n], files.outputs[n].name());
+    print_surface(report.labels[n], files.surfaces[n].name());
   }
   const auto voxels = static_cast<double>(info.slice_samples()) * static_cast<double>(info.dims[2]);
   print_summary(report.total, fmt::format("{}: {} labels", task.output.name(), report.labels.size()),
@@ -257,10 +249,9 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   check_numbers(task, chosen);
   const LabelName any = chosen.empty() ? LabelName{1, {}, {}, 0} : chosen.front();
   // Opens the file and discards it: an error that would stop the run after the first pass is found now.
-  std::unique_ptr<MeshSink> any_file =
-      open_output(label_output(task.output, label_file_names(std::span(&any, 1))[0]), task.file(any));
+  std::vector<std::unique_ptr<MeshSink>> any_file = open_surfaces(label_surfaces(task, std::span(&any, 1)));
   const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop.get());
-  any_file.reset();
+  any_file.clear();
   for (const LabelLayer& layer : layers) {
     for (const MeshedLabel& label : layer.labels) check_numbers(task, std::span(&label.name, 1));
   }

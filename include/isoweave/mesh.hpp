@@ -37,9 +37,9 @@ struct ReadMeshOptions {
 // Reads PLY (binary little- and big-endian, ascii), STL (binary, ascii; corners with equal coordinates become one
 // vertex), OBJ (v and f), OFF, VTP, VTU and legacy VTK (polygons and strips, PVTP and PVTU with the files they name),
 // GLB and glTF (where the nodes place them, not compressed; isoweave's own files as stored, without the node's unit and
-// axes, and of several levels the finest), and 3MF (all items to be built, at their places). The format is told by
-// content, then by name. Files may be in gzip, or come out of pipes, which are kept in a file without a name in
-// $TMPDIR.
+// axes, of several levels the finest, and all of several parts), and 3MF (all items to be built, at their places). The
+// format is told by content, then by name. Files may be in gzip, or come out of pipes, which are kept in a file without
+// a name in $TMPDIR.
 //
 // Polygons are cut into triangles. OBJ normals are kept if numbered like the vertices, those of PLY, OFF, VTP, VTK and
 // GLB always. Values: the number that a PLY, VTP or VTK file has for each vertex, as docs/formats.md says. `notes` name
@@ -219,6 +219,26 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
 //   everything that has been packed.
 std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
                                                         std::span<const MeshFileOptions> levels);
+
+// One of several meshes in a file, as viewers list and colour it.
+struct MeshPart {
+  std::string name{};  // any bytes; a viewer shows those that are no UTF-8 as replacement characters
+  std::array<double, 4> color{0.87, 0.8, 0.7, 1};  // red, green and blue as sRGB, and opacity, each from 0 to 1
+  MeshFileOptions options{};
+};
+
+// Writes several parts into one file, each by itself under its name: returns a sink for each, in that order, for
+// mesh_iso_values or mesh_labels. The file appears when all sinks have been finished; destroying one before discards
+// everything. `normals`, `values`, `compress` and `offset` must be the same for all parts. A part may be empty.
+//   .glb  a node, a mesh and a material for each part, below one node that turns and scales all of them. An empty part
+//         is a node without a mesh. With `compress` all parts are in steps of one grid. At most 4 GiB in all
+//   .vtp  a piece for each part. Its triangles have the cell arrays `part`, which counts from 0, and `color`, 3 x 8
+//         bits; the field `PartNames` has the names. Opacity is left out
+// read_mesh joins the parts, in their order.
+// @throws CannotWrite for other formats, and what open_mesh_file throws; std::invalid_argument for colours out of range
+// @cost Disk: room for all parts twice while the last one finishes. Memory: with `compress`, one part at a time and
+//   everything that has been packed.
+std::vector<std::unique_ptr<MeshSink>> open_mesh_parts(const std::string& path, std::span<const MeshPart> parts);
 
 // Writes a mesh in memory, through open_mesh_file, with its offset, and with its normals and values if the options ask
 // for them. Unit and space are those of the mesh where the options do not name others.

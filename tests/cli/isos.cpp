@@ -57,6 +57,24 @@ TEST(CliIsos, AreFilesLikeThoseOfTheirOwnRuns) {
   EXPECT_EQ(listing(folder), (std::vector<std::string>{"a_iso150.ply", "a_iso99.5.ply", "own.ply", "r.json"}));
 }
 
+TEST(CliIsos, OfAnotherSizeHaveTheDigestsOfTheirFiles) {
+  const files::Folder folder;
+  const std::vector<std::string> mesh{"mesh", kVolume, "-o", "a.ply", "--iso", "150,99.5"};
+  const json plain = report_of(folder, mesh);
+  const json scaled = report_of(folder, joined(mesh, {"--scale", "2"}));
+  EXPECT_NE(scaled.at("digest"), plain.at("digest"));
+  std::uint64_t sum = 0;
+  for (const json& entry : scaled.at("isos")) {
+    EXPECT_EQ(entry.at("digest"), digest_of(folder, entry.at("output")));
+    sum += std::stoull(entry.at("digest").get<std::string>(), nullptr, 16);
+  }
+  EXPECT_EQ(std::stoull(scaled.at("digest").get<std::string>(), nullptr, 16), sum);
+  for (const std::string option : {"--center", "--ground"}) {
+    program::expect_failed(run(folder.path(), joined(mesh, {option})), 2,
+                           "expected one mesh, as several would be moved");
+  }
+}
+
 TEST(CliIsos, AForecastIsTheSum) {
   const files::Folder folder;
   const auto forecast = [&](const std::string& isos) {
@@ -95,13 +113,12 @@ TEST(CliIsos, WrongUseIsRefused) {
     refused({"mesh", kVolume, "-o", "a.ply", "--iso=" + isos}, 2, "--iso");
   }
   const std::vector<std::vector<std::string>> together{
-      {"--lods", "0.1,0.2"},   {"--ratio", "0.5"}, {"--memory", "1G"},       {"--checkpoint", "run"},
-      {"--color-by", "v.raw"}, {"--largest"},      {"--min-component", "9"}, {"--html", "a.html"}};
+      {"--lods", "0.1,0.2"},   {"--ratio", "0.5"}, {"--memory", "1G"},      {"--checkpoint", "run"},
+      {"--color-by", "v.raw"}, {"--largest"},      {"--min-component", "9"}};
   for (const std::vector<std::string>& more : together) {
     refused(joined({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2"}, more), 2,
             "--iso with several values: expected a run without " + more[0] + ", which takes one surface");
   }
-  refused({"mesh", kVolume, "-o", "a.glb", "--iso", "1,2", "--one-file"}, 2, "--one-file");
   refused({"mesh", kVolume, "--to-stdout", "ply", "--iso", "1,2"}, 2, "--to-stdout");
   refused({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2", "--report", "a_iso2.ply"}, 2, "a_iso2.ply");
   refused({"mesh", kVolume, "-o", "none/a.ply", "--iso", "1,2"}, 4, "none/a_iso1.ply");

@@ -135,9 +135,8 @@ TEST_F(CliLabels, WrongUseIsRefused) {
   for (const std::string labels : {"", "some", "1,,2", "1,", "1.5", "1,2,1", "99999999999999999999"}) {
     expect_refused(folder_, mesh({"--labels=" + labels}), 2, "--labels");
   }
-  const std::vector<std::vector<std::string>> of_the_program{{"--iso", "0.5"}, {"--inside", "below"}, {"--step", "2"},
-                                                             {"--dry-run"},    {"--html", "a.html"},  {"--every", "9s"},
-                                                             {"--one-file"}};
+  const std::vector<std::vector<std::string>> of_the_program{
+      {"--iso", "0.5"}, {"--inside", "below"}, {"--step", "2"}, {"--dry-run"}, {"--html", "a.html"}, {"--every", "9s"}};
   for (const std::vector<std::string>& more : of_the_program) {
     expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, "--labels");
   }

@@ -44,6 +44,8 @@ TEST(CliPage, BuildsWithoutTheViewerSaySo) {
   const files::Folder folder;
   expect_failure(folder, mesh({"--html", "out.html"}), 2, "--html: expected a build with the viewer");
   expect_failure(folder, {"view", "out.ply"}, 2, "view: expected a build with the viewer");
+  expect_failure(folder, {"info", kVolume, "--isos", "--html", "out.html"}, 2,
+                 "--html: expected a build with the viewer");
   expect_failure(folder, {"simplify", "a.ply", "-o", "b.ply", "--error", "1", "--html", "b.html"}, 2,
                  "--html: expected");
 }
@@ -365,6 +367,67 @@ TEST(CliView, WrongFilesAreErrors) {
   expect_failure(folder, {"view", "out.ply", "-o", "none/out.html"}, 4, "none/out.html");
   expect_failure(folder, {"view", "out.ply", "--before", "none.ply"}, 3, "none.ply");
   expect_failure(folder, {"view", "out.ply", "--page-triangles", "few"}, 2, "--page-triangles");
+}
+
+// Each surface of the page is that of its file, and the figures are those of the file as well.
+TEST(CliPage, HasASurfaceForEachIsoValue) {
+  const files::Folder folder;
+  expect_done(folder, {"mesh", kVolume, "--iso", "100,150,400", "-o", "out.off", "--html", "out.html", "--report",
+                       "out.json", "--quiet", "--allow-empty"});
+  const std::string page = files::read_bytes(folder / "out.html");
+  const Json report = json_in(page, "report");
+  EXPECT_EQ(report, report_of(folder, "out.json"));
+  ASSERT_EQ(report["page"]["surfaces"].size(), 2U) << "that of 400 is empty";
+  for (std::size_t n = 0; n < 3; ++n) {
+    const std::string file = report["isos"][n]["output"];
+    const Json check = Json::parse(run(folder.path(), {"check", file, "--json"}).out);
+    for (const char* key : {"triangles", "vertices", "euler", "area", "digest"}) {
+      EXPECT_EQ(report["page"]["isos"][n][key], check[key]) << file << ' ' << key;
+    }
+    if (n == 2) continue;
+    EXPECT_EQ(report["page"]["surfaces"][n]["iso"], n);
+    const pages::Surface surface = pages::unpacked(json_in(page, "surface-" + std::to_string(n)));
+    EXPECT_EQ(triangles_of(surface), triangles_of_off(files::read_bytes(folder / file), surface));
+  }
+}
+
+TEST(CliPage, OfSeveralIsoValuesSharesItsTriangles) {
+  const files::Folder folder;
+  expect_done(folder, {"mesh", kVolume, "--iso", "100,150", "-o", "out.ply", "--html", "out.html", "--report",
+                       "out.json", "--quiet", "--page-triangles", "4000"});
+  const Json page = report_of(folder, "out.json")["page"];
+  const int sum = page["surfaces"][0]["triangles"].get<int>() + page["surfaces"][1]["triangles"].get<int>();
+  EXPECT_LE(sum, 4000);
+  EXPECT_GT(sum, 3000);
+  EXPECT_NE(page["notes"].dump().find("stand-in"), std::string::npos);
+}
+
+TEST(CliPage, OfSeveralIsoValuesRefusesWrongUse) {
+  const files::Folder folder;
+  const auto isos = [](const Words& more) {
+    Words words{"mesh", kVolume, "--iso", "100,150"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect_failure(folder, isos({"-o", "a.glb", "--one-file", "--html", "a.html"}), 2, "--html");
+  expect_failure(folder, isos({"-o", "a.precomputed", "--html", "a.html"}), 2, "--html");
+  expect_failure(folder, isos({"-o", "a.ply", "--html", "a_iso150.ply"}), 2, "different files");
+  expect_failure(folder, isos({"-o", "a.ply", "--html", "none/a.html"}), 4, "none/a.html");
+}
+
+TEST(CliPage, OfIsoValuesOfAVolumeHoldsTheJson) {
+  const files::Folder folder;
+  expect_done(folder, {"info", kVolume, "--isos", "--html", "isos.html"});
+  EXPECT_EQ(listing(folder), Words{"isos.html"});
+  const std::string page = files::read_bytes(folder / "isos.html");
+  const Json printed = Json::parse(run(folder.path(), {"info", kVolume, "--isos", "--json"}).out);
+  EXPECT_EQ(json_in(page, "report"), printed);
+  EXPECT_EQ(occurrences(page, "<script"), 2U);
+  expect_failure(folder, {"info", kVolume, "--html", "a.html"}, 2, "--isos");
+  expect_failure(folder, {"info", kVolume, "--isos", "--html", "none/a.html"}, 4, "none/a.html");
+  expect_failure(folder, {"info", "isos.html", "--isos", "--html", "isos.html"}, 2, "different files");
+  expect_failure(folder, {"info", kVolume, "--isos", "--html", "isos.html", "--no-clobber"}, 4, "isos.html");
+  expect_failure(folder, {"info", "none.nrrd", "--isos", "--html", "a.html"}, 3, "none.nrrd");
 }
 
 #endif

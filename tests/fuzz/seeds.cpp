@@ -340,12 +340,19 @@ void put_meshes(Seeds& seeds) {
   const TempFolder folder;
   TriangleMesh mesh = meshes::tetrahedron();
   mesh.normals.assign(mesh.vertices.size(), {0, 0, 1});
+  std::vector<std::array<std::uint64_t, 3>> triangles;
+  for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+  const auto write = [&](MeshSink& sink) {
+    sink.append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
+    sink.finish();
+  };
+  for (const std::string name : {"vtp", "glb"}) {
+    MeshPart part{"part", {1, 0.5, 0, 0.5}, {true, {"a comment"}}};
+    for (const auto& sink : open_mesh_parts(folder / ("parts." + name), std::vector{part, part})) write(*sink);
+    seeds.put(name, get(folder / ("parts." + name)));
+  }
   for (const std::string name : {"ply", "stl", "obj", "off", "vtp", "glb", "3mf"}) {
-    const auto sink = open_mesh_file(folder / ("a." + name), {true, {"a comment"}});
-    std::vector<std::array<std::uint64_t, 3>> triangles;
-    for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-    sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
-    sink->finish();
+    write(*open_mesh_file(folder / ("a." + name), {true, {"a comment"}}));
     seeds.put(name, get(folder / ("a." + name)));
     seeds.put("mesh_gzip", gzipped(get(folder / ("a." + name))));
   }

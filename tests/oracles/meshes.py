@@ -58,6 +58,18 @@ def with_vtk(reader, path):
     return reader.GetOutput()
 
 
+def of_glb(path):
+    """The triangles of each mesh of a GLB, where its nodes put them."""
+    reader = vtkGLTFReader()
+    reader.SetApplyDeformationsToGeometry(True)
+    blocks = with_vtk(reader, path).NewIterator()
+    found = []
+    while not blocks.IsDoneWithTraversal():
+        found.append(of_poly_data(vtkPolyData.SafeDownCast(blocks.GetCurrentDataObject())))
+        blocks.GoToNextItem()
+    return found
+
+
 def read_wide_ply(path):
     """PLY of doubles x y z and of triangles, and nothing else."""
     header, data = open(path, "rb").read().split(b"end_header\n", 1)
@@ -216,14 +228,7 @@ class Checks:
         corners, scene = read_glb(self.path("a.glb"))
         self.same("a.glb by NumPy", corners)
         in_place = placed(corners, scene["nodes"][0])
-        reader = vtkGLTFReader()
-        reader.SetApplyDeformationsToGeometry(True)
-        blocks = with_vtk(reader, self.path("a.glb")).NewIterator()
-        found = []
-        while not blocks.IsDoneWithTraversal():
-            leaf = vtkPolyData.SafeDownCast(blocks.GetCurrentDataObject())
-            found.append(of_poly_data(leaf))
-            blocks.GoToNextItem()
+        found = of_glb(self.path("a.glb"))
         far = np.abs(np.concatenate(found) - in_place).max()
         assert far < 1e-7, f"a.glb by VTK: {far} from where the node puts it"
         print(f"{'a.glb by VTK':28} {len(in_place)} triangles, within {far:.2g} m")
@@ -247,6 +252,51 @@ class Checks:
             assert (found.view(np.uint32) == expected.view(np.uint32)).all(), f"l.glb: level {level} is another mesh"
             print(f"{f'l.glb, level {level}':28} {len(found)} triangles, equal bit for bit")
         assert level == 2
+
+    def parts(self):
+        """All iso-values in one file: each part the mesh of its own file, under its name, for trimesh and VTK."""
+        isos = ("90", "127.5", "180")
+        for name, more in (("p.glb", ["--one-file"]), ("p.vtp", ["--one-file"]), ("p.ply", [])):
+            subprocess.run(
+                [self.program, "mesh", self.path("volume.nrrd"), "-o", self.path(name), "--iso", ",".join(isos),
+                 "--quiet", *more],
+                check=True,
+            )
+        own = [of_poly_data(with_vtk(vtkPLYReader(), self.path(f"p_iso{iso}.ply"))) for iso in isos]
+        data = with_vtk(vtkXMLPolyDataReader(), self.path("p.vtp"))
+        names = data.GetFieldData().GetAbstractArray("PartNames")
+        assert [names.GetValue(n) for n in range(names.GetNumberOfValues())] == [f"iso {iso}" for iso in isos]
+        part = vtk_to_numpy(data.GetCellData().GetArray("part"))
+        assert data.GetCellData().GetScalars().GetName() == "part"
+        colors = vtk_to_numpy(data.GetCellData().GetArray("color"))
+        assert colors.dtype == np.uint8 and len(np.unique(colors, axis=0)) == len(isos)
+        corners = of_poly_data(data)
+        for n, iso in enumerate(isos):
+            self.equal(f"p.vtp, iso {iso}, by VTK", corners[part == n], own[n])
+            assert len(np.unique(colors[part == n], axis=0)) == 1
+        blocks = of_glb(self.path("p.glb"))
+        root = read_glb(self.path("p.glb"))[1]["nodes"][0]
+        assert len(blocks) == len(isos)
+        for iso, corners, alone in zip(isos, blocks, own):
+            far = np.abs(canonical(corners) - canonical(placed(alone, root).astype(np.float32))).max()
+            assert far < 1e-7, f"p.glb, iso {iso}, by VTK: {far} from where the node puts it"
+            print(f"{f'p.glb, iso {iso}, by VTK':28} {len(corners)} triangles, within {far:.2g} m")
+        try:
+            import trimesh
+        except ImportError as error:
+            return print("p.glb by trimesh             skipped:", error)
+        scene = trimesh.load(self.path("p.glb"), process=False)
+        assert set(scene.geometry) == {f"iso {iso}" for iso in isos}, set(scene.geometry)
+        for n, iso in enumerate(isos):
+            mesh = scene.geometry[f"iso {iso}"]
+            self.equal(f"p.glb, iso {iso}, by trimesh", mesh.vertices[mesh.faces], own[n])
+            assert mesh.visual.material.name == f"iso {iso}"
+            assert (mesh.visual.material.alphaMode == "BLEND") == (n < 2), "the innermost is opaque"
+
+    def equal(self, name, found, expected):
+        a, b = (canonical(np.asarray(corners, np.float32)) for corners in (found, expected))
+        assert a.shape == b.shape and (a.view(np.uint32) == b.view(np.uint32)).all(), f"{name}: another mesh"
+        print(f"{name:28} {len(a)} triangles, equal bit for bit")
 
     def precomputed(self):
         corners = self.reference.reshape(-1, 3, 3).astype(float)
@@ -319,6 +369,7 @@ def main():
         checks.lossless()
         checks.glb()
         checks.levels()
+        checks.parts()
         checks.precomputed()
         checks.far()
 

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
+#include "glb_helpers.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/mesh.hpp"
 #include "meshes.hpp"
@@ -14,8 +14,9 @@
 namespace isoweave {
 namespace {
 
-using Json = nlohmann::json;
-using Triangle64 = std::array<std::uint64_t, 3>;
+using glb_files::append;
+using glb_files::Glb;
+using glb_files::Json;
 
 std::vector<TriangleMesh> levels() {
   std::vector<TriangleMesh> levels{meshes::grid(12), meshes::cube(), meshes::tetrahedron()};
@@ -32,39 +33,6 @@ std::vector<MeshFileOptions> options_of(std::size_t count) {
   }
   return options;
 }
-
-// A part of the triangles; the vertices come with the first.
-void append(MeshSink& sink, const TriangleMesh& mesh, std::size_t first, std::size_t end) {
-  std::vector<Triangle64> triangles;
-  for (std::size_t n = first; n < std::min(end, mesh.triangles.size()); ++n) {
-    const auto& [a, b, c] = mesh.triangles[n];
-    triangles.push_back({a, b, c});
-  }
-  if (first > 0) return sink.append({.triangles = triangles});
-  sink.append({mesh.vertices, mesh.normals, {}, triangles});
-}
-
-struct Glb {
-  explicit Glb(const std::string& path) : bytes(files::read_bytes(path)) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, bytes.data() + 12, 4);
-    scene = Json::parse(bytes.substr(20, length));
-    data = 28 + length;
-  }
-
-  template <class Item>
-  std::vector<Item> array(const Json& accessor) const {
-    const Json& view =
-        scene["bufferViews"][scene["accessors"][accessor.get<std::size_t>()]["bufferView"].get<std::size_t>()];
-    std::vector<Item> items(view["byteLength"].get<std::size_t>() / sizeof(Item));
-    std::memcpy(items.data(), bytes.data() + data + view["byteOffset"].get<std::size_t>(), items.size() * sizeof(Item));
-    return items;
-  }
-
-  std::string bytes;
-  Json scene;
-  std::size_t data = 0;
-};
 
 void expect_levels(const std::string& path) {
   const Glb glb(path);

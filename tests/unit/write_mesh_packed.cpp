@@ -201,6 +201,54 @@ TEST(WritePackedGlb, LevelsAreMeshesInStepsOfTheirOwn) {
   }
 }
 
+// Both ends of the line between two parts are rounded alike: there is no gap.
+TEST(WritePackedGlb, PartsAreInStepsOfOneGrid) {
+  const files::Folder folder;
+  const std::array<TriangleMesh, 3> meshes{sheet(), {}, meshes::grid(2)};
+  std::vector<MeshPart> parts;
+  for (const char* name : {"a", "empty", "b"}) parts.push_back({name, {0.5, 0.5, 0.5, 1}, packed_options()});
+  const auto sinks = open_mesh_parts(folder / "a.glb", parts);
+  for (std::size_t n = 0; n < 3; ++n) {
+    std::vector<Triangle64> triangles;
+    for (const auto& t : meshes[n].triangles) triangles.push_back({t[0], t[1], t[2]});
+    sinks[n]->append({meshes[n].vertices, {}, {}, triangles});
+    sinks[n]->finish();
+  }
+  EXPECT_EQ(sinks[2]->notes().size(), 1U);
+  const std::string bytes = files::read_bytes(folder / "a.glb");
+  const Json scene = Json::parse(bytes.substr(20, word_at(bytes, 12)));
+  const Json& placed = scene["nodes"][1];
+  EXPECT_EQ(placed["children"].dump(), "[2,3,4]");
+  EXPECT_FALSE(scene["nodes"][3].contains("mesh"));
+  for (const std::size_t n : {0U, 2U}) {
+    const Json& node = scene["nodes"][2 + n];
+    EXPECT_EQ(node["name"], parts[n].name);
+    EXPECT_FALSE(node.contains("scale") || node.contains("translation"));
+    const Json& mesh = scene["meshes"][node["mesh"].get<std::size_t>()];
+    EXPECT_EQ(mesh["name"], parts[n].name);
+    const Json& primitive = mesh["primitives"][0];
+    EXPECT_EQ(primitive["material"], n);
+    const auto view = [&](const Json& accessor) {
+      return unpack(bytes, scene, scene["accessors"][accessor.get<std::size_t>()]["bufferView"].get<std::size_t>());
+    };
+    const auto positions = view(primitive["attributes"]["POSITION"]);
+    const auto indices = view(primitive["indices"]);
+    std::vector<Corners> found(meshes[n].triangles.size());
+    ASSERT_EQ(indices.size(), 12 * found.size());
+    for (std::size_t c = 0; c < indices.size() / 4; ++c) {
+      std::uint32_t index = 0;
+      std::memcpy(&index, indices.data() + 4 * c, 4);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::uint16_t place = 0;
+        std::memcpy(&place, positions.data() + 8 * index + 2 * axis, 2);
+        found[c / 3][c % 3][axis] =
+            placed["translation"][axis].get<double>() + placed["scale"][axis].get<double>() * place;
+      }
+    }
+    expect_close(corners_of(meshes[n]), sorted(found), scene["asset"]["extras"]["rounding_error"].get<double>());
+  }
+}
+
 TEST(WritePackedGlb, AnEmptyMeshIsAnEmptyScene) {
   const files::Folder folder;
   write(folder / "a.glb", {}, packed_options());

@@ -17,14 +17,29 @@ export function surfaceNames() {
     (surface.level === undefined ? names[surface.name] ?? `LOD ${(level += 1)}` : `LOD ${surface.level}`));
 }
 
-// Radio buttons, one per surface; `choose` is called with its number.
-function addSurfaces(choose) {
-  const names = surfaceNames();
+// What a surface is called in the list of them: its name, or its iso-value with its colour.
+export function surfaceTitle(index) {
+  const { iso } = report.page.surfaces[index];
+  return iso === undefined ? surfaceNames()[index] : isoTitle(iso);
+}
+
+export function isoTitle(iso) {
+  const swatch = element('i', { class: 'swatch', 'aria-hidden': 'true' });
+  swatch.style.backgroundColor = report.isos[iso].color;
+  return element('span', {}, swatch, shown(`isos.${iso}.iso`, 'number'));
+}
+
+// A button per surface: one of them is chosen, or each is on or off. `choose` is called with its number, and whether
+// it is on.
+function addSurfaces(choose, several) {
   const box = byId('surfaces').querySelector('div');
-  names.forEach((name, index) => {
-    const input = element('input', { type: 'radio', name: 'surface', id: `surface-choice-${index}`, value: index });
-    input.addEventListener('change', () => choose(index));
-    box.append(input, element('label', { for: input.id }, element('b', {}, name),
+  byId('surfaces').querySelector('legend').textContent = several ? 'Iso-values' : 'Surface';
+  report.page.surfaces.forEach((_, index) => {
+    const input = element('input', {
+      type: several ? 'checkbox' : 'radio', name: 'surface', id: `surface-choice-${index}`, value: index,
+    });
+    input.addEventListener('change', () => choose(index, input.checked));
+    box.append(input, element('label', { for: input.id }, element('b', {}, surfaceTitle(index)),
       shown(`page.surfaces.${index}.triangles`, 'count')));
   });
 }
@@ -93,25 +108,28 @@ function addSplit(view, startSplit) {
   });
 }
 
-function addKeys(view, choose, current) {
+function addKeys(view, choose, current, several) {
   const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', c: 'compare', 0: 'reset' };
   addOrbitKeys(view, byId('view'));
   document.addEventListener('keydown', (event) => {
     const key = pressedKey(event);
     if (presses[key] && !byId(presses[key]).hidden) byId(presses[key]).click();
     else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? resultIndex() : 0);
-    else if (/^[1-9]$/.test(key) && Number(key) <= report.page.surfaces.length) choose(Number(key) - 1);
+    else if (!/^[1-9]$/.test(key) || Number(key) > report.page.surfaces.length) return;
+    else if (several) byId(`surface-choice-${Number(key) - 1}`).click();
+    else choose(Number(key) - 1);
   });
 }
 
 // `choose` shows a surface by its number, `current` tells which one is shown, `startSplit` brings in the one before.
-export function startControls(view, middle, { choose, current, startSplit }) {
-  addSurfaces(choose);
+// `several`: surfaces are shown together, and `choose` is told whether one of them is on.
+export function startControls(view, middle, { several = false, choose, current, startSplit }) {
+  addSurfaces(choose, several);
   toggle('wireframe', (on) => view.setWireframe(on));
   toggle('smooth', (on) => view.setSmooth(on));
   byId('reset').addEventListener('click', () => view.reset());
   addErrors(view);
   addSlabs(view, middle);
   addSplit(view, startSplit);
-  addKeys(view, choose, current);
+  addKeys(view, choose, current, several);
 }

@@ -6,7 +6,7 @@ const grouped = new Intl.NumberFormat('en-US');
 function significant(value, digits) {
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e7 || size < 1e-4) return value.toExponential(digits - 1).replace(/\.?0+e/, 'e').replace('-', '−');
+  if (size >= 1e7 || size < 1e-4) return minus(value.toExponential(digits - 1).replace(/\.?0+e/, 'e'));
   return minus(new Intl.NumberFormat('en-US', { maximumSignificantDigits: digits }).format(value));
 }
 

@@ -1,7 +1,8 @@
 // Puts the page together.
-import { markSurface, resultIndex, startControls, surfaceNames } from './controls.js';
+import { markSurface, resultIndex, startControls } from './controls.js';
 import { packedSurface, report } from './data.js';
 import { geometryOf, middleOf, unpack } from './geometry.js';
+import { IsoSurfaces } from './isos.js';
 import { drawPlots, plotData, startPlots } from './plots.js';
 import { View } from './scene.js';
 import { fillCards, fillHeading, fillNotes, fillTiles } from './tables.js';
@@ -68,7 +69,7 @@ async function startView() {
     hideControls();
     return undefined;
   }
-  const surfaces = new Surfaces(view);
+  const surfaces = report.isos ? new IsoSurfaces(view) : new Surfaces(view);
   await surfaces.start();
   return { view, surfaces };
 }
@@ -76,7 +77,7 @@ async function startView() {
 fillHeading();
 fillTiles();
 fillNotes();
-fillCards(surfaceNames());
+fillCards();
 startPlots();
 startTheme(drawPlots);
 // For tests: the page is complete when this is.

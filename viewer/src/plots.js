@@ -30,7 +30,7 @@ function errorOptions() {
 }
 
 // The numbers of a plot, for those who cannot see it. Filled when it is opened: sweeps have thousands of slabs.
-function numberTable(columns, rowCount, cells) {
+export function numberTable(columns, rowCount, cells) {
   const details = element('details', {}, element('summary', {}, 'Numbers'));
   details.addEventListener('toggle', () => {
     if (!details.open || details.querySelector('table')) return;

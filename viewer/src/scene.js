@@ -1,6 +1,7 @@
 // The mesh in three dimensions.
 import {
-  BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial,
+  BufferGeometry, DoubleSide, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial,
 } from 'three';
 import { report, valueAt } from './data.js';
 import { cutAfter, drawnSlabs, slabCorners } from './slabs.js';
@@ -8,14 +9,17 @@ import { firstDirection, Stage } from './stage.js';
 
 const kPlain = 0xe2ddd0;
 
+const plainMaterial = (more = {}) => new MeshStandardMaterial({
+  color: kPlain, roughness: 0.62, metalness: 0, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
+  polygonOffsetUnits: 1, ...more,
+});
+
 export class View extends Stage {
   constructor(canvas) {
     super(canvas);
     this.renderer.localClippingEnabled = true;
-    this.surface = new Mesh(new BufferGeometry(), new MeshStandardMaterial({
-      color: kPlain, roughness: 0.62, metalness: 0, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    }));
+    this.surface = new Mesh(new BufferGeometry(), plainMaterial());
+    this.parts = []; // { surface, edges, opacity } of surfaces that are shown together
     this.edges = new Mesh(this.surface.geometry, new MeshBasicMaterial({
       wireframe: true, color: 0x16324a, transparent: true, opacity: 0.55,
     }));
@@ -37,8 +41,43 @@ export class View extends Stage {
     this.draw();
   }
 
+  // Surfaces that are shown together, in place of a single one: { geometry, color, opacity } each. Those that let
+  // others be seen are drawn after them, the most transparent last.
+  setParts(parts) {
+    this.parts = parts.map(({ geometry, color, opacity }) => {
+      const surface = new Mesh(geometry, plainMaterial({ color }));
+      const edges = new Mesh(geometry, this.edges.material);
+      surface.renderOrder = -opacity;
+      this.scene.add(surface, edges);
+      return { surface, edges, opacity };
+    });
+    this.showParts(parts.map(() => true));
+    this.reset();
+  }
+
+  // The innermost of those that are shown is opaque, whatever it is among all of them.
+  showParts(on) {
+    const strongest = Math.max(...this.parts.filter((_, n) => on[n]).map(({ opacity }) => opacity));
+    this.parts.forEach((part, n) => {
+      part.on = on[n];
+      const opaque = part.opacity === strongest;
+      Object.assign(part.surface.material, {
+        opacity: opaque ? 1 : part.opacity, transparent: !opaque, depthWrite: opaque, side: opaque ? DoubleSide : FrontSide,
+        needsUpdate: true,
+      });
+    });
+    this.draw();
+  }
+
+  // The sphere around all that may be shown.
+  sphere() {
+    const spheres = (this.parts.length > 0 ? this.parts.map(({ surface }) => surface) : [this.surface])
+      .map(({ geometry }) => geometry.boundingSphere);
+    return spheres.slice(1).reduce((all, sphere) => all.union(sphere), spheres[0].clone());
+  }
+
   reset() {
-    const { radius, center } = this.surface.geometry.boundingSphere;
+    const { radius, center } = this.sphere();
     this.lookAt(center, radius, firstDirection(report.space || valueAt('input.space')?.toUpperCase()));
   }
 
@@ -59,9 +98,12 @@ export class View extends Stage {
   }
 
   setSmooth(on) {
-    this.surface.material.flatShading = !on;
-    this.surface.material.needsUpdate = true;
+    for (const material of this.materials()) Object.assign(material, { flatShading: !on, needsUpdate: true });
     this.draw();
+  }
+
+  materials() {
+    return [this.surface, ...this.parts.map(({ surface }) => surface)].map(({ material }) => material);
   }
 
   setErrorColours(on) {
@@ -88,7 +130,7 @@ export class View extends Stage {
   // Shows what had been swept after a slab; all of it for null.
   cut(slab, middle) {
     const planes = slab === null ? [] : [cutAfter(slab, middle)];
-    this.surface.material.clippingPlanes = planes;
+    for (const material of this.materials()) material.clippingPlanes = planes;
     this.edges.material.clippingPlanes = planes;
     this.draw();
   }
@@ -109,8 +151,13 @@ export class View extends Stage {
   }
 
   drawOne(before) {
-    this.surface.visible = !before;
-    this.edges.visible = !before && this.wireframe;
+    const single = this.parts.length === 0;
+    this.surface.visible = single && !before;
+    this.edges.visible = single && !before && this.wireframe;
+    for (const { surface, edges, on } of this.parts) {
+      surface.visible = on;
+      edges.visible = on && this.wireframe;
+    }
     this.before.visible = before;
     this.beforeEdges.visible = before && this.wireframe;
     super.render();

@@ -1,4 +1,5 @@
 // The numbers: tiles on top, cards with tables below.
+import { isoTitle, surfaceTitle } from './controls.js';
 import { report, unit, valueAt } from './data.js';
 import { element, shown } from './element.js';
 
@@ -12,9 +13,11 @@ const kInput = [
 ];
 const kOptions = [
   ['Iso-value', 'iso', 'number'], ['Inside', 'inside'], ['Closed at the border', 'closed', 'flag'],
-  ['Error', 'error', 'length'], ['Triangles asked for', 'target.triangles', 'count'], ['Quality', 'quality'],
+  ['Extractor', 'extractor'], ['Error', 'error', 'length'], ['Triangles asked for', 'target.triangles', 'count'], ['Quality', 'quality'],
   ['Schedule', 'schedule'], ['Threads', 'threads', 'count'], ['Layers per slab (0: as it fits)', 'slab', 'count'],
-  ['Back end', 'backend'], ['Coordinates', 'space'], ['Mesh file', 'output'],
+  ['Back end', 'backend'], ['Index', 'index.path', 'text', () => valueAt('input.dims') && 'none'],
+  ['Chunks left out by the index', 'index.chunks_left_out', 'count'], ['Bytes left out', 'index.bytes_left_out', 'bytes'],
+  ['Coordinates', 'space'], ['Mesh file', 'output'],
 ];
 const kCounts = [
   ['Cells crossed', 'cells_crossed', 'count'], ['Triangles extracted', 'triangles_extracted', 'count'],
@@ -45,13 +48,14 @@ function card(title, ...content) {
   return element('article', { class: 'card' }, element('h2', {}, title), ...content);
 }
 
-// Rows of what the report has; no card where it has nothing.
-function listCard(title, rows) {
-  const present = rows.filter(([, key]) => valueAt(key) !== undefined && valueAt(key) !== '');
+// Rows of what the report has, or of what is said instead; no card where it has nothing.
+export function listCard(title, rows) {
+  const has = (key) => valueAt(key) !== undefined && valueAt(key) !== '';
+  const present = rows.filter(([, key, , instead]) => has(key) || instead?.());
   if (present.length === 0) return undefined;
   const table = element('dl', {});
-  for (const [label, key, format] of present) {
-    table.append(element('div', {}, element('dt', {}, label), element('dd', {}, shown(key, format))));
+  for (const [label, key, format, instead] of present) {
+    table.append(element('div', {}, element('dt', {}, label), element('dd', {}, has(key) ? shown(key, format) : instead())));
   }
   return card(title, table);
 }
@@ -97,6 +101,24 @@ function checkCard() {
   return card('Checks', element('table', {}, head, body));
 }
 
+// The checks of each iso-value's file. Those that the run counted otherwise stand out.
+function isoCard() {
+  const numbers = report.isos.map((_, iso) => iso);
+  const scope = (name) => ({ scope: name });
+  const row = (label, cells) => element('tr', {}, element('th', scope('row'), label), ...cells);
+  const body = kChecks.map(([label, key, format]) => row(label, numbers.map((iso) => {
+    const inRun = valueAt(`isos.${iso}.${key}`);
+    const same = inRun === undefined || inRun === valueAt(`page.isos.${iso}.${key}`);
+    return element('td', { class: same ? undefined : 'differs' }, shown(`page.isos.${iso}.${key}`, format));
+  })));
+  const first = [['Extracted', 'triangles_extracted', 'count'], ['Mesh file', 'output']].map(([label, key, format]) =>
+    row(label, numbers.map((iso) => element('td', {}, shown(`isos.${iso}.${key}`, format)))));
+  const head = element('tr', {}, element('th', scope('col'), 'Iso-value'),
+    ...numbers.map((iso) => element('th', scope('col'), isoTitle(iso))));
+  return card('Each iso-value, by its file', element('div', { class: 'scroll wide', tabindex: '0', role: 'region', 'aria-label': 'Iso-values' },
+    element('table', {}, element('thead', {}, head), element('tbody', {}, ...first, ...body))));
+}
+
 function distanceCard() {
   if (!report.page.distance) return undefined;
   const kinds = [['mean', 'Mean'], ['rms', 'RMS'], ['max', 'Largest']];
@@ -112,10 +134,10 @@ function distanceCard() {
     element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)), note);
 }
 
-function surfaceCard(names) {
+function surfaceCard() {
   if (report.page.surfaces.length === 0) return undefined;
   const head = element('tr', {}, ...['Surface', 'Triangles', 'Vertices'].map((name) => element('th', { scope: 'col' }, name)));
-  const body = report.page.surfaces.map((_, index) => element('tr', {}, element('th', { scope: 'row' }, names[index]),
+  const body = report.page.surfaces.map((_, index) => element('tr', {}, element('th', { scope: 'row' }, surfaceTitle(index)),
     element('td', {}, shown(`page.surfaces.${index}.triangles`, 'count')),
     element('td', {}, shown(`page.surfaces.${index}.vertices`, 'count'))));
   return card('Surfaces in this page', element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)));
@@ -127,16 +149,16 @@ function noteCard(title, key) {
   return card(title, element('ul', {}, ...lines.map((_, index) => element('li', {}, shown(`${key}.${index}`)))));
 }
 
-export function fillCards(surfaceNames) {
+export function fillCards() {
   const cards = [
     listCard('Input', kInput), listCard('Options', kOptions), listCard('Counts', kCounts), timeCard(),
-    listCard('Memory', kMemory), checkCard(), distanceCard(), surfaceCard(surfaceNames),
+    listCard('Memory', kMemory), report.isos ? isoCard() : checkCard(), distanceCard(), surfaceCard(),
     noteCard('Notes on the input', 'input.notes'), noteCard('Warnings', 'warnings'), noteCard('Notes on the output', 'notes'),
   ];
   document.getElementById('numbers').append(...cards.filter(Boolean));
 }
 
-function tile(label, value, ...more) {
+export function tile(label, value, ...more) {
   return value && element('li', {}, element('span', { class: 'label' }, label), element('strong', {}, value),
     element('span', { class: 'small' }, ...more));
 }
@@ -153,21 +175,29 @@ function stateTile(check) {
     shown('page.check.euler', 'count'));
 }
 
+function isoTile() {
+  const values = report.isos.flatMap((_, iso) => [...(iso > 0 ? [', '] : []), shown(`isos.${iso}.iso`, 'number')]);
+  return tile('Iso-values', element('span', {}, ...values), 'one pass over the volume');
+}
+
+const share = () => [shown('triangles / triangles_extracted', 'percent'), ' of ', shown('triangles_extracted', 'count')];
+
 export function fillTiles() {
   const { check, distance } = report.page;
+  const vertices = check ? [shown('page.check.vertices', 'count'), ' vertices'] : [];
+  const counts = report.triangles_extracted > 0 ? share() : vertices;
+  const digest = () => tile('Digest', shown('page.check.digest', 'code'), ...(report.digest === undefined ? []
+    : [report.digest === check.digest ? 'the run’s, and the file’s' : 'of the file: the run’s is another']));
   const tiles = [
-    tile('Triangles', shown('page.check.triangles', 'count'), ...(report.triangles_extracted > 0
-      ? [shown('triangles / triangles_extracted', 'percent'), ' of ', shown('triangles_extracted', 'count')]
-      : [shown('page.check.vertices', 'count'), ' vertices'])),
-    stateTile(check),
+    tile('Triangles', shown(check ? 'page.check.triangles' : 'triangles', 'count'), ...counts),
+    check ? stateTile(check) : isoTile(),
     tile('Error', shown('error', 'length'), ...(distance
       ? ['largest found ', shown('page.distance.max', 'length')] : [])),
     tile('Time', shown('seconds.total', 'seconds'), ...(report.threads
       ? ['on ', shown('threads', 'count'), report.threads === 1 ? ' thread' : ' threads'] : [])),
     tile('Peak memory', shown('memory.peak_bytes', 'bytes'), ...(valueAt('memory.predicted_bytes')
       ? ['predicted ', shown('memory.predicted_bytes', 'bytes')] : [])),
-    tile('Digest', shown('page.check.digest', 'code'), ...(report.digest === undefined ? []
-      : [report.digest === check.digest ? 'the run’s, and the file’s' : 'of the file: the run’s is another'])),
+    check ? digest() : tile('Digest', shown('digest', 'code'), 'of all surfaces'),
   ];
   document.getElementById('tiles').append(...tiles.filter(Boolean));
 }
@@ -178,13 +208,13 @@ export function fillNotes() {
   list.hidden = report.page.notes.length === 0;
 }
 
-const fileName = (path) => String(path ?? '').split('/').pop();
+export const fileName = (path) => String(path ?? '').split('/').pop();
 
 export function fillHeading() {
-  const title = fileName(report.output) || 'isoweave';
+  const title = fileName(report.output) || (report.isos && fileName(valueAt('input.path'))) || 'isoweave';
   document.title = `${title} – isoweave`;
   document.getElementById('title').textContent = title;
   const from = report.input ? `from ${fileName(report.input.path)}` : 'Mesh file';
-  document.getElementById('subtitle').textContent = from;
+  document.getElementById('subtitle').textContent = report.isos ? 'Surfaces of several iso-values' : from;
   document.getElementById('version').append(' ', shown('version') ?? '');
 }

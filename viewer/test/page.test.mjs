@@ -10,6 +10,10 @@ import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
+import {
+  expectFits, expectNumbersOf, kContrasts, kDesktop, kOtherDigits, kPhone, kSmall, picture, pressed, settled, visibleText,
+  visit,
+} from './pages.mjs';
 
 const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
@@ -17,9 +21,6 @@ if (findChromium() === undefined) {
   process.exit(77);
 }
 
-const kDesktop = { width: 1320, height: 900 };
-const kSmall = { width: 720, height: 600 }; // for pictures, which processors draw here
-const kPhone = { width: 390, height: 844, touch: true };
 const kVolume = '<img src=x onerror=alert(1)>.nrrd'; // what a page must not take for its own
 
 rmSync(folder, { recursive: true, force: true });
@@ -40,6 +41,10 @@ before(async () => {
   run('simplify', 'mesh.ply', '--triangles', '4000', '-o', 'small.stl', '--html', 'small.html', '--report', 'small.json', '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '-o', 'levels.ply', '--lods', '0.1vox,0.3vox,1vox', '--html', 'levels.html',
     '--report', 'levels.json', '--quiet');
+  run('generate', 'gyroid', '--size', '24', '-o', 'indexed.nrrd', '--quiet');
+  run('index', 'indexed.nrrd');
+  run('mesh', 'indexed.nrrd', '--iso', '0', '--extractor', 'dual', '-o', 'indexed.ply', '--html', 'indexed.html', '--report',
+    'indexed.json', '--quiet');
   run('view', 'mesh.ply', '--quiet');
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
   writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
@@ -48,82 +53,7 @@ before(async () => {
 });
 after(() => browser?.close());
 
-async function withPage(name, screen, act) {
-  const page = await browser.open(address(name), screen);
-  try {
-    await act(page);
-    assert.deepEqual(page.errors, []);
-    assert.deepEqual(page.requests.filter((url) => !url.startsWith('data:')), [address(name)]);
-  } finally {
-    await page.close();
-  }
-}
-
-const valueAt = (report, key) => key.split('.').reduce((value, part) => value?.[part], report);
-
-function expected(report, key) {
-  const [above, below] = key.split(' / ').map((part) => valueAt(report, part));
-  return below === undefined ? above : above / below;
-}
-
-// All elements that show a value of the report: what they say exactly, and what is to be read.
-const kShown = `[...document.querySelectorAll('[data-key]')].map((shown) =>
-  [shown.dataset.key, shown.dataset.value, shown.textContent, shown.dataset.format])`;
-
-async function expectNumbersOf(page, report, atLeast) {
-  await page.evaluate(`document.querySelectorAll('details').forEach((details) => { details.open = true; });
-    new Promise((resolve) => setTimeout(resolve, 50))`);
-  const shown = await page.evaluate(kShown);
-  assert.ok(shown.length >= atLeast, `${shown.length} values`);
-  for (const [key, exact, text, format] of shown) {
-    const value = expected(report, key);
-    assert.deepEqual(JSON.parse(exact), value, key);
-    if (typeof value === 'string') assert.equal(text, value === '' ? '–' : value, key);
-    if (typeof value !== 'number') continue;
-    // Counts to the last digit, the others as far as they are written.
-    const tolerance = format === 'count' ? 0 : Math.abs(value) * 0.005;
-    assert.ok(Math.abs(numberIn(text) - value) <= tolerance, `${key}: ${value} is shown as '${text}'`);
-  }
-  const shownKeys = new Set(shown.map(([key]) => key));
-  return (prefix) => [...shownKeys].filter((key) => key.startsWith(prefix)).length;
-}
-
-// Every number that is to be read on the page is one of the report's: digits outside of such elements are names.
-const kOtherDigits = `(() => {
-  const walker = document.createTreeWalker(document.querySelector('main'), NodeFilter.SHOW_TEXT);
-  const found = [];
-  while (walker.nextNode()) {
-    const { parentElement: parent, textContent: text } = walker.currentNode;
-    if (/[0-9]/.test(text) && !parent.closest('[data-key], kbd, script, .u-legend')) found.push(text.trim());
-  }
-  return found;
-})()`;
-
-// What an element says to those who see it.
-const visibleText = (page, id) => page.evaluate(`(() => {
-  const e = document.getElementById('${id}');
-  return e.offsetHeight > 0 ? e.innerText : '';
-})()`);
-
-// What is drawn: how much of the canvas, in how many colours, and a sum that changes with the picture.
-const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
-  view.drawNow();
-  const copy = document.createElement('canvas');
-  [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
-  const context = copy.getContext('2d');
-  context.drawImage(view.canvas, 0, 0);
-  const words = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
-  let sum = 0;
-  let covered = 0;
-  for (const word of words) {
-    sum = (Math.imul(sum, 31) + word) | 0;
-    if (word !== 0) covered += 1;
-  }
-  return { sum, covered: covered / words.length, colours: new Set(words).size };
-})`);
-
-const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
-const settled = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
+const withPage = (name, screen, act) => visit(browser, address(name), screen, act);
 
 describe('numbers', () => {
   test('of a run on a volume are those of its report', () => withPage('mesh.html', kDesktop, async (page) => {
@@ -134,6 +64,22 @@ describe('numbers', () => {
       ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
     assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
   }));
+
+  const row = (page, label) => page.evaluate(`[...document.querySelectorAll('dt')]
+    .filter((e) => e.innerText === '${label}').map((e) => e.nextElementSibling.innerText).join()`);
+  test('come with the extractor, and the index where there was one', async () => {
+    await withPage('mesh.html', kDesktop, async (page) => {
+      assert.equal(await row(page, 'Extractor'), 'cubes');
+      assert.equal(await row(page, 'Index'), 'none');
+    });
+    await withPage('indexed.html', kDesktop, async (page) => {
+      const { index } = json('indexed.json');
+      assert.equal(await row(page, 'Extractor'), 'dual');
+      assert.equal(await row(page, 'Index'), index.path);
+      assert.equal(numberIn(await row(page, 'Chunks left out by the index')), index.chunks_left_out);
+    });
+    await withPage('mesh.ply.html', kDesktop, async (page) => assert.equal(await row(page, 'Index'), '', 'no run'));
+  });
 
   test('of the plots are those of the report', () => withPage('mesh.html', kDesktop, async (page) => {
     const { sweep, page: { distance } } = json('mesh.json');
@@ -325,22 +271,6 @@ describe('the view', () => {
   });
 });
 
-// The ratio that the Web Content Accessibility Guidelines ask for.
-const kContrasts = `(() => {
-  const style = getComputedStyle(document.documentElement);
-  const light = (name) => {
-    const hex = style.getPropertyValue('--' + name).trim().slice(1);
-    const [r, g, b] = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255)
-      .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  };
-  return [['ink', 'back'], ['ink', 'card'], ['ink', 'accent-soft'], ['muted', 'back'], ['muted', 'card'], ['muted', 'stage-low'],
-    ['muted', 'stage-high'], ['accent', 'card'], ['accent', 'accent-soft'], ['bad', 'card']].map(([a, b]) => {
-    const [low, high] = [light(a), light(b)].sort((x, y) => x - y);
-    return [a + ' on ' + b, (high + 0.05) / (low + 0.05)];
-  });
-})()`;
-
 describe('looks', () => {
   for (const dark of [false, true]) {
     test(`${dark ? 'dark' : 'light'}: text stands out, the button turns it over`, () =>
@@ -360,16 +290,7 @@ describe('looks', () => {
     test(`nothing sticks out of ${width} pixels and of its card`, async () => {
       for (const name of ['mesh.html', 'view.html', 'mesh.ply.html', 'empty.html']) {
         await withPage(name, { ...kPhone, width }, async (page) => {
-          assert.equal(await page.evaluate('document.documentElement.scrollWidth'), width, name);
-          const wide = await page.evaluate(`[...document.querySelectorAll('main *, header *')].filter((e) =>
-            !e.closest('.scroll, .u-wrap') && e.getBoundingClientRect().right > ${width} + 0.5).map((e) => e.outerHTML.slice(0, 80))`);
-          assert.deepEqual(wide, [], name);
-          const cards = await page.evaluate(`[...document.querySelectorAll('.card, .tiles li')].filter((card) => {
-            const inside = card.getBoundingClientRect().right - parseFloat(getComputedStyle(card).paddingRight);
-            return [...card.querySelectorAll('dl, table, span')].some((e) =>
-              !e.closest('.u-wrap') && e.getBoundingClientRect().right > inside + 1);
-          }).map((card) => card.innerText.slice(0, 20))`);
-          assert.deepEqual(cards, [], name);
+          await expectFits(page, width, name);
         });
       }
     });

@@ -1,5 +1,6 @@
 // GLB and glTF. The mesh of isoweave's own files is taken as stored, since their extras tell what the nodes do to it.
 // Of other files, all meshes of the scene are taken where its nodes place them.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -70,10 +71,13 @@ class SceneReader {
     MeshPlace place;
     place.take("UNIT", extras.value("unit", ""));
     place.take("SPACE", extras.value("space", ""));
-    if (file_.scene().contains("meshes")) {
-      add_primitive(file_.scene().at("meshes").at(0).at("primitives").at(0), Placement{}, nullptr);
-    }
+    const std::vector<GltfValue> meshes = own_meshes();
+    for (const GltfValue& mesh : meshes) add_primitive(mesh.at("primitives").at(0), Placement{}, nullptr);
     check_normals();
+    if (meshes.size() > 1) {
+      mesh_.mesh().notes.push_back(std::to_string(meshes.size()) +
+                                   " parts are joined, without their names and colours");
+    }
     TriangleMesh mesh = mesh_.finish(place);
     if (!extras.contains("offset")) return mesh;
     mesh.offset = numbers<3>(extras, "offset");
@@ -82,6 +86,14 @@ class SceneReader {
       input_.fail("expected an offset that is finite in 32 bits, found another");
     }
     return mesh;
+  }
+
+  // The meshes of one of isoweave's own files: of several levels the finest, else all of them.
+  std::vector<GltfValue> own_meshes() const {
+    const GltfValue meshes = file_.scene().value("meshes", GltfValue::array());
+    const GltfValue used = file_.scene().value("extensionsUsed", GltfValue::array());
+    const bool levels = std::ranges::find(used, GltfValue("MSFT_lod")) != used.end();
+    return {meshes.begin(), levels && !meshes.empty() ? meshes.begin() + 1 : meshes.end()};
   }
 
   TriangleMesh read_scene() {

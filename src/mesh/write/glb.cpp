@@ -4,9 +4,9 @@
 
 #include "isoweave/error.hpp"
 #include "mesh/write/glb_scene.hpp"
+#include "mesh/write/joined_meshes.hpp"
 #include "mesh/write/mesh_file_sink.hpp"
 #include "mesh/write/mesh_format.hpp"
-#include "mesh/write/mesh_levels.hpp"
 
 namespace isoweave {
 namespace {
@@ -21,10 +21,9 @@ struct Counts {
 // Numbers of a viewed float are those of the float: its double has the same value.
 std::array<double, 3> as_doubles(const Point& point) { return {point[0], point[1], point[2]}; }
 
-// Adds a mesh of so many vertices and triangles, whose data begin at byte `end` of the BIN chunk, and moves `end`
-// behind them.
-void add_mesh(GltfJson& json, const std::string& path, bool normals, const Counts& counts, const Bounds& bounds,
-              std::uint64_t& end) {
+// Adds the mesh of a material, with so many vertices and triangles, whose data begin at byte `end` of the BIN chunk.
+// Returns the primitive, and moves `end` behind the data.
+GltfJson add_arrays(GltfJson& json, bool normals, const Counts& counts, const Bounds& bounds, std::uint64_t& end) {
   const auto add = [&](std::uint64_t bytes, int target, GltfJson accessor) {
     json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", end}, {"byteLength", bytes}, {"target", target}});
     accessor["bufferView"] = json["bufferViews"].size() - 1;
@@ -50,7 +49,7 @@ void add_mesh(GltfJson& json, const std::string& path, bool normals, const Count
   } else {
     primitive["mode"] = kGltfPoints;
   }
-  json["meshes"].push_back(gltf_mesh(path, std::move(primitive)));
+  return primitive;
 }
 
 std::string scene_text(const std::string& path, const MeshFileOptions& options, const Counts& counts,
@@ -58,7 +57,7 @@ std::string scene_text(const std::string& path, const MeshFileOptions& options, 
   if (counts.vertices == 0) return gltf_text(gltf_empty_scene(options));
   GltfJson json = gltf_scene(options);
   std::uint64_t end = 0;
-  add_mesh(json, path, options.normals, counts, bounds, end);
+  json["meshes"] = {gltf_mesh(gltf_name(path), 0, add_arrays(json, options.normals, counts, bounds, end))};
   json["buffers"] = {{{"byteLength", end}}};
   return gltf_text(json);
 }
@@ -129,39 +128,48 @@ class GlbSink final : public MeshFileSink {
   std::vector<std::byte> records_;
 };
 
-// Levels of detail, each with a mesh of its own in the one chunk of data.
-class GlbLevels final : public LevelFile {
+// Several meshes with their data one after another in the one chunk.
+class GlbJoined : public JoinedFile {
  public:
-  GlbLevels(const std::string& path, std::span<const MeshFileOptions> levels) : LevelFile(path, levels), file_(path) {
-    for (const LevelParts& level : this->levels()) bytes_ += data_bytes(level.vertices(), level.triangles());
+  GlbJoined(const std::string& path, std::span<const MeshFileOptions> meshes) : JoinedFile(path, meshes), file_(path) {
+    for (const JoinedMesh& mesh : this->meshes()) bytes_ += data_bytes(mesh.vertices(), mesh.triangles());
   }
 
-  void check_room(const LevelParts&, std::uint64_t vertices, std::uint64_t triangles) override {
+  void check_room(const JoinedMesh&, std::uint64_t vertices, std::uint64_t triangles) override {
     const std::uint64_t more = data_bytes(vertices, triangles);
     check_glb_fits(path(), 0, 0, false, bytes_.fetch_add(more, std::memory_order_relaxed) + more);
   }
+
+ protected:
+  // The scene around the contents of a node for each mesh.
+  virtual GltfJson scene(std::vector<GltfJson> nodes) = 0;
+
+  // The name and the number of the material of a mesh.
+  virtual std::pair<std::string, std::size_t> look_of(std::size_t mesh) const = 0;
+
+  // Whether the file shows nothing.
+  virtual bool is_empty() = 0;
 
  private:
   std::uint64_t data_bytes(std::uint64_t vertices, std::uint64_t triangles) {
     return vertices * kPointBytes * (options().normals ? 2 : 1) + triangles * kTriangleBytes;
   }
 
-  // A level that has vanished is a node without a mesh.
-  GltfJson scene(std::uint64_t& end) {
-    if (levels().front().vertices() == 0) return gltf_empty_scene(options());
-    std::vector<MeshFileOptions> level_options;
-    std::vector<GltfJson> nodes;
-    std::size_t meshes = 0;
-    for (const LevelParts& level : levels()) {
-      level_options.push_back(level.options());
-      nodes.push_back(GltfJson::object());
-      if (level.vertices() > 0) nodes.back()["mesh"] = meshes++;
-      if (has_offset(level.options())) nodes.back()["translation"] = level.options().offset;
+  // A mesh without vertices is a node alone, as glTF has no empty meshes.
+  GltfJson whole_scene(std::uint64_t& end) {
+    if (is_empty()) return gltf_empty_scene(options());
+    std::vector<GltfJson> nodes(meshes().size(), GltfJson::object());
+    std::size_t numbered = 0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (mesh(n).vertices() > 0) nodes[n]["mesh"] = numbered++;
     }
-    GltfJson json = gltf_levels(level_options, std::move(nodes));
-    for (const LevelParts& level : levels()) {
-      if (level.vertices() == 0) continue;
-      add_mesh(json, path(), options().normals, {level.vertices(), level.triangles()}, level.bounds(), end);
+    GltfJson json = scene(std::move(nodes));
+    for (std::size_t n = 0; n < meshes().size(); ++n) {
+      if (mesh(n).vertices() == 0) continue;
+      const auto [name, material] = look_of(n);
+      const Counts counts{mesh(n).vertices(), mesh(n).triangles()};
+      GltfJson primitive = add_arrays(json, options().normals, counts, mesh(n).bounds(), end);
+      json["meshes"].push_back(gltf_mesh(name, material, std::move(primitive)));
     }
     json["buffers"] = {{{"byteLength", end}}};
     return json;
@@ -169,13 +177,13 @@ class GlbLevels final : public LevelFile {
 
   void write() override {
     std::uint64_t data = 0;
-    const std::string text = gltf_text(scene(data));
+    const std::string text = gltf_text(whole_scene(data));
     const std::uint64_t json_bytes = (text.size() + 3) / 4 * 4;
     const std::uint64_t total = kGlbHeaderBytes + json_bytes + (data > 0 ? kGlbChunkHeaderBytes + data : 0);
     check_glb_fits(path(), 0, 0, false, total);
     file_.write(glb_begin(text, json_bytes, total));
     if (data > 0) file_.write(glb_chunk(data));
-    for (LevelParts& level : levels()) level.append_to(file_);
+    for (JoinedMesh& mesh : meshes()) mesh.append_to(file_);
     if (file_.size() != total) throw CannotWrite(path() + ": its counts and its size differ");
     file_.commit();
   }
@@ -184,10 +192,53 @@ class GlbLevels final : public LevelFile {
   std::atomic<std::uint64_t> bytes_{0};  // of the chunk of data
 };
 
+// Levels of detail. One that has vanished is a node without a mesh.
+class GlbLevels final : public GlbJoined {
+ public:
+  using GlbJoined::GlbJoined;
+
+ private:
+  bool is_empty() override { return mesh(0).vertices() == 0; }
+
+  std::pair<std::string, std::size_t> look_of(std::size_t) const override { return {gltf_name(path()), 0}; }
+
+  GltfJson scene(std::vector<GltfJson> nodes) override {
+    std::vector<MeshFileOptions> options;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      options.push_back(mesh(n).options());
+      if (has_offset(options.back())) nodes[n]["translation"] = options.back().offset;
+    }
+    return gltf_levels(options, std::move(nodes));
+  }
+};
+
+class GlbParts final : public GlbJoined {
+ public:
+  GlbParts(const std::string& path, std::span<const MeshPart> parts)
+      : GlbJoined(path, options_of(parts)), parts_(parts.begin(), parts.end()) {}
+
+ private:
+  bool is_empty() override { return corners().empty(); }
+
+  std::pair<std::string, std::size_t> look_of(std::size_t mesh) const override { return {parts_[mesh].name, mesh}; }
+
+  GltfJson scene(std::vector<GltfJson> nodes) override {
+    GltfJson placed;
+    if (has_offset(options())) placed["translation"] = options().offset;
+    return gltf_parts(path(), parts_, std::move(nodes), std::move(placed));
+  }
+
+  std::vector<MeshPart> parts_;
+};
+
 }  // namespace
 
-std::unique_ptr<LevelFile> open_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
+std::unique_ptr<JoinedFile> open_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
   return std::make_unique<GlbLevels>(path, levels);
+}
+
+std::unique_ptr<JoinedFile> open_glb_parts(const std::string& path, std::span<const MeshPart> parts) {
+  return std::make_unique<GlbParts>(path, parts);
 }
 
 std::unique_ptr<MeshSink> open_glb(const MeshTarget& target, const MeshFileOptions& options) {

@@ -6,8 +6,8 @@
 
 #include "isoweave/error.hpp"
 #include "mesh/write/glb_scene.hpp"
+#include "mesh/write/joined_meshes.hpp"
 #include "mesh/write/mesh_format.hpp"
-#include "mesh/write/mesh_levels.hpp"
 #include "mesh/write/whole_mesh_sink.hpp"
 
 namespace isoweave {
@@ -66,8 +66,8 @@ class PackedScene {
  public:
   explicit PackedScene(std::string path) : path_(std::move(path)) {}
 
-  // Adds positions, normals if there are any, and indices. Returns the number of the mesh.
-  std::size_t add(TriangleMesh mesh, const Grid16& grid) {
+  // Adds a mesh of a name and a material: positions, normals if there are any, and indices. Returns its number.
+  std::size_t add(TriangleMesh mesh, const Grid16& grid, const std::string& name, std::size_t material) {
     std::vector<std::uint32_t> indices(mesh.triangles.size() * 3);
     meshopt_optimizeVertexCache(indices.data(), mesh.triangles.front().data(), indices.size(), mesh.vertices.size());
     mesh.triangles = {};
@@ -104,7 +104,7 @@ class PackedScene {
     }
     const std::size_t corners = add_array(
         pack_indices(indices, used), {{"componentType", kGltfUint32}, {"count", indices.size()}, {"type", "SCALAR"}});
-    meshes_.push_back(gltf_mesh(path_, {{"attributes", attributes}, {"indices", corners}}));
+    meshes_.push_back(gltf_mesh(name, material, {{"attributes", attributes}, {"indices", corners}}));
     return meshes_.size() - 1;
   }
 
@@ -157,11 +157,18 @@ class PackedScene {
   std::size_t plain_ = 0;
 };
 
-// A node that places a mesh in whole steps.
-GltfJson placed_node(std::size_t mesh, const Grid16& grid, const std::array<double, 3>& offset) {
+// A node that places what is in whole steps.
+GltfJson grid_node(const Grid16& grid, const std::array<double, 3>& offset) {
   std::array<double, 3> place = grid.origin;
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += offset[axis];
-  return {{"mesh", mesh}, {"translation", place}, {"scale", {grid.step, grid.step, grid.step}}};
+  return {{"translation", place}, {"scale", {grid.step, grid.step, grid.step}}};
+}
+
+// A node that places a mesh in whole steps.
+GltfJson placed_node(std::size_t mesh, const Grid16& grid, const std::array<double, 3>& offset) {
+  GltfJson node{{"mesh", mesh}};
+  node.update(grid_node(grid, offset));
+  return node;
 }
 
 // Adds the extensions that a viewer needs to read the file.
@@ -183,7 +190,7 @@ class PackedGlbSink final : public WholeMeshSink {
     if (mesh.triangles.empty()) return scene.write(gltf_empty_scene(options()), file());
     const Grid16 grid = Grid16::around(mesh.vertices);
     note(rounding_note(path(), grid, options().unit));
-    const std::size_t number = scene.add(std::move(mesh), grid);
+    const std::size_t number = scene.add(std::move(mesh), grid, gltf_name(path()), 0);
     GltfJson json = gltf_scene(options(), placed_node(number, grid, options().offset));
     add_requirements(json, grid.error());
     scene.write(std::move(json), file());
@@ -191,12 +198,12 @@ class PackedGlbSink final : public WholeMeshSink {
 };
 
 // Levels of detail, each in steps of its own.
-class PackedGlbLevels final : public LevelFile {
+class PackedGlbLevels final : public JoinedFile {
  public:
   PackedGlbLevels(const std::string& path, std::span<const MeshFileOptions> levels)
-      : LevelFile(path, levels), file_(path) {}
+      : JoinedFile(path, levels), file_(path) {}
 
-  void check_room(const LevelParts& level, std::uint64_t vertices, std::uint64_t triangles) override {
+  void check_room(const JoinedMesh& level, std::uint64_t vertices, std::uint64_t triangles) override {
     check_count_fits(path(), "vertices", level.vertices(), vertices);
     check_count_fits(path(), "triangles", level.triangles(), triangles, kMostPackedTriangles);
   }
@@ -208,14 +215,14 @@ class PackedGlbLevels final : public LevelFile {
     std::vector<GltfJson> nodes;
     Grid16 coarsest;
     coarsest.step = 0;
-    for (LevelParts& level : levels()) {
+    for (JoinedMesh& level : meshes()) {
       level_options.push_back(level.options());
       nodes.push_back(GltfJson::object());
       if (level.triangles() == 0) continue;
       TriangleMesh mesh = level.load();
       const Grid16 grid = Grid16::around(mesh.vertices);
       if (grid.step > coarsest.step) coarsest = grid;
-      nodes.back() = placed_node(scene.add(std::move(mesh), grid), grid, level.options().offset);
+      nodes.back() = placed_node(scene.add(std::move(mesh), grid, gltf_name(path()), 0), grid, level.options().offset);
     }
     GltfJson json = gltf_empty_scene(options());
     if (coarsest.step > 0) {
@@ -230,9 +237,49 @@ class PackedGlbLevels final : public LevelFile {
   AtomicFile file_;
 };
 
+// Named parts, all in steps of one grid, so that neighbours that touch still do.
+class PackedGlbParts final : public JoinedFile {
+ public:
+  PackedGlbParts(const std::string& path, std::span<const MeshPart> parts)
+      : JoinedFile(path, options_of(parts)), parts_(parts.begin(), parts.end()), file_(path) {}
+
+  void check_room(const JoinedMesh& part, std::uint64_t vertices, std::uint64_t triangles) override {
+    check_count_fits(path(), "vertices", part.vertices(), vertices);
+    check_count_fits(path(), "triangles", part.triangles(), triangles, kMostPackedTriangles);
+  }
+
+ private:
+  void write() override {
+    PackedScene scene(path());
+    const Grid16 grid = Grid16::around(corners());
+    std::vector<GltfJson> nodes(parts_.size(), GltfJson::object());
+    bool is_empty = true;
+    for (std::size_t n = 0; n < parts_.size(); ++n) {
+      if (mesh(n).triangles() == 0) continue;
+      nodes[n]["mesh"] = scene.add(mesh(n).load(), grid, parts_[n].name, n);
+      is_empty = false;
+    }
+    GltfJson json = gltf_empty_scene(options());
+    if (!is_empty) {
+      note(rounding_note(path(), grid, options().unit));
+      json = gltf_parts(path(), parts_, std::move(nodes), grid_node(grid, options().offset));
+      add_requirements(json, grid.error());
+    }
+    scene.write(std::move(json), file_.descriptor());
+    file_.commit();
+  }
+
+  std::vector<MeshPart> parts_;
+  AtomicFile file_;
+};
+
 }  // namespace
 
-std::unique_ptr<LevelFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
+std::unique_ptr<JoinedFile> open_packed_glb_parts(const std::string& path, std::span<const MeshPart> parts) {
+  return std::make_unique<PackedGlbParts>(path, parts);
+}
+
+std::unique_ptr<JoinedFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions> levels) {
   return std::make_unique<PackedGlbLevels>(path, levels);
 }
 

@@ -23,21 +23,34 @@ std::array<double, 4> turn_to_y_up(const std::string& space) {
   return {-half, 0, 0, half};
 }
 
-// Bone, as in pictures by render; linear, as glTF wants it.
-GltfJson gltf_material() {
+// Without a material a surface is of metal, which is dark in most lights. The colour is linear, as glTF wants it.
+GltfJson gltf_material(const std::string& name, const std::array<double, 4>& linear) {
   GltfJson surface;
-  surface["baseColorFactor"] = {0.73, 0.61, 0.456, 1.0};
+  surface["baseColorFactor"] = linear;
   surface["metallicFactor"] = 0.0;
   surface["roughnessFactor"] = 0.8;
-  return {{"name", "surface"}, {"pbrMetallicRoughness", surface}};
+  GltfJson material{{"name", name}, {"pbrMetallicRoughness", surface}};
+  if (linear[3] < 1) material["alphaMode"] = "BLEND";
+  return material;
+}
+
+// sRGB as a linear number (IEC 61966-2-1).
+double linear_of(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+GltfJson material_of(const MeshPart& part) {
+  const auto [red, green, blue, opacity] = part.color;
+  return gltf_material(part.name, {linear_of(red), linear_of(green), linear_of(blue), opacity});
 }
 
 }  // namespace
 
-GltfJson gltf_mesh(const std::string& path, GltfJson primitive) {
-  primitive["material"] = 0;
-  const std::filesystem::path file(path);
-  return {{"name", file.stem().string()}, {"primitives", GltfJson::array({std::move(primitive)})}};
+std::string gltf_name(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+GltfJson gltf_mesh(const std::string& name, std::size_t material, GltfJson primitive) {
+  primitive["material"] = material;
+  return {{"name", name}, {"primitives", GltfJson::array({std::move(primitive)})}};
 }
 
 void Bounds::add(std::span<const Point> points) {
@@ -72,8 +85,8 @@ GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed) {
   extras["unit"] = options.unit;
   extras["space"] = options.space;
   if (has_offset(options)) extras["offset"] = options.offset;
-  // Without a material a surface is of metal, which is dark in most lights.
-  json["materials"] = GltfJson::array({gltf_material()});
+  // Bone, as in pictures by render.
+  json["materials"] = GltfJson::array({gltf_material("surface", {0.73, 0.61, 0.456, 1.0})});
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   GltfJson root{{"rotation", turn_to_y_up(options.space)}};
@@ -113,6 +126,29 @@ GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<Gl
   for (GltfJson& node : levels) json["nodes"].push_back(std::move(node));
   for (GltfJson& node : placed) json["nodes"].push_back(std::move(node));
   if (levels.size() > 1) json["extensionsUsed"] = {"MSFT_lod"};
+  return json;
+}
+
+GltfJson gltf_parts(const std::string& path, std::span<const MeshPart> parts, std::vector<GltfJson> nodes,
+                    GltfJson placed) {
+  GltfJson json = gltf_scene(parts.front().options, GltfJson::object());
+  json["asset"]["extras"].erase("comments");  // each part has its own
+  GltfJson root = std::move(json["nodes"][0]);
+  root["name"] = gltf_name(path);
+  json["nodes"] = GltfJson::array();
+  json["materials"] = GltfJson::array();
+  const std::size_t first = placed.is_null() ? 1 : 2;
+  GltfJson children = GltfJson::array();
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    nodes[n]["name"] = parts[n].name;
+    nodes[n]["extras"]["comments"] = parts[n].options.comments;
+    json["materials"].push_back(material_of(parts[n]));
+    children.push_back(first + n);
+  }
+  (placed.is_null() ? root : placed)["children"] = std::move(children);
+  json["nodes"].push_back(std::move(root));
+  if (!placed.is_null()) json["nodes"].push_back(std::move(placed));
+  for (GltfJson& node : nodes) json["nodes"].push_back(std::move(node));
   return json;
 }
 

@@ -48,13 +48,21 @@ inline Point gltf_normal(const Point& normal) { return normal == Point{0, 0, 0} 
 // holds it, if that is given.
 GltfJson gltf_scene(const MeshFileOptions& options, const GltfJson& placed = nullptr);
 
-// A mesh by the name of its file, of our material.
-GltfJson gltf_mesh(const std::string& path, GltfJson primitive);
+// The name that a mesh has by its file.
+std::string gltf_name(const std::string& path);
+
+// A mesh of one of the scene's materials.
+GltfJson gltf_mesh(const std::string& name, std::size_t material, GltfJson primitive);
 
 // The scene of several levels of detail (MSFT_lod), finest first: `levels` are the contents of their nodes. A viewer
 // that does not know the extension shows the finest level only. Each level turns and scales by itself: importers that
 // take all nodes see all levels in the same size.
 GltfJson gltf_levels(const std::vector<MeshFileOptions>& options, std::vector<GltfJson> levels);
+
+// The scene of named parts: `nodes` are the contents of their nodes. `placed` is a node between the root and the parts
+// that places all of them, or null. Part n has material n.
+GltfJson gltf_parts(const std::string& path, std::span<const MeshPart> parts, std::vector<GltfJson> nodes,
+                    GltfJson placed);
 
 // The scene of a mesh without triangles: glTF has no empty meshes, nor scenes with an empty list of nodes.
 GltfJson gltf_empty_scene(const MeshFileOptions& options);

@@ -100,7 +100,7 @@ void MeshFileSink::open_file() {
       if (!options_.parts.empty()) throw std::invalid_argument(path() + ": a stream cannot be continued later");
       stream_.emplace(open_side_scratch(), path());
       break;
-    case MeshTarget::Kind::kLevel:
+    case MeshTarget::Kind::kJoined:
       break;
   }
 }
@@ -130,7 +130,7 @@ PartFile MeshFileSink::part(const std::string& name) {
 int MeshFileSink::open_side_scratch() const {
   switch (target_.kind) {
     case MeshTarget::Kind::kFolder:
-    case MeshTarget::Kind::kLevel:
+    case MeshTarget::Kind::kJoined:
       return open_scratch_in(folder_of(without_slashes(path())), path());
     case MeshTarget::Kind::kStream:
       return open_scratch_in(temporary_folder(), path());

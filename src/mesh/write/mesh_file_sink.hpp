@@ -22,7 +22,7 @@ using Triangle64 = std::array<std::uint64_t, 3>;
 
 // The target of a finished mesh.
 struct MeshTarget {
-  enum class Kind { kFile, kFolder, kStream, kLevel };  // kLevel: a part of a file that others write as well
+  enum class Kind { kFile, kFolder, kStream, kJoined };  // kJoined: a mesh of a file that others write as well
 
   std::string path;  // as the user gave it; what stands for a stream in messages
   Kind kind = Kind::kFile;

@@ -1,7 +1,7 @@
 // Stands in for the writers whose libraries the build lacks: an error that says which option brings them in.
 #include "isoweave/error.hpp"
+#include "mesh/write/joined_meshes.hpp"
 #include "mesh/write/mesh_file_sink.hpp"
-#include "mesh/write/mesh_levels.hpp"
 
 namespace isoweave {
 namespace {
@@ -20,7 +20,11 @@ std::unique_ptr<MeshSink> open_packed_glb(const MeshTarget& target, const MeshFi
   not_built(target.path, "meshoptimizer", "ISOWEAVE_MESHOPTIMIZER");
 }
 
-std::unique_ptr<LevelFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions>) {
+std::unique_ptr<JoinedFile> open_packed_glb_levels(const std::string& path, std::span<const MeshFileOptions>) {
+  not_built(path, "meshoptimizer", "ISOWEAVE_MESHOPTIMIZER");
+}
+
+std::unique_ptr<JoinedFile> open_packed_glb_parts(const std::string& path, std::span<const MeshPart>) {
   not_built(path, "meshoptimizer", "ISOWEAVE_MESHOPTIMIZER");
 }
 #endif
@@ -30,7 +34,7 @@ std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, cons
   not_built(target.path, "Draco", "ISOWEAVE_DRACO");
 }
 
-std::unique_ptr<LevelFile> open_packed_precomputed_levels(const std::string& path, std::span<const MeshFileOptions>) {
+std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& path, std::span<const MeshFileOptions>) {
   not_built(path, "Draco", "ISOWEAVE_DRACO");
 }
 #endif

@@ -11,8 +11,8 @@
 #include "files/length_units.hpp"
 #include "isoweave/error.hpp"
 #include "lattice/triangles.hpp"
+#include "mesh/write/joined_meshes.hpp"
 #include "mesh/write/mesh_format.hpp"
-#include "mesh/write/mesh_levels.hpp"
 #include "mesh/write/whole_mesh_sink.hpp"
 
 namespace isoweave {
@@ -128,14 +128,14 @@ class PackedPrecomputedSink final : public WholeMeshSink {
 // Levels of detail. The cells of each level are twice as wide as those of the one before, and the mesh is in the first
 // eighth of its cell: coarser levels are rounded to steps twice as long each time. Half a step of the first ones is
 // left free, so that no coordinate of the next level is beyond that eighth.
-class PackedPrecomputedLevels final : public LevelFile {
+class PackedPrecomputedLevels final : public JoinedFile {
  public:
   PackedPrecomputedLevels(const std::string& path, const std::vector<MeshFileOptions>& levels)
-      : LevelFile(path, levels) {
+      : JoinedFile(path, levels) {
     AtomicFolder::check_free(path);
   }
 
-  void check_room(const LevelParts& level, std::uint64_t vertices, std::uint64_t triangles) override {
+  void check_room(const JoinedMesh& level, std::uint64_t vertices, std::uint64_t triangles) override {
     check_count_fits(path(), "vertices", level.vertices(), vertices);
     check_count_fits(path(), "triangles", level.triangles(), triangles, kMostPackedTriangles);
   }
@@ -143,13 +143,7 @@ class PackedPrecomputedLevels final : public LevelFile {
  private:
   // A grid around all levels.
   Grid16 grid() {
-    std::vector<Point> corners;
-    for (const LevelParts& level : levels()) {
-      if (level.vertices() == 0) continue;
-      corners.push_back(level.bounds().low);
-      corners.push_back(level.bounds().high);
-    }
-    Grid16 grid = Grid16::around(corners);
+    Grid16 grid = Grid16::around(corners());
     grid.step *= kSteps / (kSteps - 1);
     return grid;
   }
@@ -159,7 +153,7 @@ class PackedPrecomputedLevels final : public LevelFile {
     const Grid16 finest = grid();
     std::vector<PackedLevel> packed;
     Grid16 grid = finest;
-    for (LevelParts& level : levels()) {
+    for (JoinedMesh& level : meshes()) {
       if (level.triangles() == 0) break;  // as are all that follow
       if (!packed.empty()) grid.step *= 2;
       TriangleMesh mesh = level.load();
@@ -191,8 +185,8 @@ class PackedPrecomputedLevels final : public LevelFile {
 
 }  // namespace
 
-std::unique_ptr<LevelFile> open_packed_precomputed_levels(const std::string& path,
-                                                          std::span<const MeshFileOptions> levels) {
+std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& path,
+                                                           std::span<const MeshFileOptions> levels) {
   std::vector<MeshFileOptions> plain;
   for (const MeshFileOptions& options : levels) plain.push_back(without_normals(options));
   return std::make_unique<PackedPrecomputedLevels>(path, plain);

@@ -1,0 +1,115 @@
+// What the tests of several pages share: loading, comparing every number with the report, looking at pictures.
+import assert from 'node:assert/strict';
+import { numberIn } from './numbers.mjs';
+
+export const kDesktop = { width: 1320, height: 900 };
+export const kSmall = { width: 720, height: 600 }; // for pictures, which processors draw here
+export const kPhone = { width: 390, height: 844, touch: true };
+
+// Loads a page, acts on it, and makes sure that it has asked for nothing else and has no errors.
+export async function visit(browser, address, screen, act) {
+  const page = await browser.open(address, screen);
+  try {
+    await act(page);
+    assert.deepEqual(page.errors, []);
+    assert.deepEqual(page.requests.filter((url) => !url.startsWith('data:')), [address]);
+  } finally {
+    await page.close();
+  }
+}
+
+const valueAt = (report, key) => key.split('.').reduce((value, part) => value?.[part], report);
+
+function expected(report, key) {
+  const [above, below] = key.split(' / ').map((part) => valueAt(report, part));
+  return below === undefined ? above : above / below;
+}
+
+// All elements that show a value of the report: what they say exactly, and what is to be read.
+const kShown = `[...document.querySelectorAll('[data-key]')].map((shown) =>
+  [shown.dataset.key, shown.dataset.value, shown.textContent, shown.dataset.format])`;
+
+export async function expectNumbersOf(page, report, atLeast) {
+  await page.evaluate(`document.querySelectorAll('details').forEach((details) => { details.open = true; });
+    new Promise((resolve) => setTimeout(resolve, 50))`);
+  const shown = await page.evaluate(kShown);
+  assert.ok(shown.length >= atLeast, `${shown.length} values`);
+  for (const [key, exact, text, format] of shown) {
+    const value = expected(report, key);
+    assert.deepEqual(JSON.parse(exact), value, key);
+    if (typeof value === 'string') assert.equal(text, value === '' ? '–' : value, key);
+    if (typeof value !== 'number') continue;
+    // Counts to the last digit, the others as far as they are written.
+    const tolerance = format === 'count' ? 0 : Math.abs(value) * 0.005;
+    assert.ok(Math.abs(numberIn(text) - value) <= tolerance, `${key}: ${value} is shown as '${text}'`);
+  }
+  const shownKeys = new Set(shown.map(([key]) => key));
+  return (prefix) => [...shownKeys].filter((key) => key.startsWith(prefix)).length;
+}
+
+// Every number that is to be read on the page is one of the report's: digits outside of such elements are names.
+export const kOtherDigits = `(() => {
+  const walker = document.createTreeWalker(document.querySelector('main'), NodeFilter.SHOW_TEXT);
+  const found = [];
+  while (walker.nextNode()) {
+    const { parentElement: parent, textContent: text } = walker.currentNode;
+    if (/[0-9]/.test(text) && !parent.closest('[data-key], kbd, script, .u-legend')) found.push(text.trim());
+  }
+  return found;
+})()`;
+
+// What an element says to those who see it.
+export const visibleText = (page, id) => page.evaluate(`(() => {
+  const e = document.getElementById('${id}');
+  return e.offsetHeight > 0 ? e.innerText : '';
+})()`);
+
+// What is drawn: how much of the canvas, in how many colours, and a sum that changes with the picture.
+export const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
+  view.drawNow();
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+  const context = copy.getContext('2d');
+  context.drawImage(view.canvas, 0, 0);
+  const words = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+  let sum = 0;
+  let covered = 0;
+  for (const word of words) {
+    sum = (Math.imul(sum, 31) + word) | 0;
+    if (word !== 0) covered += 1;
+  }
+  return { sum, covered: covered / words.length, colours: new Set(words).size };
+})`);
+
+export const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
+export const settled = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
+
+// The ratio that the Web Content Accessibility Guidelines ask for.
+export const kContrasts = `(() => {
+  const style = getComputedStyle(document.documentElement);
+  const light = (name) => {
+    const hex = style.getPropertyValue('--' + name).trim().slice(1);
+    const [r, g, b] = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255)
+      .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  return [['ink', 'back'], ['ink', 'card'], ['ink', 'accent-soft'], ['muted', 'back'], ['muted', 'card'], ['muted', 'stage-low'],
+    ['muted', 'stage-high'], ['accent', 'card'], ['accent', 'accent-soft'], ['bad', 'card']].map(([a, b]) => {
+    const [low, high] = [light(a), light(b)].sort((x, y) => x - y);
+    return [a + ' on ' + b, (high + 0.05) / (low + 0.05)];
+  });
+})()`;
+
+// Nothing sticks out of the screen and of its card.
+export async function expectFits(page, width, name) {
+  assert.equal(await page.evaluate('document.documentElement.scrollWidth'), width, name);
+  const wide = await page.evaluate(`[...document.querySelectorAll('main *, header *')].filter((e) =>
+    !e.closest('.scroll, .u-wrap') && e.getBoundingClientRect().right > ${width} + 0.5).map((e) => e.outerHTML.slice(0, 80))`);
+  assert.deepEqual(wide, [], name);
+  const cards = await page.evaluate(`[...document.querySelectorAll('.card, .tiles li')].filter((card) => {
+    const inside = card.getBoundingClientRect().right - parseFloat(getComputedStyle(card).paddingRight);
+    return [...card.querySelectorAll('dl, table, span')].some((e) =>
+      !e.closest('.scroll, .u-wrap') && e.getBoundingClientRect().right > inside + 1);
+  }).map((card) => card.innerText.slice(0, 20))`);
+  assert.deepEqual(cards, [], name);
+}
