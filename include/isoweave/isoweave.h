@@ -204,6 +204,7 @@ void iw_free_mesh(iw_mesh* mesh);
 enum { IW_QUALITY_NORMAL = 0, IW_QUALITY_FAST, IW_QUALITY_FINE };
 enum { IW_NORMALS_NONE = 0, IW_NORMALS_GRADIENT, IW_NORMALS_QUADRIC };
 enum { IW_OUTPUT_AS_VOLUME = 0, IW_OUTPUT_LPS, IW_OUTPUT_RAS, IW_OUTPUT_INDEX };
+enum { IW_EXTRACTOR_CUBES = 0, IW_EXTRACTOR_TRILINEAR, IW_EXTRACTOR_TETRAHEDRA, IW_EXTRACTOR_DUAL };
 enum { IW_DEVICE_AUTO = 0, IW_DEVICE_CPU, IW_DEVICE_CUDA };
 
 // How a surface is simplified. Lengths are texts: "0.2vox", "50um", or a number in the unit of the volume or mesh.
@@ -231,6 +232,7 @@ typedef struct iw_mesh_options {
   int32_t normals;                      // IW_NORMALS_NONE ...
   int32_t space;                        // IW_OUTPUT_AS_VOLUME ...
   const iw_volume* values;              // a volume of the same size, whose values the vertices get; NULL: none
+  int32_t extractor;                    // IW_EXTRACTOR_CUBES ...: as ExtractorKind of mesh_options.hpp
 } iw_mesh_options;
 
 typedef struct iw_progress {

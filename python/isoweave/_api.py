@@ -20,6 +20,7 @@ from ._run import ProgressLike, Runner, RunState
 from ._volume import Triple, Volume, VolumeLike, open_volume
 
 Quality = Literal["fast", "normal", "fine"]
+Extractor = Literal["cubes", "trilinear", "tetrahedra", "dual"]
 Roi = Iterable["slice | tuple[int | None, int | None]"]
 
 
@@ -73,6 +74,7 @@ def mesh(
     inside: Literal["above", "below"] = "above",
     closed: bool = True,
     smooth: int = 0,
+    extractor: Extractor = "cubes",
     specks: Literal["keep", "drop"] = "keep",
     largest: bool = False,
     min_component: int = 0,
@@ -116,6 +118,8 @@ def mesh(
         inside: the side of the level that is inside.
         closed: whether the surface is closed at the border of the volume.
         smooth: passes that take the staircase off a mask, 4 usually; 0: none.
+        extractor: "cubes": marching cubes. "trilinear": with the topology of the trilinear interpolant. "tetrahedra":
+            marching tetrahedra, three times the triangles. "dual": dual marching cubes, which keeps sharp edges.
         specks: "drop": closed components that have shrunk to a tetrahedron within the error vanish.
         largest: keep the largest component only. Takes a pass over the volume of its own.
         min_component: drop components of fewer triangles before simplification. Likewise.
@@ -164,8 +168,8 @@ def mesh(
         triangles=triangles, ratio=ratio, quality=quality, specks=specks, largest=largest, min_component=min_component,
     )
     options = mesh_struct(
-        simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth, normals=normals,
-        space=space, values=coloured,
+        simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth,
+        extractor=extractor, normals=normals, space=space, values=coloured,
     )
     runner = Runner(threads, device, memory, progress)
     outputs = Outputs(_outputs_for(out, len(lods)), runner.state, compress)
@@ -193,6 +197,7 @@ def labels(
     *,
     error: Length = "0.2vox",
     smooth: int = 4,
+    extractor: Extractor = "cubes",
     max_distance: Length | None = None,
     quality: Quality = "normal",
     closed: bool = True,
@@ -249,7 +254,9 @@ def labels(
     simplify_options = simplify_struct(
         error=error, lods=(), max_distance=max_distance, triangles=None, ratio=None, quality=quality, specks=specks
     )
-    options = mesh_struct(simplify_options, iso=0.5, closed=closed, smooth=smooth, normals=normals, space=space)
+    options = mesh_struct(
+        simplify_options, iso=0.5, closed=closed, smooth=smooth, extractor=extractor, normals=normals, space=space
+    )
     runner = Runner(threads, "auto", None, progress)
     to_files = isinstance(out, (str, os.PathLike))
     paths: list[OutputLike] = [label_path(out, label) if to_files else None for label in wanted]  # type: ignore[arg-type]
@@ -364,6 +371,7 @@ def forecast(
     inside: Literal["above", "below"] = "above",
     closed: bool = True,
     smooth: int = 0,
+    extractor: Extractor = "cubes",
     roi: Roi | None = None,
     step: int = 1,
     threads: int = 0,
@@ -379,7 +387,9 @@ def forecast(
         error=_usual_error(error, [triangles, max_distance]), lods=(), max_distance=max_distance, triangles=triangles,
         ratio=None, quality=quality, specks="keep",
     )
-    options = mesh_struct(simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth)
+    options = mesh_struct(
+        simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth, extractor=extractor
+    )
     runner = Runner(threads, "auto", memory, None)
     return Forecast(
         opened._finish(
@@ -425,6 +435,7 @@ def iter_mesh(
     inside: Literal["above", "below"] = "above",
     closed: bool = True,
     smooth: int = 0,
+    extractor: Extractor = "cubes",
     roi: Roi | None = None,
     step: int = 1,
     memory: int | str | None = None,
@@ -444,7 +455,9 @@ def iter_mesh(
         error=_usual_error(error, [triangles, max_distance]), lods=(), max_distance=max_distance, triangles=triangles,
         ratio=None, quality=quality, specks="keep",
     )
-    options = mesh_struct(simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth)
+    options = mesh_struct(
+        simplify_options, iso=_level_of(opened, level), inside=inside, closed=closed, smooth=smooth, extractor=extractor
+    )
     runner = Runner(threads, "auto", memory, None)
     pieces = _Pieces(runner.state)
     sink = c.CSink(append=c.AppendPiece(pieces.append))

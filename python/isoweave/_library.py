@@ -136,6 +136,7 @@ class MeshOptions(Struct):
         ("normals", c_int32),
         ("space", c_int32),
         ("values", c_void_p),
+        ("extractor", c_int32),
     ]
 
 

@@ -12,6 +12,7 @@ Length = Union[float, int, str]
 
 _QUALITIES = {"normal": 0, "fast": 1, "fine": 2}
 _NORMALS = {None: 0, "none": 0, "gradient": 1, "quadric": 2}
+_EXTRACTORS = {"cubes": 0, "trilinear": 1, "tetrahedra": 2, "dual": 3}
 _SPACES = {None: 0, "lps": 1, "ras": 2, "index": 3}
 _SIDES = {"above": 0, "below": 1}
 _SPECKS = {"keep": 0, "drop": 1}
@@ -68,6 +69,7 @@ def mesh_struct(
     inside: str = "above",
     closed: bool = True,
     smooth: int = 0,
+    extractor: str = "cubes",
     normals: str | None = None,
     space: str | None = None,
     values: Volume | None = None,
@@ -81,4 +83,5 @@ def mesh_struct(
         normals=chosen("normals", normals, _NORMALS),
         space=chosen("space", space, _SPACES),
         values=None if values is None else values._handle.pointer,
+        extractor=chosen("extractor", extractor, _EXTRACTORS),
     )

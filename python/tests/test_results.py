@@ -37,6 +37,9 @@ def signed_volume(vertices: np.ndarray, faces: np.ndarray) -> float:
         ({"roi": np.s_[4:, 2:-3, :30]}, ["--roi", ":30,2:31,4:"]),
         ({"step": 2}, ["--step", "2"]),
         ({"specks": "drop", "error": "3vox"}, ["--specks", "drop", "--error", "3vox"]),
+        ({"extractor": "trilinear"}, ["--extractor", "trilinear"]),
+        ({"extractor": "tetrahedra", "largest": True}, ["--extractor", "tetrahedra", "--largest"]),
+        ({"extractor": "dual", "normals": "gradient"}, ["--extractor", "dual", "--normals", "gradient"]),
     ],
 )
 def test_options_are_those_of_the_command_line(
@@ -46,14 +49,14 @@ def test_options_are_those_of_the_command_line(
     mesh = isoweave.mesh(volume, 100, **options)
     assert mesh.digest == report["digest"]
     assert mesh.report["triangles"] == report["triangles"] == len(mesh.faces)
-    for key in ("iso", "closed", "inside", "triangles_extracted", "collapses", "components", "euler", "error", "space"):
+    for key in ("iso", "closed", "inside", "triangles_extracted", "collapses", "components", "euler", "error", "space", "extractor"):
         assert mesh.report[key] == report[key], key
 
 
 def test_every_key_of_the_report_is_there(volume: np.ndarray, cli_report: Reporter) -> None:
     report = cli_report(volume, "--iso", 100)
     ours = isoweave.mesh(volume, 100).report
-    assert set(report) - set(ours) <= {"extractor", "forecast", "quality", "normals", "output"}
+    assert set(report) - set(ours) <= {"forecast", "quality", "normals", "output"}
     assert set(report["input"]) == set(ours["input"])
 
 
@@ -114,6 +117,9 @@ def test_far_from_the_origin(volume: np.ndarray, folder: pathlib.Path) -> None:
 def test_pieces_are_the_mesh(volume: np.ndarray) -> None:
     vertices, faces = zip(*isoweave.iter_mesh(volume, 100))
     assert isoweave.check((np.concatenate(vertices), np.concatenate(faces))).digest == isoweave.mesh(volume, 100).digest
+    vertices, faces = zip(*isoweave.iter_mesh(volume, 100, extractor="dual"))
+    dual = isoweave.mesh(volume, 100, extractor="dual")
+    assert isoweave.check((np.concatenate(vertices), np.concatenate(faces))).digest == dual.digest
 
 
 def test_sinks(volume: np.ndarray) -> None:
@@ -147,6 +153,10 @@ def test_labels(folder: pathlib.Path, cli_report: Reporter) -> None:
     meshes = isoweave.labels(cells)
     assert {label: mesh.digest for label, mesh in meshes.items()} == {e["label"]: e["digest"] for e in report["labels"]}
     assert isoweave.open_volume(cells).find_labels() == {7: 9 * 16 * 15, 300: 8 * 16 * 15}
+    tetrahedra = isoweave.labels(cells, [7], extractor="tetrahedra")[7]
+    by_cli = cli_report(cells, "--labels", "7", "--smooth", "--extractor", "tetrahedra")
+    assert tetrahedra.digest == by_cli["labels"][0]["digest"] != meshes[7].digest
+    assert tetrahedra.report.extractor == by_cli["extractor"] == "tetrahedra"
     files = isoweave.labels(cells, [300], out=folder / "seg.ply")
     assert isoweave.check(folder / "seg_label300.ply").digest == files[300].digest == meshes[300].digest
     assert isoweave.labels(cells, out=lambda label, mesh: len(mesh.faces)) == {k: len(m.faces) for k, m in meshes.items()}
@@ -197,6 +207,11 @@ def test_forecast(volume: np.ndarray) -> None:
     extracted = isoweave.mesh(volume, 100).report.triangles_extracted
     assert 0.5 * extracted < forecast.triangles_extracted < 2 * extracted
     assert forecast.peak_bytes > 0 and forecast.seconds >= 0
+    extracted = isoweave.mesh(volume, 100, extractor="tetrahedra").report.triangles_extracted
+    of_tetrahedra = isoweave.forecast(volume, 100, extractor="tetrahedra").triangles_extracted
+    assert forecast.triangles_extracted < 0.5 * of_tetrahedra and 0.5 * extracted < of_tetrahedra < 2 * extracted
+    with pytest.raises(ValueError, match="extractor"):
+        isoweave.forecast(volume, 100, extractor="cube")  # type: ignore[arg-type]
 
 
 def test_volumes(volume: np.ndarray) -> None:
@@ -271,6 +286,8 @@ def test_pyvista_accessor(volume: np.ndarray, wanted: str) -> None:
     mask = pyvista.ImageData(dimensions=volume.shape[::-1])
     mask.point_data["labels"] = (volume.ravel() >= 100).astype(np.uint8) * 5
     assert mask.isoweave.labels().keys() == ["5"]
+    dual = isoweave.mesh(volume, 100, spacing=SPACING, origin=ORIGIN, extractor="dual")
+    assert grid.isoweave.contour(100, extractor="dual").field_data["isoweave digest"][0] == dual.digest != wanted
 
 
 def test_html(volume: np.ndarray) -> None:

@@ -90,6 +90,9 @@ MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options
   options.inside_above = given.inside_below == 0;
   options.closed = given.open == 0;
   options.smooth = given.smooth;
+  options.extractor =
+      choice("extractor", given.extractor,
+             {ExtractorKind::kCubes, ExtractorKind::kTrilinear, ExtractorKind::kTetrahedra, ExtractorKind::kDual});
   options.normals = choice("normals", given.normals, {Normals::kAbsent, Normals::kGradient, Normals::kQuadric});
   options.space =
       choice("space", given.space, {OutputSpace::kAsVolume, OutputSpace::kLps, OutputSpace::kRas, OutputSpace::kIndex});

@@ -144,6 +144,20 @@ Json run_json(const MeshReport& report, Json input) {
   return json;
 }
 
+const char* extractor_name(ExtractorKind extractor) {
+  switch (extractor) {
+    case ExtractorKind::kTrilinear:
+      return "trilinear";
+    case ExtractorKind::kTetrahedra:
+      return "tetrahedra";
+    case ExtractorKind::kDual:
+      return "dual";
+    case ExtractorKind::kCubes:
+      break;
+  }
+  return "cubes";
+}
+
 void add_range(const MeshReport& report, Json& input) {
   const bool any = report.min <= report.max;
   input["min"] = any ? number_or_null(report.min) : Json(nullptr);

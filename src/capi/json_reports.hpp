@@ -31,6 +31,9 @@ Json surface_json(const SurfaceReport& surface);
 // A run, and its levels. `input` is the part that differs between runs on volumes and on meshes.
 Json run_json(const MeshReport& report, Json input);
 
+// The name that the command line has for it.
+const char* extractor_name(ExtractorKind extractor);
+
 // The range of the values that a run has read, for its `input`.
 void add_range(const MeshReport& report, Json& input);
 

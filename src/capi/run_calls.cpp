@@ -68,6 +68,7 @@ Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOpt
   Json json = run_json(report, std::move(input));
   json["closed"] = run.options.closed;
   json["smooth"] = run.options.smooth;
+  json["extractor"] = extractor_name(run.options.extractor);
   json["space"] = file.space;
   json["offset"] = file.offset;
   return json;

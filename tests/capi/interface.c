@@ -84,13 +84,13 @@ static void write_samples(const float* samples) {
 }
 
 // The digest that the command line prints for the same volume and options.
-static void digest_of_program(const char* program, char digest[17]) {
+static void digest_of_program(const char* program, const char* extractor, char digest[17]) {
   char command[1024];
   static char report[1 << 16];
   snprintf(command, sizeof command,
            "'%s' mesh c_volume.raw --raw 36x36x36:float32 --spacing 0.5,0.75,1.25 --origin 3,0,0 --iso 0 "
-           "--error 0.3vox --quiet -o c_program.ply --report c_report.json",
-           program);
+           "--error 0.3vox --extractor %s --quiet -o c_program.ply --report c_report.json",
+           program, extractor);
   EXPECT(system(command) == 0);
   FILE* file = fopen("c_report.json", "rb");
   EXPECT(file != NULL);
@@ -238,10 +238,16 @@ static void test_digests(const float* samples, const char* program) {
   EXPECT(is(iw_write_mesh(memory.mesh, "c_again.stl", 0, &result), IW_DONE));
   EXPECT(exists("c_again.stl"));
 
-  if (program != NULL) {
-    char by_program[17] = "";
-    digest_of_program(program, by_program);
-    EXPECT(strcmp(by_program, wanted) == 0);
+  static const char* const extractors[] = {"cubes", "trilinear", "tetrahedra", "dual"};
+  for (int32_t n = IW_EXTRACTOR_CUBES; program != NULL && n <= IW_EXTRACTOR_DUAL; ++n) {
+    char by_program[17] = "", named[16];
+    digest_of_program(program, extractors[n], by_program);
+    options.extractor = n;
+    EXPECT(is(iw_mesh_volume(file, &options, NULL, &to_file, 1, &result), IW_DONE));
+    keep_digest(found);
+    text_in(result.report, "extractor", named, sizeof named);
+    EXPECT(strcmp(by_program, found) == 0 && strcmp(named, extractors[n]) == 0);
+    EXPECT((n == IW_EXTRACTOR_CUBES) == (strcmp(found, wanted) == 0));
   }
   iw_free_mesh(read);
   iw_free_mesh(memory.mesh);
@@ -432,6 +438,9 @@ static void test_faults(const float* samples) {
   options.normals = 3;
   EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
   options.normals = IW_NORMALS_NONE;
+  options.extractor = 4;
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  options.extractor = IW_EXTRACTOR_CUBES;
   iw_simplify_options simplify = within("0.2furlong");
   options.simplify = &simplify;
   EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));

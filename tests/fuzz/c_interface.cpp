@@ -115,6 +115,7 @@ void mesh_anything(Input& input, const iw_volume* volume, iw_result* result) {
   options.normals = input.byte() % 4;
   options.space = input.byte() % 5;
   options.values = input.byte() % 8 == 0 ? volume : nullptr;
+  options.extractor = input.byte() % 6;
   iw_run run{};
   run.struct_size = size_like(input, sizeof run);
   run.threads = 1;
