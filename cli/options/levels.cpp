@@ -94,7 +94,7 @@ std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs) 
 Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
   Json levels = Json::array();
   for (std::size_t level = 0; level < report.levels.size(); ++level) {
-    Json json = surface_json(report.levels[level]);
+    Json json = Json::parse(surface_json(report.levels[level]));
     json["output"] = outputs[level].name();
     levels.push_back(std::move(json));
   }

@@ -31,7 +31,7 @@ Json bins_json(const PageErrors& errors) {
 Json errors_json(const PageErrors& errors) {
   Json json = {{"vertices", errors.vertices}, {"mean", errors.mean},       {"rms", errors.rms},
                {"max", errors.max},           {"bins", bins_json(errors)}, {"samples", errors.samples}};
-  json["sampled"] = distances_json(errors.sampled, 1);
+  json["sampled"] = Json::parse(distances_json(errors.sampled));
   return json;
 }
 
@@ -97,7 +97,7 @@ void write_page(OutputFile& file, const PageOptions& page, Json& report, PageCon
   const std::string full_note = std::move(contents.full_note);
   PageSurfaces shown = page_surfaces(std::move(contents), most_triangles, control);
   Json& json = report["page"];
-  json["check"] = check_json(check, report["output"]);
+  json["check"] = Json::parse(check_json(check, report["output"].get<std::string>()));
   json["check"].update(place);
   json["surfaces"] = surfaces_json(shown.surfaces);
   json["distance"] = shown.errors ? errors_json(*shown.errors) : Json(nullptr);

@@ -42,7 +42,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   Json json = run_json(report, std::move(input));
   if (forecast) {
     json["memory"]["predicted_bytes"] = forecast->peak_bytes;
-    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, file));
+    json["forecast"] = Json::parse(forecast_json(*forecast, output_bytes(*forecast, arguments, file)));
   }
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
@@ -55,7 +55,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
-  json["space"] = space_text(info.geometry, options.space);
+  json["space"] = space_of_mesh(info.geometry, options.space);
   json["offset"] = file.offset;
   return json;
 }
@@ -118,7 +118,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
     json["smooth"] = options.smooth;
     json["extractor"] = arguments.extractor;
     json["quality"] = arguments.quality;
-    json["space"] = space_text(info.geometry, options.space);
+    json["space"] = space_of_mesh(info.geometry, options.space);
   };
   mesh_label_files(task, info, control, evidence);
 }
@@ -304,7 +304,8 @@ class MeshJob {
     print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
     tell_unit();
-    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
+    evidence.write_forecast(
+        {{"version", ISOWEAVE_VERSION}, {"forecast", Json::parse(forecast_json(*forecast_, bytes))}});
   }
 
   void prepare_states() {

@@ -203,16 +203,9 @@ Json entry_json(const MeshedLabel& label, const MeshReport& report, const std::s
                {"color", label.name.color ? Json(color_text(*label.name.color)) : Json(nullptr)},
                {"layer", label.name.layer},
                {"samples", label.extent.samples},
-               {"output", output},
-               {"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"warnings", report.warnings}};
-  json.update(surface_json(report));
+               {"output", output}};
+  json.update(Json::parse(counts_json(report)));
+  json.update(Json::parse(surface_json(report)));
   return json;
 }
 

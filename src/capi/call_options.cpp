@@ -116,11 +116,4 @@ RunControl run_control(const iw_run& given) {
   return control;
 }
 
-std::string space_of_mesh(const Geometry& geometry, OutputSpace space) {
-  if (space == OutputSpace::kIndex) return "index";
-  if (geometry.space == Space::kUnknown) return "";  // coordinates are those of the volume, whatever was asked for
-  const bool as_lps = space == OutputSpace::kLps || (space == OutputSpace::kAsVolume && geometry.space == Space::kLps);
-  return as_lps ? "LPS" : "RAS";
-}
-
 }  // namespace isoweave::capi

@@ -63,8 +63,8 @@ struct VolumeRun {
 };
 
 Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOptions& file) {
-  Json input = volume_json(run.info());
-  add_range(report, input);
+  Json input = Json::parse(volume_json(run.info()));
+  input.update(Json::parse(range_json(report.min, report.max, report.nan)));
   Json json = run_json(report, std::move(input));
   json["closed"] = run.options.closed;
   json["smooth"] = run.options.smooth;
@@ -115,7 +115,7 @@ void mesh_labels_into(const VolumeRun& run, iw_output* outputs, std::size_t coun
   Json json = report_of(run, report.total, file);
   json["labels"] = Json::array();
   for (std::size_t n = 0; n < report.labels.size(); ++n) {
-    Json entry = surface_json(report.labels[n]);
+    Json entry = Json::parse(surface_json(report.labels[n]));
     entry["label"] = Json::parse(sinks[n].label);
     entry["triangles_extracted"] = report.labels[n].triangles_extracted;
     entry["warnings"] = report.labels[n].warnings;
@@ -188,6 +188,6 @@ iw_status iw_forecast(const iw_volume* volume, const iw_mesh_options* options, c
   return guarded(result, [&] {
     VolumeRun all(volume, options, run);
     all.pass_before();
-    set_report(result, text_of(forecast_json(forecast_mesh(*all.opener.open(), all.options, all.control))));
+    set_report(result, forecast_json(forecast_mesh(*all.opener.open(), all.options, all.control)));
   });
 }
