@@ -284,6 +284,7 @@ typedef struct iw_output {
   iw_mesh* mesh;      // set by a run that is done, to be freed by the caller; NULL before
   int32_t compress;   // of a file: as MeshFileOptions::compress
   const char* label;  // iw_mesh_labels only: the number of the label, in decimal digits
+  double iso;         // iw_mesh_isos only: as iw_mesh_options::iso
 } iw_output;
 
 // Meshes a volume. outputs: one, or one for each level, finest first. run: NULL for the defaults. The report is that of
@@ -295,6 +296,12 @@ iw_status iw_mesh_volume(const iw_volume* volume, const iw_mesh_options* options
 // different labels are called at the same time. In the report, `labels` has an entry for each output.
 iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                          size_t count, iw_result* result);
+
+// Meshes the surfaces of several iso-values in one sweep, each to its output: bit for bit the meshes of runs of their
+// own, with `iso` from the output. options: iso does not count; a number of triangles is one for each mesh. In the
+// report, `isos` has an entry for each output.
+iw_status iw_mesh_isos(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
+                       size_t count, iw_result* result);
 
 // Simplifies a mesh. options: one of error, levels, max_distance, triangles and ratio at least.
 iw_status iw_simplify_mesh(const iw_mesh* mesh, const iw_simplify_options* options, const iw_run* run,

@@ -197,6 +197,7 @@ class Output(Struct):
         ("mesh", c_void_p),
         ("compress", c_int32),
         ("label", c_char_p),
+        ("iso", c_double),
     ]
 
 
@@ -223,6 +224,7 @@ _CALLS: dict[str, list[Any]] = {
     "iw_compare_meshes": [_HANDLE, _HANDLE, POINTER(CompareOptions)],
     "iw_mesh_volume": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_mesh_labels": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
+    "iw_mesh_isos": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_simplify_mesh": [_HANDLE, POINTER(SimplifyOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_forecast": [_HANDLE, POINTER(MeshOptions), POINTER(Run)],
 }

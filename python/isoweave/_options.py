@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Sequence, Union
+from typing import Any, Literal, Sequence, Union
 
 from . import _library as c
 from ._volume import Volume
 
 Length = Union[float, int, str]
+Quality = Literal["fast", "normal", "fine"]
+Extractor = Literal["cubes", "trilinear", "tetrahedra", "dual"]
 
 _QUALITIES = {"normal": 0, "fast": 1, "fine": 2}
 _NORMALS = {None: 0, "none": 0, "gradient": 1, "quadric": 2}
@@ -29,6 +31,11 @@ def length(value: Length | None) -> bytes | None:
     if value is None:
         return None
     return c.encoded(value if isinstance(value, str) else repr(float(value)))
+
+
+def usual_error(error: Length | None, stops: Sequence[Any]) -> Length | None:
+    """The error where none is named: 0.2 voxels, unless something else says where to stop."""
+    return "0.2vox" if error is None and not any(stops) else error
 
 
 def simplify_struct(

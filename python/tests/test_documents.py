@@ -15,7 +15,7 @@ import isoweave
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("name", ["isoweave", "isoweave._api", "isoweave._report", "isoweave._volume", "isoweave.compat"])
+@pytest.mark.parametrize("name", ["isoweave", "isoweave._meshing", "isoweave._labels", "isoweave._surfaces", "isoweave._report", "isoweave._volume", "isoweave.compat"])
 def test_docstrings(name: str) -> None:
     done = doctest.testmod(importlib.import_module(name), extraglobs={"isoweave": isoweave})
     assert done.attempted > 0 and done.failed == 0

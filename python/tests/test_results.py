@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import pathlib
 from typing import Any, Callable
@@ -11,6 +12,7 @@ import pytest
 from conftest import ORIGIN, SPACING, run_cli
 
 import isoweave
+from isoweave._settings import LabelSettings, MeshSettings, StopSettings
 
 Reporter = Callable[..., dict[str, Any]]
 
@@ -100,6 +102,58 @@ def test_files_and_levels(volume: np.ndarray, cli_report: Reporter, folder: path
         isoweave.mesh(volume, 100, out=folder / "none" / "m.ply")
     with pytest.raises(isoweave.CannotWrite):
         meshes[0].save(folder / "m.doc")
+
+
+def test_several_levels(volume: np.ndarray, cli_report: Reporter, folder: pathlib.Path) -> None:
+    levels = [60, 100.5, 170]
+    by_cli = cli_report(volume, "--iso", "60,100.5,170", "--extractor", "dual", "--triangles", "400")
+    meshes = isoweave.mesh(volume, levels, extractor="dual", triangles=400)
+    assert [mesh.digest for mesh in meshes] == [each["digest"] for each in by_cli["isos"]]
+    assert [mesh.digest for mesh in meshes] == [
+        isoweave.mesh(volume, level, extractor="dual", triangles=400).digest for level in levels
+    ]
+    for mesh, entry in zip(meshes, by_cli["isos"]):
+        assert set(entry) - set(mesh.report) == {"output"}
+        assert mesh.report.iso == entry["iso"] and mesh.report.triangles == entry["triangles"] == len(mesh.faces)
+    assert set(by_cli) - set(meshes[0].report) <= {"quality", "normals"}
+
+    reports = isoweave.mesh(volume, np.array(levels), error=0, out=folder / "m.stl")
+    assert sorted(path.name for path in folder.iterdir()) == ["m_iso100.5.stl", "m_iso170.stl", "m_iso60.stl"]
+    for report in reports:
+        path = folder / f"m_iso{report.iso:g}.stl"
+        assert isoweave.check(path).digest == report.digest == isoweave.mesh(volume, report.iso, error=0).digest
+    one, two = isoweave.mesh(volume, (60, 170), out=[None, folder / "two.ply"])
+    assert isoweave.check(one).digest == isoweave.mesh(volume, 60).digest and two.iso == 170
+    assert [each.digest for each in isoweave.mesh(volume, [100])] == [isoweave.mesh(volume, 100).digest]
+
+
+@pytest.mark.parametrize(
+    ("levels", "options", "message"),
+    [
+        ([], {}, "value"),
+        ([60, 60], {}, "60"),
+        ([60, 100], {"lods": [0.1, 0.5]}, "lods"),
+        ([60, 100], {"ratio": 0.5}, "ratio"),
+        ([60, 100], {"largest": True}, "largest"),
+        ([60, 100], {"memory": "2G"}, "memory"),
+        ([60, 100], {"values": np.zeros((30, 34, 38))}, "values"),
+        ([60, 100], {"out": [None]}, "out"),
+        ([60, np.nan], {}, "iso"),
+    ],
+)
+def test_what_does_not_go_with_several_levels(
+    volume: np.ndarray, levels: list[float], options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        isoweave.mesh(volume, levels, **options)
+
+
+def test_types_are_those_of_the_signatures() -> None:
+    """What type checkers know of the keyword arguments is what the functions take."""
+    pairs = [(isoweave.mesh, MeshSettings), (isoweave.simplify, StopSettings), (isoweave.labels, LabelSettings)]
+    for function, settings in pairs:
+        taken = {p.name for p in inspect.signature(function).parameters.values() if p.kind is p.KEYWORD_ONLY}
+        assert taken - {"lods", "out"} == set(settings.__annotations__), function
 
 
 def test_far_from_the_origin(volume: np.ndarray, folder: pathlib.Path) -> None:
@@ -286,6 +340,9 @@ def test_pyvista_accessor(volume: np.ndarray, wanted: str) -> None:
     mask = pyvista.ImageData(dimensions=volume.shape[::-1])
     mask.point_data["labels"] = (volume.ravel() >= 100).astype(np.uint8) * 5
     assert mask.isoweave.labels().keys() == ["5"]
+    several = grid.isoweave.contour([100, 150])
+    assert several.keys() == ["100", "150"] and several[0].field_data["isoweave digest"][0] == wanted
+    assert grid.isoweave.contour(100, lods=["0.1vox", "0.2vox"])[1].field_data["isoweave digest"][0] == wanted
     dual = isoweave.mesh(volume, 100, spacing=SPACING, origin=ORIGIN, extractor="dual")
     assert grid.isoweave.contour(100, extractor="dual").field_data["isoweave digest"][0] == dual.digest != wanted
 

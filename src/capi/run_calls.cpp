@@ -74,6 +74,12 @@ Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOpt
   return json;
 }
 
+// What the report of a surface at one iso-value, and of several, have beside that.
+void describe_level_set(const VolumeRun& run, Json& json) {
+  json["inside"] = run.options.inside_above ? "above" : "below";
+  if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};
+}
+
 void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
   const MeshFileOptions file = run.file();
   CallOutputs sinks(outputs, count, file);
@@ -81,8 +87,7 @@ void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result*
   const MeshReport report = mesh_volume(*run.opener.open(), sinks.pointers(), run.options, run.control);
   Json json = report_of(run, report, file);
   json["iso"] = run.options.iso;
-  json["inside"] = run.options.inside_above ? "above" : "below";
-  if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};
+  describe_level_set(run, json);
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
@@ -122,6 +127,28 @@ void mesh_labels_into(const VolumeRun& run, iw_output* outputs, std::size_t coun
     json["labels"].push_back(std::move(entry));
   }
   json["notes"] = sinks.notes();
+  set_report(result, text_of(json));
+  sinks.deliver();
+}
+
+void mesh_isos_into(const VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
+  if (run.simplify.ratio != 0 || !component_rule(run.simplify).keeps_all())
+    throw std::invalid_argument("ratio, largest and min_component do not go with several iso-values");
+  const MeshFileOptions file = run.file();
+  CallOutputs sinks(outputs, count, file);
+  std::vector<IsoSink> surfaces;
+  for (std::size_t n = 0; n < count; ++n) surfaces.push_back({sinks[n].iso, sinks.pointers()[n]});
+  const IsoValuesReport report = mesh_iso_values(*run.opener.open(), surfaces, run.options, run.control);
+  Json json = report_of(run, report.total, file);
+  describe_level_set(run, json);
+  json["isos"] = Json::array();
+  for (std::size_t n = 0; n < count; ++n) {
+    Json entry = {{"iso", surfaces[n].iso}};
+    entry.update(Json::parse(counts_json(report.meshes[n])));
+    entry["notes"] = surfaces[n].sink->notes();
+    entry.update(Json::parse(surface_json(report.meshes[n])));
+    json["isos"].push_back(std::move(entry));
+  }
   set_report(result, text_of(json));
   sinks.deliver();
 }
@@ -173,6 +200,11 @@ iw_status iw_mesh_volume(const iw_volume* volume, const iw_mesh_options* options
 iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                          size_t count, iw_result* result) {
   return guarded(result, [&] { mesh_labels_into(VolumeRun(volume, options, run), outputs, count, result); });
+}
+
+iw_status iw_mesh_isos(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
+                       size_t count, iw_result* result) {
+  return guarded(result, [&] { mesh_isos_into(VolumeRun(volume, options, run), outputs, count, result); });
 }
 
 iw_status iw_simplify_mesh(const iw_mesh* mesh, const iw_simplify_options* options, const iw_run* run,

@@ -321,6 +321,54 @@ static void test_labels(void) {
   iw_free_volume(volume);
 }
 
+// Several iso-values from one sweep, each beside the run of its own.
+static void test_isos(const float* samples) {
+  iw_volume* volume = volume_of(samples);
+  const iw_simplify_options simplify = within("0.3vox");
+  iw_mesh_options options = {.struct_size = sizeof options};
+  options.simplify = &simplify;
+  options.extractor = IW_EXTRACTOR_DUAL;
+  iw_output outputs[3] = {{.struct_size = sizeof outputs[0]}, {.struct_size = sizeof outputs[0]}};
+  outputs[2].struct_size = sizeof outputs[0];
+  outputs[0].iso = 2.5;
+  outputs[1].iso = -1;
+  outputs[1].path = "c_iso.ply";
+  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 3, &result), IW_DONE));
+  char digests[3][17];
+  const char* entry = strstr(result.report, "\"isos\"");
+  EXPECT(entry != NULL && strstr(result.report, "\"extractor\":\"dual\"") != NULL);
+  for (int n = 0; entry != NULL && n < 3; ++n) {
+    entry = strstr(entry, "{\"iso\":");
+    EXPECT(number_in(entry, "iso") == outputs[n].iso);
+    text_in(entry, "digest", digests[n], sizeof digests[n]);
+    ++entry;
+  }
+  for (int n = 0; n < 3; ++n) {
+    char wanted[17], found[17];
+    options.iso = outputs[n].iso;
+    iw_output alone = {.struct_size = sizeof alone};
+    EXPECT(is(iw_mesh_volume(volume, &options, NULL, &alone, 1, &result), IW_DONE));
+    keep_digest(wanted);
+    iw_free_mesh(alone.mesh);
+    EXPECT((outputs[n].mesh == NULL) == (n == 1));
+    if (n == 1) EXPECT(is(iw_read_mesh("c_iso.ply", 0, &outputs[n].mesh, &result), IW_DONE));
+    EXPECT(is(iw_check_mesh(outputs[n].mesh, 0, 0, &result), IW_DONE));
+    keep_digest(found);
+    EXPECT(strcmp(found, wanted) == 0 && strcmp(digests[n], wanted) == 0);
+    iw_free_mesh(outputs[n].mesh);
+    outputs[n].mesh = NULL;
+  }
+  outputs[0].iso = 0;  // as the third
+  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 3, &result), IW_BAD_ARGUMENT));
+  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 0, &result), IW_BAD_ARGUMENT));
+  iw_simplify_options share = {.struct_size = sizeof share};
+  share.ratio = 0.5;
+  options.simplify = &share;
+  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs + 1, 2, &result), IW_BAD_ARGUMENT));
+  EXPECT(strstr(result.message, "ratio") != NULL && outputs[2].mesh == NULL);
+  iw_free_volume(volume);
+}
+
 static void test_meshes(const float* samples) {
   iw_volume* volume = volume_of(samples);
   iw_simplify_options levels = {.struct_size = sizeof levels};
@@ -485,6 +533,7 @@ int main(int count, char** arguments) {
   test_digests(samples, count > 1 ? arguments[1] : NULL);
   test_volumes(samples);
   test_labels();
+  test_isos(samples);
   test_meshes(samples);
   test_stops(samples);
   test_faults(samples);

@@ -1,6 +1,7 @@
 // Reads the input as a program in C that gives its calls anything but wild pointers: members of structs, sizes,
 // samples.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -125,10 +126,11 @@ void mesh_anything(Input& input, const iw_volume* volume, iw_result* result) {
   for (iw_output& output : outputs) {
     output.struct_size = size;
     output.label = input.text();
+    output.iso = input.byte();
   }
   const std::size_t count = size == sizeof(iw_output) ? input.byte() % 3 : 1;
-  const bool labels = input.byte() % 4 == 0;
-  const auto call = labels ? iw_mesh_labels : iw_mesh_volume;
+  const std::array calls{iw_mesh_labels, iw_mesh_isos, iw_mesh_volume, iw_mesh_volume};
+  const auto call = calls[input.byte() % calls.size()];
   expect_sane(call(volume, &options, &run, outputs, count, result), *result);
   for (const iw_output& output : outputs) use_mesh(output.mesh, result);
 }
