@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -46,22 +45,6 @@ std::vector<OutputOptions> level_outputs(const OutputOptions& output, const Stop
             .string();
   }
   return outputs;
-}
-
-std::vector<std::string> level_folders(const std::string& folder, std::size_t levels) {
-  if (levels == 1 || folder.empty()) return std::vector<std::string>(levels, folder);
-  std::vector<std::string> folders;
-  for (std::size_t level = 0; level < levels; ++level) {
-    folders.push_back((std::filesystem::path(folder) / fmt::format("lod{}", level)).string());
-  }
-  return folders;
-}
-
-void remove_level_folders(const std::vector<std::string>& folders) {
-  std::error_code ignored;
-  for (const std::string& folder : folders) {
-    if (folders.size() > 1) std::filesystem::remove(folder, ignored);
-  }
 }
 
 LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,

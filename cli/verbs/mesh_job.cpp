@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
 #include "isoweave/generate.hpp"
@@ -313,7 +314,7 @@ class MeshJob {
     if (resume_ && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
     if (arguments_.checkpoint.empty()) return;
     parse_every(arguments_.every, control_.checkpoint);
-    if (!resume_) lock_ = std::make_shared<CheckpointLock>(make_checkpoint_folder(arguments_.checkpoint));
+    if (!resume_) lock_ = std::make_shared<CheckpointLock>(begin_checkpoints(arguments_.checkpoint));
     control_.checkpoint.folder = arguments_.checkpoint;
     control_.checkpoint.lock = lock_;
     control_.checkpoint.note = task_json(arguments_, options_).dump();
@@ -333,7 +334,7 @@ class MeshJob {
 
   void sweep(ProgressMode mode, Evidence& evidence) {
     control_.memory_elsewhere = watch_memory(arguments_.watch) + files_bytes_;
-    const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
+    const std::vector<std::string> folders = part_folders(arguments_.checkpoint, outputs_.size());
     const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
     print_volume_notes();
     const std::shared_ptr<Watch> watch =
@@ -346,7 +347,7 @@ class MeshJob {
     sinks.tell_digests(report);
     const std::string preset = preset_note(arguments_.iso, report.min, report.max);
     if (!preset.empty()) report.warnings.push_back(preset);
-    remove_level_folders(folders);
+    remove_part_folders(folders);
     if (watch) watch->complete(report);
     printer.finish();
     write_evidence(report, sinks, evidence);

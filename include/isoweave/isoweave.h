@@ -254,6 +254,15 @@ typedef struct iw_run {
   void* context;
   // Called after every slab by the thread that called. Returns 0, or another number to stop the run. NULL: none.
   int32_t (*progress)(void* context, const iw_progress* progress);
+  // iw_mesh_volume only, with outputs that are files: a folder, made where it is missing, in which the state of the run
+  // is saved, so that it can go on after the process has ended in any way. A run that is done leaves nothing in it. A
+  // run that is stopped by an iw_stop saves its state first; else the one that was saved last is there. NULL: none.
+  const char* checkpoint;
+  double checkpoint_seconds;  // save after at least so long; 0: 300
+  int64_t checkpoint_layers;  // save after at least so many layers; 0: by time
+  // 1: go on from the state in `checkpoint`, with the same volume, options and outputs, or begin where there is none.
+  // 0: an unfinished run in it is refused. The report has `resumed_at`, the layers that were done before.
+  int32_t resume;
 } iw_run;
 
 // A piece of a mesh on its way to a sink, valid during the call only. Arrays without elements may be NULL.

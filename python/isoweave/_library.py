@@ -165,6 +165,10 @@ class Run(Struct):
         ("stop", c_void_p),
         ("context", c_void_p),
         ("progress", TellProgress),
+        ("checkpoint", c_char_p),
+        ("checkpoint_seconds", c_double),
+        ("checkpoint_layers", c_int64),
+        ("resume", c_int32),
     ]
 
 

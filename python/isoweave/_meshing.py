@@ -100,6 +100,9 @@ def mesh(
     memory: int | str | None = None,
     threads: int = 0,
     device: Literal["auto", "cpu", "cuda"] = "auto",
+    checkpoint: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    every: float | str = 300,
     progress: ProgressLike = None,
 ) -> Any:
     """The simplified surface of a volume at a level: bit for bit that of ``isoweave mesh``.
@@ -140,12 +143,17 @@ def mesh(
         memory: cap on the memory of the process, in bytes or as "2G". A mesh that is returned is not counted.
         threads: 0: one for each processor. Never changes the mesh.
         device: "cuda" for a CUDA device, where this build has one.
+        checkpoint: a folder in which the state of the run is saved, with ``out`` a path: a run that is stopped by Ctrl-C,
+            or killed, can go on. It is made where it is missing, and a run that is done leaves it empty.
+        resume: go on from the state in that folder, with the same volume and options, or begin where there is none; the
+            report's ``resumed_at`` says at which layer. Without it an unfinished run in the folder is refused.
+        every: how often a state is saved: seconds, or as "5min", "2h" or "16layers".
         progress: True: a bar of tqdm, or one line on standard error. A function that gets a :class:`Progress` after
             every slab; False from it stops the run.
 
     Returns:
         A :class:`Mesh`, or with ``lods`` or several levels a list of them; with ``out`` a :class:`Report`, or a list of
-        them. Several levels do not go with lods, ratio, largest, min_component, values, memory and a device.
+        them. Several levels do not go with lods, ratio, largest, min_component, values, memory, checkpoint and a device.
 
     Raises:
         BadInput: for a volume that cannot be read.
@@ -179,6 +187,7 @@ def mesh(
         smooth=smooth, extractor=extractor, normals=normals, space=space, values=coloured,
     )
     runner = Runner(threads, device, memory, progress)
+    runner.save_in(checkpoint, resume, every)
     if isos is not None:
         names = outputs_for(out, len(isos), lambda path, n: iso_path(path, isos[n]))
         outputs = Outputs(names, runner.state, compress, isos=isos)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
 import threading
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any, Callable, Protocol, Union
 from . import _library as c
 
 _DEVICES = {"auto": 0, "cpu": 1, "cuda": 2}
+_SECONDS = {"s": 1, "min": 60, "h": 3600}
 _BYTES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12, "Ki": 2**10, "Mi": 2**20, "Gi": 2**30, "Ti": 2**40}
 
 
@@ -103,6 +105,24 @@ def parse_bytes(memory: int | str | None) -> int:
     if memory < 1:
         raise ValueError(f"memory: expected at least 1 byte, found {memory}")
     return memory
+
+
+def parse_every(every: float | str) -> tuple[float, int]:
+    """How often a state is saved: seconds, and layers or 0. As the command line's --every: 300, "5min" or "16layers"."""
+    number, unit = str(every), "s"
+    if isinstance(every, str):
+        number = every.rstrip("abcdefghijklmnopqrstuvwxyz")
+        unit = every[len(number) :]
+    try:
+        if unit == "layers":
+            seconds, layers = 0.0, int(number)
+        else:
+            seconds, layers = float(number) * _SECONDS[unit], 0
+    except (KeyError, ValueError):
+        seconds, layers = 0.0, 0
+    if not (seconds > 0 or layers > 0):
+        raise ValueError(f"every: expected seconds above 0, or a text such as 90s, 5min, 2h or 16layers, found {every!r}")
+    return seconds, layers
 
 
 class RunState:
@@ -208,6 +228,17 @@ class Runner:
             return self.state.guarded(lambda: teller.tell(now))
 
         self.struct.progress = c.TellProgress(tell)
+
+    def save_in(self, checkpoint: str | os.PathLike[str] | None, resume: bool, every: float | str) -> None:
+        """Saves the state of the run in a folder, where one is named."""
+        seconds, layers = parse_every(every)
+        if checkpoint is None:
+            if resume:
+                raise ValueError("resume: expected the folder of the run as checkpoint, found none")
+            return
+        self.struct.checkpoint = os.fsencode(checkpoint)
+        self.struct.checkpoint_seconds, self.struct.checkpoint_layers = seconds, layers
+        self.struct.resume = int(resume)
 
     def call(self, name: str, *arguments: Any) -> Any:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Literal, TypedDict
 
 import numpy.typing as npt
@@ -56,3 +57,6 @@ class MeshSettings(StopSettings, OpenSettings, total=False):
     step: int
     memory: int | str | None
     device: Literal["auto", "cpu", "cuda"]
+    checkpoint: str | os.PathLike[str] | None
+    resume: bool
+    every: float | str

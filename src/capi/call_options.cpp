@@ -106,6 +106,9 @@ RunControl run_control(const iw_run& given) {
   control.device = choice("device", given.device, {Device::kAutomatic, Device::kCpu, Device::kCuda});
   control.slab = given.slab;
   control.memory = given.memory;
+  control.checkpoint.folder = text_of(given.checkpoint);
+  control.checkpoint.layers = given.checkpoint_layers;
+  if (given.checkpoint_seconds != 0) control.checkpoint.seconds = given.checkpoint_seconds;
   if (given.stop != nullptr) control.stop = given.stop->wish;
   if (given.progress == nullptr) return control;
   control.progress = [given](const Progress& progress) {

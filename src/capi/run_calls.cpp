@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "capi/call_checkpoint.hpp"
 #include "capi/call_options.hpp"
 #include "capi/call_outputs.hpp"
 #include "capi/guard.hpp"
@@ -20,6 +21,7 @@ struct VolumeRun {
   const VolumeOpener& opener;
   iw_mesh_options given;
   iw_simplify_options simplify;
+  iw_run way;
   MeshOptions options;
   RunControl control;
 
@@ -27,17 +29,20 @@ struct VolumeRun {
       : opener(*required(volume, "volume").opener),
         given(taken(options_given)),
         simplify(taken(given.simplify)),
+        way(taken(run)),
         options(mesh_options(given, simplify, info())),
-        control(run_control(taken(run))) {}
+        control(run_control(way)) {}
 
   const VolumeInfo& info() const { return opener.info(); }
 
   // Counts what the number of triangles and the choice of components depend on. These passes over the volume are not
-  // part of the progress.
+  // part of the progress, and not saved.
   void pass_before() {
     RunControl silent = control;
     silent.progress = {};
     silent.memory = 0;
+    silent.checkpoint = {};
+    silent.resume.reset();
     const ComponentRule rule = component_rule(simplify);
     if (!rule.keeps_all()) {
       options.components = std::make_shared<ComponentChoice>(choose_components(*opener.open(), options, rule, silent));
@@ -82,15 +87,18 @@ void describe_level_set(const VolumeRun& run, Json& json) {
 
 void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
   const MeshFileOptions file = run.file();
-  CallOutputs sinks(outputs, count, file);
+  const CallCheckpoint saved(run.way, count, run.control);
+  CallOutputs sinks(outputs, count, file, saved.meshes());
   run.pass_before();
   const MeshReport report = mesh_volume(*run.opener.open(), sinks.pointers(), run.options, run.control);
   Json json = report_of(run, report, file);
+  if (!saved.meshes().empty()) json["resumed_at"] = report.resumed_at;
   json["iso"] = run.options.iso;
   describe_level_set(run, json);
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
+  saved.finish();
 }
 
 Label label_of(const iw_output& output) {
@@ -220,6 +228,7 @@ iw_status iw_forecast(const iw_volume* volume, const iw_mesh_options* options, c
   return guarded(result, [&] {
     VolumeRun all(volume, options, run);
     all.pass_before();
+    all.control.checkpoint = {};
     set_report(result, forecast_json(forecast_mesh(*all.opener.open(), all.options, all.control)));
   });
 }

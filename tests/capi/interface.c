@@ -1,81 +1,11 @@
 // The C interface from C99: every call, beside the command line where that says the same.
 //   isoweave_c_tests [PROGRAM]
-#include <isoweave/isoweave.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 36, SAMPLES = SIDE * SIDE * SIDE };
-
-static int faults = 0;
-
-#define EXPECT(condition)                                            \
-  do {                                                               \
-    if (!(condition)) {                                              \
-      printf("interface.c:%d: expected %s\n", __LINE__, #condition); \
-      ++faults;                                                      \
-    }                                                                \
-  } while (0)
-
-static iw_result result = {sizeof(iw_result), NULL, NULL};
-
-// The status of a call, with its message where it is none that was expected.
-static int is(iw_status found, iw_status expected) {
-  if (found != expected) printf("status %d: %s\n", found, result.message == NULL ? "" : result.message);
-  return found == expected && (found == IW_DONE) == (result.message == NULL);
-}
-
-// The text after "KEY": in JSON, up to the next comma or bracket, without quotes.
-static void text_in(const char* json, const char* key, char* out, size_t room) {
-  char quoted[64];
-  snprintf(quoted, sizeof quoted, "\"%s\":", key);
-  out[0] = 0;
-  const char* at = json == NULL ? NULL : strstr(json, quoted);
-  if (at == NULL) return;
-  at += strlen(quoted);
-  while (*at == ' ' || *at == '"') ++at;
-  const size_t length = strcspn(at, "\",}]");
-  snprintf(out, room, "%.*s", (int)(length < room ? length : room - 1), at);
-}
-
-static double number_in(const char* json, const char* key) {
-  char text[64];
-  text_in(json, key, text, sizeof text);
-  return text[0] == 0 ? (double)NAN : strtod(text, NULL);
-}
-
-static void keep_digest(char digest[17]) { text_in(result.report, "digest", digest, 17); }
-
-static int exists(const char* path) {
-  FILE* file = fopen(path, "rb");
-  if (file != NULL) fclose(file);
-  return file != NULL;
-}
-
-// A ball with a dent and a small one beside it: not the same along any two axes.
-static void fill(float* samples) {
-  for (int k = 0; k < SIDE; ++k)
-    for (int j = 0; j < SIDE; ++j)
-      for (int i = 0; i < SIDE; ++i) {
-        const double x = i - 15.2, y = j - 14.1, z = k - 17.7;
-        const double ball =
-            11.3 - sqrt(x * x + 1.1 * y * y + 0.9 * z * z) + 0.8 * sin(0.7 * x) * cos(0.5 * y + 0.3 * z);
-        const double small = 3.1 - sqrt((i - 31) * (i - 31) + (j - 30) * (j - 30) + (k - 29) * (k - 29));
-        samples[(k * SIDE + j) * SIDE + i] = (float)(ball > small ? ball : small);
-      }
-}
-
-static iw_volume_info info_of_samples(void) {
-  iw_volume_info info = {.struct_size = sizeof info};
-  info.dims[0] = info.dims[1] = info.dims[2] = SIDE;
-  info.type = IW_FLOAT32;
-  info.spacing[0] = 0.5;
-  info.spacing[1] = 0.75;
-  info.spacing[2] = 1.25;
-  info.origin[0] = 3;
-  return info;
-}
+#include "support.h"
 
 static void write_samples(const float* samples) {
   FILE* file = fopen("c_volume.raw", "wb");
@@ -98,12 +28,6 @@ static void digest_of_program(const char* program, const char* extractor, char d
   report[fread(report, 1, sizeof report - 1, file)] = 0;
   fclose(file);
   text_in(report, "digest", digest, 17);
-}
-
-static iw_simplify_options within(const char* error) {
-  iw_simplify_options simplify = {.struct_size = sizeof simplify};
-  simplify.error = error;
-  return simplify;
 }
 
 // ------------------------------------------------------------------------------------------ sources, sinks, progress
@@ -152,13 +76,6 @@ static int32_t count_and_stop(void* context, const iw_progress* progress) {
 }
 
 // ------------------------------------------------------------------------------------------------------------- tests
-
-static iw_volume* volume_of(const float* samples) {
-  const iw_volume_info info = info_of_samples();
-  iw_volume* volume = NULL;
-  EXPECT(is(iw_volume_in_memory(&info, samples, SAMPLES * sizeof(float), &volume, &result), IW_DONE));
-  return volume;
-}
 
 static void test_digests(const float* samples, const char* program) {
   char wanted[17] = "", found[17];
@@ -318,54 +235,6 @@ static void test_labels(void) {
   outputs[0].mesh = NULL;
   EXPECT(is(iw_mesh_labels(volume, NULL, NULL, outputs, 2, &result), IW_BAD_ARGUMENT));
   EXPECT(outputs[0].mesh == NULL);
-  iw_free_volume(volume);
-}
-
-// Several iso-values from one sweep, each beside the run of its own.
-static void test_isos(const float* samples) {
-  iw_volume* volume = volume_of(samples);
-  const iw_simplify_options simplify = within("0.3vox");
-  iw_mesh_options options = {.struct_size = sizeof options};
-  options.simplify = &simplify;
-  options.extractor = IW_EXTRACTOR_DUAL;
-  iw_output outputs[3] = {{.struct_size = sizeof outputs[0]}, {.struct_size = sizeof outputs[0]}};
-  outputs[2].struct_size = sizeof outputs[0];
-  outputs[0].iso = 2.5;
-  outputs[1].iso = -1;
-  outputs[1].path = "c_iso.ply";
-  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 3, &result), IW_DONE));
-  char digests[3][17];
-  const char* entry = strstr(result.report, "\"isos\"");
-  EXPECT(entry != NULL && strstr(result.report, "\"extractor\":\"dual\"") != NULL);
-  for (int n = 0; entry != NULL && n < 3; ++n) {
-    entry = strstr(entry, "{\"iso\":");
-    EXPECT(number_in(entry, "iso") == outputs[n].iso);
-    text_in(entry, "digest", digests[n], sizeof digests[n]);
-    ++entry;
-  }
-  for (int n = 0; n < 3; ++n) {
-    char wanted[17], found[17];
-    options.iso = outputs[n].iso;
-    iw_output alone = {.struct_size = sizeof alone};
-    EXPECT(is(iw_mesh_volume(volume, &options, NULL, &alone, 1, &result), IW_DONE));
-    keep_digest(wanted);
-    iw_free_mesh(alone.mesh);
-    EXPECT((outputs[n].mesh == NULL) == (n == 1));
-    if (n == 1) EXPECT(is(iw_read_mesh("c_iso.ply", 0, &outputs[n].mesh, &result), IW_DONE));
-    EXPECT(is(iw_check_mesh(outputs[n].mesh, 0, 0, &result), IW_DONE));
-    keep_digest(found);
-    EXPECT(strcmp(found, wanted) == 0 && strcmp(digests[n], wanted) == 0);
-    iw_free_mesh(outputs[n].mesh);
-    outputs[n].mesh = NULL;
-  }
-  outputs[0].iso = 0;  // as the third
-  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 3, &result), IW_BAD_ARGUMENT));
-  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 0, &result), IW_BAD_ARGUMENT));
-  iw_simplify_options share = {.struct_size = sizeof share};
-  share.ratio = 0.5;
-  options.simplify = &share;
-  EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs + 1, 2, &result), IW_BAD_ARGUMENT));
-  EXPECT(strstr(result.message, "ratio") != NULL && outputs[2].mesh == NULL);
   iw_free_volume(volume);
 }
 
@@ -536,6 +405,7 @@ int main(int count, char** arguments) {
   test_isos(samples);
   test_meshes(samples);
   test_stops(samples);
+  test_checkpoints(samples);
   test_faults(samples);
   iw_result_clear(&result);
   free(samples);

@@ -121,6 +121,9 @@ void mesh_anything(Input& input, const iw_volume* volume, iw_result* result) {
   run.struct_size = size_like(input, sizeof run);
   run.threads = 1;
   run.slab = input.byte() % 4;
+  run.checkpoint_layers = input.number<std::int8_t>();
+  run.checkpoint_seconds = input.byte() % 8 == 0 ? input.number<double>() : 0;
+  run.resume = input.byte() % 2;
   iw_output outputs[2]{};
   const std::size_t size = size_like(input, sizeof(iw_output));
   for (iw_output& output : outputs) {
