@@ -15,9 +15,13 @@ from test_manners import Slow
 
 import isoweave
 
+# A shell that starts the tests in the background has Ctrl-C ignored, which processes inherit.
 SCRIPT = """
+import signal
 import isoweave
 from test_manners import Slow
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 def progress(now):
     print(now.layer, flush=True)
