@@ -50,6 +50,18 @@ Length error_of(const iw_simplify_options& given, const std::string& unit, const
   return length("error", usual, unit);
 }
 
+CheckpointOptions checkpoint_options(const iw_run& given) {
+  if (!(given.checkpoint_seconds >= 0) || given.checkpoint_layers < 0)
+    throw std::invalid_argument("checkpoint_seconds, checkpoint_layers: expected numbers of at least 0, found " +
+                                std::to_string(given.checkpoint_seconds) + " and " +
+                                std::to_string(given.checkpoint_layers));
+  CheckpointOptions options;
+  options.folder = text_of(given.checkpoint);
+  options.layers = given.checkpoint_layers;
+  if (given.checkpoint_seconds > 0) options.seconds = given.checkpoint_seconds;
+  return options;
+}
+
 }  // namespace
 
 SimplifyOptions simplify_options(const iw_simplify_options& given, const std::string& unit, const std::string& usual) {
@@ -106,9 +118,7 @@ RunControl run_control(const iw_run& given) {
   control.device = choice("device", given.device, {Device::kAutomatic, Device::kCpu, Device::kCuda});
   control.slab = given.slab;
   control.memory = given.memory;
-  control.checkpoint.folder = text_of(given.checkpoint);
-  control.checkpoint.layers = given.checkpoint_layers;
-  if (given.checkpoint_seconds != 0) control.checkpoint.seconds = given.checkpoint_seconds;
+  control.checkpoint = checkpoint_options(given);
   if (given.stop != nullptr) control.stop = given.stop->wish;
   if (given.progress == nullptr) return control;
   control.progress = [given](const Progress& progress) {

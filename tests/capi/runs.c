@@ -1,4 +1,5 @@
 // Runs with several iso-values, and runs that are stopped and go on.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,6 +89,9 @@ void test_checkpoints(const float* samples) {
     outputs[n].path = paths[n];
     remove(paths[n]);
   }
+  run.checkpoint_seconds = (double)NAN;
+  EXPECT(is(iw_mesh_volume(volume, &options, &run, outputs, 2, &result), IW_BAD_ARGUMENT));
+  run.checkpoint_seconds = 0;
   run.resume = 1;  // begins where there is nothing to go on from
   run.context = stop;
   run.stop = stop;
