@@ -183,8 +183,8 @@ def mesh(
     )
     isos = _isos(level, lods)
     options = mesh_struct(
-        simplify_options, iso=0.0 if isos is not None else level_of(opened, level), inside=inside, closed=closed,  # type: ignore[arg-type]
-        smooth=smooth, extractor=extractor, normals=normals, space=space, values=coloured,
+        simplify_options, iso=level_of(opened, level) if isos is None else 0.0, inside=inside, closed=closed, smooth=smooth,
+        extractor=extractor, normals=normals, space=space, values=coloured,
     )
     runner = Runner(threads, device, memory, progress)
     runner.save_in(checkpoint, resume, every)
@@ -205,7 +205,7 @@ def _isos(level: float | Levels | None, lods: Sequence[Length]) -> list[float] |
         return None
     if lods:
         raise ValueError("lods: expected one level, found several")
-    return [float(each) for each in level]  # type: ignore[union-attr]
+    return [float(each) for each in np.asarray(level)]
 
 
 def _run(

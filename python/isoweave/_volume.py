@@ -368,5 +368,6 @@ def volume_for(volume: VolumeLike, roi: Roi | None, step: int, **opening: Any) -
     return opened if step == 1 else opened.downsample(step)
 
 
-def level_of(volume: Volume, level: float | None) -> float:
+def level_of(volume: Volume, level: Any) -> float:
+    """The iso-value of a run: Otsu's threshold where none is named."""
     return volume.suggest_level() if level is None else float(level)
