@@ -149,7 +149,7 @@ def mesh(
             report's ``resumed_at`` says at which layer. Without it an unfinished run in the folder is refused.
         every: how often a state is saved: seconds, or as "5min", "2h" or "16layers".
         progress: True: a bar of tqdm, or one line on standard error. A function that gets a :class:`Progress` after
-            every slab; False from it stops the run.
+            every slab, in the thread that calls; False from it stops the run.
 
     Returns:
         A :class:`Mesh`, or with ``lods`` or several levels a list of them; with ``out`` a :class:`Report`, or a list of

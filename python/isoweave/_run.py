@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import queue
 import sys
 import threading
 from dataclasses import dataclass
@@ -125,6 +126,23 @@ def parse_every(every: float | str) -> tuple[float, int]:
     return seconds, layers
 
 
+class _Errand:
+    """Work for another thread, and what became of it."""
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self._work = work
+        self.done = threading.Event()
+        self.result: Any = None
+        self.error: BaseException | None = None
+
+    def do(self) -> None:
+        try:
+            self.result = self._work()
+        except BaseException as error:
+            self.error = error
+        self.done.set()
+
+
 class RunState:
     """A run that may be stopped: by Ctrl-C, by a callback's exception, or by False from a progress callback.
 
@@ -137,6 +155,8 @@ class RunState:
             raise MemoryError("expected memory for a run, found none")
         self._lock = threading.Lock()
         self._error: BaseException | None = None
+        self._errands: queue.SimpleQueue[_Errand | None] | None = None  # where the call has a thread of its own
+        self._abandoned = False
 
     @property
     def stop_pointer(self) -> int | None:
@@ -156,6 +176,31 @@ class RunState:
             self.stop()
             return 1
 
+    def in_caller(self, work: Callable[[], Any]) -> Any:
+        """Does work in the thread that has asked for the run, where programs with windows must touch them."""
+        if self._errands is None:
+            return work()
+        errand = _Errand(work)
+        self._errands.put(errand)
+        while not errand.done.wait(0.1):
+            if self._abandoned:
+                return False
+        if errand.error is not None:
+            raise errand.error
+        return errand.result
+
+    @staticmethod
+    def _call_is_done(errands: queue.SimpleQueue[_Errand | None]) -> bool:
+        """Does the next errand of the thread that makes the call."""
+        try:
+            errand = errands.get(timeout=0.1)
+        except queue.Empty:
+            return False
+        if errand is None:
+            return True
+        errand.do()
+        return False
+
     def call(self, name: str, *arguments: Any) -> Any:
         """Makes a call of the C interface, without the GIL.
 
@@ -164,23 +209,24 @@ class RunState:
         if threading.current_thread() is not threading.main_thread():
             return self._finish(lambda: c.call(name, *arguments))
         outcome: list[Any] = []
-        done = threading.Event()
+        self._errands = queue.SimpleQueue()
 
         def work() -> None:
             try:
                 outcome.append((c.call(name, *arguments), None))
             except BaseException as error:
                 outcome.append((None, error))
-            done.set()
+            errands.put(None)
 
+        errands = self._errands
         thread = threading.Thread(target=work, name="isoweave")
         thread.start()
         try:
-            while not done.wait(0.1):
+            while not self._call_is_done(errands):
                 pass
         except BaseException:  # KeyboardInterrupt, or what a signal handler of the program raises
+            self._abandoned = True
             self.stop()
-            done.wait()
             thread.join()
             raise
         thread.join()
@@ -225,7 +271,7 @@ class Runner:
         def tell(_context: int | None, told: Any) -> int:
             p = told.contents
             now = Progress(p.layer, p.layers, p.voxels, p.live_triangles, p.final_triangles, p.bytes)
-            return self.state.guarded(lambda: teller.tell(now))
+            return self.state.guarded(lambda: self.state.in_caller(lambda: teller.tell(now)))
 
         self.struct.progress = c.TellProgress(tell)
 
