@@ -36,8 +36,10 @@ def test_page(folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert {"ball.glb", "ball.ply"} <= set(os.listdir(folder))
 
 
-def test_notebook(folder: pathlib.Path) -> None:
+def test_notebook(folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every cell runs, and the meshes that are last in a cell show themselves."""
+    for name in ("IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR"):
+        monkeypatch.setenv(name, str(folder / name))
     nbformat = pytest.importorskip("nbformat")
     client = pytest.importorskip("nbclient")
     notebook = nbformat.read(ROOT / "docs" / "notebook.ipynb", as_version=4)
