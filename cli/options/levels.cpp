@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -51,22 +50,6 @@ std::vector<OutputOptions> level_outputs(const OutputOptions& output, const Stop
   return outputs;
 }
 
-std::vector<std::string> level_folders(const std::string& folder, std::size_t levels) {
-  if (levels == 1 || folder.empty()) return std::vector<std::string>(levels, folder);
-  std::vector<std::string> folders;
-  for (std::size_t level = 0; level < levels; ++level) {
-    folders.push_back((std::filesystem::path(folder) / fmt::format("lod{}", level)).string());
-  }
-  return folders;
-}
-
-void remove_level_folders(const std::vector<std::string>& folders) {
-  std::error_code ignored;
-  for (const std::string& folder : folders) {
-    if (folders.size() > 1) std::filesystem::remove(folder, ignored);
-  }
-}
-
 LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
                        const std::function<MeshFileOptions(std::size_t)>& options) {
   if (outputs.front().one_file) {
@@ -97,7 +80,7 @@ std::vector<TriangleMesh> read_finer(const std::vector<OutputOptions>& outputs) 
 Json levels_json(const MeshReport& report, const std::vector<OutputOptions>& outputs) {
   Json levels = Json::array();
   for (std::size_t level = 0; level < report.levels.size(); ++level) {
-    Json json = surface_json(report.levels[level]);
+    Json json = Json::parse(surface_json(report.levels[level]));
     json["output"] = outputs[level].name();
     levels.push_back(std::move(json));
   }

@@ -25,12 +25,6 @@ std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit)
 // levels.
 std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop);
 
-// The folders of the parts of each level's file, for runs that can be resumed: `folder` itself for a single one.
-std::vector<std::string> level_folders(const std::string& folder, std::size_t levels);
-
-// Removes the folders of several levels, which are empty when the run is finished.
-void remove_level_folders(const std::vector<std::string>& folders);
-
 // The files of all levels, open.
 class LevelSinks {
  public:

@@ -114,13 +114,6 @@ std::uint64_t output_memory(const OutputOptions& output, std::uint64_t vertices,
   return waiting + mesh_file_memory(format_path(output), vertices, triangles, options);
 }
 
-std::string space_text(const Geometry& geometry, OutputSpace space) {
-  if (space == OutputSpace::kIndex) return "index";
-  if (geometry.space == Space::kUnknown) return "";  // coordinates are those of the volume, whatever was asked for
-  const bool as_lps = space == OutputSpace::kLps || (space == OutputSpace::kAsVolume && geometry.space == Space::kLps);
-  return as_lps ? "LPS" : "RAS";
-}
-
 void print_notes(const MeshSink& sink) {
   for (const std::string& line : sink.notes()) print_note(line);
 }

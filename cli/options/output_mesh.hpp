@@ -66,9 +66,6 @@ std::uint64_t output_bytes(const OutputOptions& output, std::uint64_t vertices, 
 std::uint64_t output_memory(const OutputOptions& output, std::uint64_t vertices, std::uint64_t triangles,
                             const MeshFileOptions& options);
 
-// The meaning of the output's axes, as far as it is known: "LPS", "RAS", "index" or nothing.
-std::string space_text(const Geometry& geometry, OutputSpace space);
-
 // Prints the notes that the sink has on its mesh.
 void print_notes(const MeshSink& sink);
 

@@ -32,7 +32,7 @@ Json bins_json(const PageErrors& errors) {
 Json errors_json(const PageErrors& errors) {
   Json json = {{"vertices", errors.vertices}, {"mean", errors.mean},       {"rms", errors.rms},
                {"max", errors.max},           {"bins", bins_json(errors)}, {"samples", errors.samples}};
-  json["sampled"] = distances_json(errors.sampled, 1);
+  json["sampled"] = Json::parse(distances_json(errors.sampled));
   return json;
 }
 
@@ -78,7 +78,7 @@ Json notes_json(const PageSurfaces& page, bool differs, const std::string& full_
 }
 
 Json file_check_json(const TriangleMesh& mesh, const std::string& path) {
-  Json json = check_json(check_mesh(mesh), path);
+  Json json = Json::parse(check_json(check_mesh(mesh), path));
   json.update(place_json(mesh));
   return json;
 }

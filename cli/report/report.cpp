@@ -3,35 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
+#include <utility>
 
 #include "isoweave/printable.hpp"
+#include "isoweave/report_json.hpp"
 #include "report/print.hpp"
 
 namespace isoweave::cli {
 namespace {
-
-Json sweep_json(const std::vector<SlabRecord>& sweep) {
-  Json records = Json::array();
-  for (const SlabRecord& record : sweep) {
-    records.push_back({{"layer", record.layer},
-                       {"live_triangles", record.live_triangles},
-                       {"undecided_triangles", record.undecided_triangles},
-                       {"final_triangles", record.final_triangles},
-                       {"bytes", record.bytes}});
-  }
-  return records;
-}
-
-Json distance_json(double mean, double rms, double max) { return {{"mean", mean}, {"rms", rms}, {"max", max}}; }
-
-Json angles_json(const TriangleAngles& angles) {
-  return {{"smallest", number_or_null(angles.smallest)},
-          {"largest", number_or_null(angles.largest)},
-          {"triangles_under_5", angles.under_5_degrees},
-          {"smallest_histogram", {{"low", 0}, {"high", 60}, {"triangles", angles.smallest_in_bins}}}};
-}
 
 // One half of a pair beyond 16 bits, or the whole.
 std::string unit_escaped(std::uint32_t unit) { return fmt::format("\\u{:04x}", unit); }
@@ -58,75 +38,21 @@ std::string escaped(std::string_view json) {
 
 }  // namespace
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json volume_json(const VolumeInfo& info, const std::string& path) {
-  return {{"path", path},
-          {"format", info.format},
-          {"part", info.part},
-          {"dims", info.dims},
-          {"type", sample_type_name(info.type)},
-          {"spacing", info.geometry.spacing},
-          {"origin", info.geometry.origin},
-          {"direction", info.geometry.direction},
-          {"space", space_name(info.geometry.space)},
-          {"unit", info.geometry.unit},
-          {"slope", info.slope},
-          {"intercept", info.intercept},
-          {"notes", info.notes}};
+  Json json = Json::parse(isoweave::volume_json(info));
+  json["path"] = path;
+  return json;
 }
 
 void add_range(Json& input, double min, double max, std::uint64_t nan) {
-  input["min"] = min <= max ? number_or_null(min) : Json(nullptr);
-  input["max"] = min <= max ? number_or_null(max) : Json(nullptr);
-  input["nan"] = nan;
+  input.update(Json::parse(range_json(min, max, nan)));
 }
 
-Json label_json(const Label& label) {
-  if (label.is_negative()) return static_cast<std::int64_t>(label.bits());
-  return label.bits();
-}
-
-Json surface_json(const SurfaceReport& surface) {
-  return {{"error", number_or_null(surface.error)},
-          {"triangles", surface.triangles},
-          {"vertices", surface.vertices},
-          {"open_edges", surface.open_edges},
-          {"nonmanifold_edges", surface.nonmanifold_edges},
-          {"nonmanifold_vertices", surface.nonmanifold_vertices},
-          {"components", surface.components},
-          {"euler", surface.euler},
-          {"digest", digest_text(surface.digest)}};
-}
+Json label_json(const Label& label) { return Json::parse(label.text()); }
 
 Json run_json(const MeshReport& report, Json input) {
-  Json json = {{"version", ISOWEAVE_VERSION},
-               {"backend", report.device == Device::kCuda ? "cuda" : "cpu"},
-               {"threads", report.threads},
-               {"slab", report.slab},
-               {"schedule", schedule_name(report.schedule)},
-               {"input", std::move(input)},
-               {"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"components_dropped", report.components_dropped},
-               {"triangles_dropped", report.triangles_dropped},
-               {"rounds", report.rounds},
-               {"locked_vertices", report.locked_vertices},
-               {"seconds",
-                {{"read", report.seconds_read},
-                 {"extract", report.seconds_extract},
-                 {"simplify", report.seconds_simplify},
-                 {"write", report.seconds_write},
-                 {"total", report.seconds_total}}},
-               {"memory", {{"peak_bytes", report.peak_bytes}, {"predicted_bytes", nullptr}}},
-               {"sweep", sweep_json(report.sweep)},
-               {"warnings", report.warnings}};
-  json.update(surface_json(report));
+  Json json = Json::parse(isoweave::run_json(report));
+  json["input"] = std::move(input);
   return json;
 }
 
@@ -135,37 +61,6 @@ Json left_out_json(const LeftOutReport& left_out, const std::string& path) {
           {"chunks", left_out.chunks},
           {"chunks_left_out", left_out.chunks_left_out},
           {"bytes_left_out", left_out.bytes_left_out}};
-}
-
-Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes) {
-  return {{"triangles_extracted", forecast.triangles_extracted},
-          {"triangles", forecast.triangles},
-          {"vertices", forecast.vertices},
-          {"output_bytes", output_bytes},
-          {"peak_bytes", forecast.peak_bytes},
-          {"least_bytes", forecast.least_bytes},
-          {"seconds", forecast.seconds}};
-}
-
-Json check_json(const MeshCheck& check, const std::string& path) {
-  return {{"version", ISOWEAVE_VERSION},
-          {"path", path},
-          {"triangles", check.triangles},
-          {"vertices", check.vertices},
-          {"unused_vertices", check.unused_vertices},
-          {"open_edges", check.open_edges},
-          {"nonmanifold_edges", check.nonmanifold_edges},
-          {"nonmanifold_vertices", check.nonmanifold_vertices},
-          {"misoriented_edges", check.misoriented_edges},
-          {"degenerate_triangles", check.degenerate_triangles},
-          {"coincident_triangles", check.coincident_triangles},
-          {"zero_area_triangles", check.zero_area_triangles},
-          {"components", check.components},
-          {"euler", check.euler},
-          {"area", number_or_null(check.area)},
-          {"volume", number_or_null(check.volume)},
-          {"angles", angles_json(check.angles)},
-          {"digest", digest_text(check.digest)}};
 }
 
 Box box_of(const TriangleMesh& mesh) {
@@ -190,21 +85,6 @@ Json place_json(const TriangleMesh& mesh) {
           {"space", mesh.space},
           {"offset", mesh.offset},
           {"box", {{"low", box.low}, {"high", box.high}}}};
-}
-
-Json self_intersections_json(const SelfIntersections& found) {
-  return {{"pairs", found.pairs()},   {"apart", found.apart},         {"at_vertex", found.at_vertex},
-          {"at_edge", found.at_edge}, {"triangles", found.triangles}, {"without_area", found.without_area},
-          {"first", found.first}};
-}
-
-Json distances_json(const MeshDistance& distance, double unit) {
-  const auto one_way = [&](const OneWayDistance& way) {
-    return distance_json(way.mean / unit, way.rms / unit, way.max / unit);
-  };
-  return {{"a_to_b", one_way(distance.a_to_b)},
-          {"b_to_a", one_way(distance.b_to_a)},
-          {"both", distance_json(distance.mean / unit, distance.rms / unit, distance.max / unit)}};
 }
 
 std::string json_text(const Json& json) {
@@ -252,32 +132,6 @@ void print_summary(const MeshReport& report, const std::string& output, double v
   }
   print_note(fmt::format("{}, peak memory {}, {} thread{}, digest {}", speed, byte_text(report.peak_bytes),
                          report.threads, report.threads == 1 ? "" : "s", digest_text(report.digest)));
-}
-
-std::string_view space_name(Space space) {
-  switch (space) {
-    case Space::kLps:
-      return "lps";
-    case Space::kRas:
-      return "ras";
-    case Space::kUnknown:
-      break;
-  }
-  return "unknown";
-}
-
-std::string_view schedule_name(Schedule schedule) {
-  switch (schedule) {
-    case Schedule::kQueue:
-      return "queue";
-    case Schedule::kLocal:
-      return "local";
-    case Schedule::kRounds:
-      return "rounds";
-    case Schedule::kAutomatic:
-      break;
-  }
-  return "auto";
 }
 
 }  // namespace isoweave::cli

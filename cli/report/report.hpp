@@ -6,18 +6,15 @@
 #include <string>
 #include <string_view>
 
-#include "isoweave/forecast.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/output_file.hpp"
 #include "isoweave/pipeline.hpp"
+#include "isoweave/report_json.hpp"
 #include "isoweave/volume.hpp"
 
 namespace isoweave::cli {
 
 using Json = nlohmann::ordered_json;
-
-// A number, or null where JSON has no number for it.
-Json number_or_null(double value);
 
 // The `input` part: the facts of the header. `path` is the path that the user gave.
 Json volume_json(const VolumeInfo& info, const std::string& path);
@@ -28,21 +25,12 @@ void add_range(Json& input, double min, double max, std::uint64_t nan);
 // A label as a number.
 Json label_json(const Label& label);
 
-// A surface as it was written.
-Json surface_json(const SurfaceReport& surface);
-
 // The common part of the reports of all runs. `input` is the first part that differs between runs on volumes and on
 // meshes.
 Json run_json(const MeshReport& report, Json input);
 
 // The amounts that a run with the index `path` has not read.
 Json left_out_json(const LeftOutReport& left_out, const std::string& path);
-
-// The forecast of a run.
-Json forecast_json(const Forecast& forecast, std::uint64_t output_bytes);
-
-// The facts of a mesh, by its triangles alone.
-Json check_json(const MeshCheck& check, const std::string& path);
 
 struct Box {
   std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
@@ -55,11 +43,6 @@ Box box_of(const TriangleMesh& mesh);
 
 // The place of a mesh: its unit and space, empty where they are not said, its offset and its box.
 Json place_json(const TriangleMesh& mesh);
-
-Json self_intersections_json(const SelfIntersections& found);
-
-// Distances between two meshes A and B, in lengths of `unit`.
-Json distances_json(const MeshDistance& distance, double unit);
 
 // JSON text that ends with a line feed. Names that are not UTF-8 do not stop it.
 std::string json_text(const Json& json);
@@ -78,8 +61,5 @@ void print_left_out(const MeshReport& report, const std::string& path);
 
 // Two lines about a run that is done: the mesh, and what it took.
 void print_summary(const MeshReport& report, const std::string& output, double voxels);
-
-std::string_view space_name(Space space);
-std::string_view schedule_name(Schedule schedule);
 
 }  // namespace isoweave::cli

@@ -119,13 +119,13 @@ void run_check(const CheckArguments& arguments) {
   const InputMesh input = read_input_mesh(arguments.path, arguments.reading, arguments.weld);
   const TriangleMesh& mesh = input.mesh;
   const MeshCheck check = check_mesh(mesh);
-  Json json = check_json(check, arguments.path);
+  Json json = Json::parse(check_json(check, arguments.path));
   json.update(place_json(mesh));
   tell_input(arguments, input, check, json);
   std::string text = check_text(check, mesh, arguments.path);
   if (arguments.self_intersections) {
     const SelfIntersections found = count_self_intersections(mesh, kListedPairs, threads);
-    json["self_intersections"] = self_intersections_json(found);
+    json["self_intersections"] = Json::parse(self_intersections_json(found));
     text += self_intersections_text(found);
   }
   print_out(arguments.json ? json_text(json) : text);

@@ -118,10 +118,10 @@ void run_compare(const CompareArguments& arguments) {
   Json json = {{"version", ISOWEAVE_VERSION}, {"a", arguments.a}, {"b", arguments.b}, {"samples", options.samples}};
   json.update(place_json(a));
   json["notes"] = notes;
-  json.update(distances_json(distance, 1));
+  json.update(Json::parse(distances_json(distance)));
   if (voxel > 0) {
     json["voxel"] = voxel;
-    json["voxels"] = distances_json(distance, voxel);
+    json["voxels"] = Json::parse(distances_json(distance, voxel));
   }
   if (options.bins > 0) {
     json["histogram"] = {{"low", 0},

@@ -87,7 +87,7 @@ void tell_forecast(const MeshArguments& arguments, const std::vector<MeshedIso>&
   const Forecast sum = forecast_all(arguments, meshes, control, bytes);
   const int threads = control.threads > 0 ? control.threads : static_cast<int>(std::thread::hardware_concurrency());
   print_to_reader(forecast_text(sum, 0, bytes, threads, false));
-  evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(sum, bytes)}});
+  evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", Json::parse(forecast_json(sum, bytes))}});
 }
 
 Json entry_json(const MeshReport& report, const MeshedIso& mesh, const MeshSink& sink) {
@@ -95,17 +95,10 @@ Json entry_json(const MeshReport& report, const MeshedIso& mesh, const MeshSink&
                {"output", mesh.surface.output.name()},
                {"name", mesh.surface.part.name},
                {"color", color_text(mesh.surface.part.color)},
-               {"opacity", mesh.surface.part.color[3]},
-               {"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"warnings", report.warnings},
-               {"notes", sink.notes()}};
-  json.update(surface_json(report));
+               {"opacity", mesh.surface.part.color[3]}};
+  json.update(Json::parse(counts_json(report)));
+  json["notes"] = sink.notes();
+  json.update(Json::parse(surface_json(report)));
   return json;
 }
 
@@ -122,7 +115,7 @@ Json report_json(const MeshArguments& arguments, const VolumeInfo& info, const I
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
-  json["space"] = space_text(info.geometry, options.space);
+  json["space"] = space_of_mesh(info.geometry, options.space);
   json["offset"] = meshes.front().surface.part.options.offset;
   json["isos"] = Json::array();
   for (std::size_t n = 0; n < meshes.size(); ++n) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
 #include "isoweave/generate.hpp"
@@ -43,7 +44,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   Json json = run_json(report, std::move(input));
   if (forecast) {
     json["memory"]["predicted_bytes"] = forecast->peak_bytes;
-    json["forecast"] = forecast_json(*forecast, output_bytes(*forecast, arguments, file));
+    json["forecast"] = Json::parse(forecast_json(*forecast, output_bytes(*forecast, arguments, file)));
   }
   json["iso"] = options.iso;
   json["inside"] = arguments.inside;
@@ -56,7 +57,7 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
-  json["space"] = space_text(info.geometry, options.space);
+  json["space"] = space_of_mesh(info.geometry, options.space);
   json["offset"] = file.offset;
   return json;
 }
@@ -119,7 +120,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
     json["smooth"] = options.smooth;
     json["extractor"] = arguments.extractor;
     json["quality"] = arguments.quality;
-    json["space"] = space_text(info.geometry, options.space);
+    json["space"] = space_of_mesh(info.geometry, options.space);
   };
   mesh_label_files(task, info, control, evidence);
 }
@@ -308,7 +309,8 @@ class MeshJob {
     print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
     tell_unit();
-    evidence.write_forecast({{"version", ISOWEAVE_VERSION}, {"forecast", forecast_json(*forecast_, bytes)}});
+    evidence.write_forecast(
+        {{"version", ISOWEAVE_VERSION}, {"forecast", Json::parse(forecast_json(*forecast_, bytes))}});
   }
 
   void prepare_states() {
@@ -316,7 +318,7 @@ class MeshJob {
     if (resume_ && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
     if (arguments_.checkpoint.empty()) return;
     parse_every(arguments_.every, control_.checkpoint);
-    if (!resume_) lock_ = std::make_shared<CheckpointLock>(make_checkpoint_folder(arguments_.checkpoint));
+    if (!resume_) lock_ = std::make_shared<CheckpointLock>(begin_checkpoints(arguments_.checkpoint));
     control_.checkpoint.folder = arguments_.checkpoint;
     control_.checkpoint.lock = lock_;
     control_.checkpoint.note = task_json(arguments_, options_).dump();
@@ -336,7 +338,7 @@ class MeshJob {
 
   void sweep(ProgressMode mode, Evidence& evidence) {
     control_.memory_elsewhere = watch_memory(arguments_.watch) + files_bytes_;
-    const std::vector<std::string> folders = level_folders(arguments_.checkpoint, outputs_.size());
+    const std::vector<std::string> folders = part_folders(arguments_.checkpoint, outputs_.size());
     const LevelSinks sinks(outputs_, [&](std::size_t level) { return level_file(level, folders[level]); });
     print_volume_notes();
     const std::shared_ptr<Watch> watch =
@@ -349,7 +351,7 @@ class MeshJob {
     sinks.tell_digests(report);
     const std::string preset = preset_note(arguments_.iso, report.min, report.max);
     if (!preset.empty()) report.warnings.push_back(preset);
-    remove_level_folders(folders);
+    remove_part_folders(folders);
     if (watch) watch->complete(report);
     printer.finish();
     write_evidence(report, sinks, evidence);

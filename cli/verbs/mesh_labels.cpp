@@ -195,16 +195,9 @@ Json entry_json(const MeshedLabel& label, const MeshReport& report, const Surfac
                {"color", colored ? Json(color_text(surface.part.color)) : Json(nullptr)},
                {"layer", label.name.layer},
                {"samples", label.extent.samples},
-               {"output", surface.output.name()},
-               {"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"warnings", report.warnings}};
-  json.update(surface_json(report));
+               {"output", surface.output.name()}};
+  json.update(Json::parse(counts_json(report)));
+  json.update(Json::parse(surface_json(report)));
   return json;
 }
 

@@ -139,7 +139,7 @@ MeshFileOptions file_options(const MeshArguments& arguments, const StopOptions& 
   file.values = !arguments.color_by.empty();
   file.comments = comments(arguments, stop, options);
   file.unit = volume.geometry.unit;
-  file.space = space_text(volume.geometry, options.space);
+  file.space = space_of_mesh(volume.geometry, options.space);
   file.offset = mesh_offset(volume, options.space);
   return mesh_file_options(arguments.output, std::move(file));
 }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
 #include "options/input_volume.hpp"
 #include "options/values.hpp"
@@ -119,25 +119,13 @@ void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
   }
 }
 
-CheckpointLock make_checkpoint_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  CheckpointLock lock(folder);
-  const std::filesystem::path path(folder);
-  if (std::filesystem::exists(path / "state-0") || std::filesystem::exists(path / "state-1")) {
+CheckpointLock begin_checkpoints(const std::string& folder) {
+  CheckpointLock lock = lock_checkpoint_folder(folder);
+  if (holds_state(folder)) {
     throw CannotWrite(
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));
   }
   return lock;
-}
-
-void make_part_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw CannotWrite(folder + ": cannot be created: " + error.message());
-  for (const char* part : {"mesh.part", "faces.part", "positions.part", "normals.part", "values.part"})
-    std::filesystem::remove(std::filesystem::path(folder) / part, error);
 }
 
 }  // namespace isoweave::cli

@@ -24,10 +24,6 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
 void parse_every(std::string_view text, CheckpointOptions& checkpoint);
 
 // Makes the folder for the states of a new run, and locks it. States of another run are never overwritten.
-CheckpointLock make_checkpoint_folder(const std::string& folder);
-
-// Makes the folder of the parts of a mesh, and empties it. Without a state its parts are of a run that ended before its
-// first state, and cannot be continued.
-void make_part_folder(const std::string& folder);
+CheckpointLock begin_checkpoints(const std::string& folder);
 
 }  // namespace isoweave::cli

@@ -80,7 +80,7 @@ Json run_json(const WatchedRun& run, const SamplePlaces& places, const ViewGrid&
           {"iso", run.options.iso},
           {"closed", run.options.closed},
           {"unit", run.volume.geometry.unit},
-          {"space", space_text(run.volume.geometry, run.options.space)},
+          {"space", space_of_mesh(run.volume.geometry, run.options.space)},
           {"resumed_at", run.resumed_at},
           {"grid", {{"origin", grid.origin}, {"step", grid.step}}},
           {"slices", slices_json(places)},

@@ -204,6 +204,7 @@ void iw_free_mesh(iw_mesh* mesh);
 enum { IW_QUALITY_NORMAL = 0, IW_QUALITY_FAST, IW_QUALITY_FINE };
 enum { IW_NORMALS_NONE = 0, IW_NORMALS_GRADIENT, IW_NORMALS_QUADRIC };
 enum { IW_OUTPUT_AS_VOLUME = 0, IW_OUTPUT_LPS, IW_OUTPUT_RAS, IW_OUTPUT_INDEX };
+enum { IW_EXTRACTOR_CUBES = 0, IW_EXTRACTOR_TRILINEAR, IW_EXTRACTOR_TETRAHEDRA, IW_EXTRACTOR_DUAL };
 enum { IW_DEVICE_AUTO = 0, IW_DEVICE_CPU, IW_DEVICE_CUDA };
 
 // How a surface is simplified. Lengths are texts: "0.2vox", "50um", or a number in the unit of the volume or mesh.
@@ -231,6 +232,7 @@ typedef struct iw_mesh_options {
   int32_t normals;                      // IW_NORMALS_NONE ...
   int32_t space;                        // IW_OUTPUT_AS_VOLUME ...
   const iw_volume* values;              // a volume of the same size, whose values the vertices get; NULL: none
+  int32_t extractor;                    // IW_EXTRACTOR_CUBES ...: as ExtractorKind of mesh_options.hpp
 } iw_mesh_options;
 
 typedef struct iw_progress {
@@ -252,6 +254,15 @@ typedef struct iw_run {
   void* context;
   // Called after every slab by the thread that called. Returns 0, or another number to stop the run. NULL: none.
   int32_t (*progress)(void* context, const iw_progress* progress);
+  // iw_mesh_volume only, with outputs that are files: a folder, made where it is missing, in which the state of the run
+  // is saved, so that it can go on after the process has ended in any way. A run that is done leaves nothing in it. A
+  // run that is stopped by an iw_stop saves its state first; else the one that was saved last is there. NULL: none.
+  const char* checkpoint;
+  double checkpoint_seconds;  // save after at least so long; 0: 300
+  int64_t checkpoint_layers;  // save after at least so many layers; 0: by time
+  // 1: go on from the state in `checkpoint`, with the same volume, options and outputs, or begin where there is none.
+  // 0: an unfinished run in it is refused. The report has `resumed_at`, the layers that were done before.
+  int32_t resume;
 } iw_run;
 
 // A piece of a mesh on its way to a sink, valid during the call only. Arrays without elements may be NULL.
@@ -282,6 +293,7 @@ typedef struct iw_output {
   iw_mesh* mesh;      // set by a run that is done, to be freed by the caller; NULL before
   int32_t compress;   // of a file: as MeshFileOptions::compress
   const char* label;  // iw_mesh_labels only: the number of the label, in decimal digits
+  double iso;         // iw_mesh_isos only: as iw_mesh_options::iso
 } iw_output;
 
 // Meshes a volume. outputs: one, or one for each level, finest first. run: NULL for the defaults. The report is that of
@@ -293,6 +305,12 @@ iw_status iw_mesh_volume(const iw_volume* volume, const iw_mesh_options* options
 // different labels are called at the same time. In the report, `labels` has an entry for each output.
 iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                          size_t count, iw_result* result);
+
+// Meshes the surfaces of several iso-values in one sweep, each to its output: bit for bit the meshes of runs of their
+// own, with `iso` from the output. options: iso does not count; a number of triangles is one for each mesh. In the
+// report, `isos` has an entry for each output.
+iw_status iw_mesh_isos(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
+                       size_t count, iw_result* result);
 
 // Simplifies a mesh. options: one of error, levels, max_distance, triangles and ratio at least.
 iw_status iw_simplify_mesh(const iw_mesh* mesh, const iw_simplify_options* options, const iw_run* run,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "isoweave/components.hpp"
 #include "isoweave/simplify_options.hpp"
@@ -65,6 +66,10 @@ struct AttributeOptions {
 // The coordinates of the output: the volume's own world, a named convention (x and y change sign between the two), or
 // index * spacing, without origin and direction.
 enum class OutputSpace : std::uint8_t { kAsVolume, kLps, kRas, kIndex };
+
+// The name of the space of the coordinates of a volume's mesh, for MeshFileOptions::space: "LPS", "RAS", "index", or
+// nothing where the volume does not say.
+std::string space_of_mesh(const Geometry& volume, OutputSpace space);
 
 // The offset for a sink that gets a mesh of this volume (MeshFileOptions::offset, MeshInMemory). It is 0 unless the
 // volume lies so far from the origin that rounding to 32 bits would move vertices by more than a thousandth of the

@@ -50,6 +50,9 @@ std::optional<SampleType> parse_sample_type(std::string_view name);
 // The meaning of the world axes: LPS (DICOM, ITK: left, posterior, superior) or RAS (NIfTI, FreeSurfer).
 enum class Space : std::uint8_t { kUnknown, kLps, kRas };
 
+// The name of a space: "lps", "ras", "unknown".
+std::string_view space_name(Space space);
+
 // The place of samples in the world: position(i, j, k) = origin + direction * (spacing * (i, j, k)).
 struct Geometry {
   std::array<double, 3> spacing{1, 1, 1};                      // > 0, finite

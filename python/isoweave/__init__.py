@@ -11,13 +11,17 @@ direction, vertices) is ``(x, y, z)``, as in ITK, VTK and mesh files.
 """
 
 from . import compat
-from ._api import check, compare, forecast, iter_mesh, labels, mesh, simplify
+from ._forecast import forecast
+from ._labels import labels
 from ._library import BadInput, CannotWrite, DeviceError, IsoweaveError, OverMemory, Stopped
 from ._library import version as __version__
 from ._mesh import Mesh, MeshLike, read_mesh
+from ._meshing import mesh
 from ._outputs import Sink
+from ._pieces import iter_mesh
 from ._report import Check, Comparison, Forecast, Report
 from ._run import Progress
+from ._surfaces import check, compare, simplify
 from ._volume import Volume, VolumeLike, open_volume
 
 __all__ = [

@@ -136,6 +136,7 @@ class MeshOptions(Struct):
         ("normals", c_int32),
         ("space", c_int32),
         ("values", c_void_p),
+        ("extractor", c_int32),
     ]
 
 
@@ -164,6 +165,10 @@ class Run(Struct):
         ("stop", c_void_p),
         ("context", c_void_p),
         ("progress", TellProgress),
+        ("checkpoint", c_char_p),
+        ("checkpoint_seconds", c_double),
+        ("checkpoint_layers", c_int64),
+        ("resume", c_int32),
     ]
 
 
@@ -196,6 +201,7 @@ class Output(Struct):
         ("mesh", c_void_p),
         ("compress", c_int32),
         ("label", c_char_p),
+        ("iso", c_double),
     ]
 
 
@@ -222,6 +228,7 @@ _CALLS: dict[str, list[Any]] = {
     "iw_compare_meshes": [_HANDLE, _HANDLE, POINTER(CompareOptions)],
     "iw_mesh_volume": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_mesh_labels": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
+    "iw_mesh_isos": [_HANDLE, POINTER(MeshOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_simplify_mesh": [_HANDLE, POINTER(SimplifyOptions), POINTER(Run), POINTER(Output), c_size_t],
     "iw_forecast": [_HANDLE, POINTER(MeshOptions), POINTER(Run)],
 }

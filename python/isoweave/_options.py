@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Sequence, Union
+from typing import Any, Literal, Sequence, Union
 
 from . import _library as c
 from ._volume import Volume
 
 Length = Union[float, int, str]
+Quality = Literal["fast", "normal", "fine"]
+Extractor = Literal["cubes", "trilinear", "tetrahedra", "dual"]
 
 _QUALITIES = {"normal": 0, "fast": 1, "fine": 2}
 _NORMALS = {None: 0, "none": 0, "gradient": 1, "quadric": 2}
+_EXTRACTORS = {"cubes": 0, "trilinear": 1, "tetrahedra": 2, "dual": 3}
 _SPACES = {None: 0, "lps": 1, "ras": 2, "index": 3}
 _SIDES = {"above": 0, "below": 1}
 _SPECKS = {"keep": 0, "drop": 1}
@@ -28,6 +31,11 @@ def length(value: Length | None) -> bytes | None:
     if value is None:
         return None
     return c.encoded(value if isinstance(value, str) else repr(float(value)))
+
+
+def usual_error(error: Length | None, stops: Sequence[Any]) -> Length | None:
+    """The error where none is named: 0.2 voxels, unless something else says where to stop."""
+    return "0.2vox" if error is None and not any(stops) else error
 
 
 def simplify_struct(
@@ -68,6 +76,7 @@ def mesh_struct(
     inside: str = "above",
     closed: bool = True,
     smooth: int = 0,
+    extractor: str = "cubes",
     normals: str | None = None,
     space: str | None = None,
     values: Volume | None = None,
@@ -81,4 +90,5 @@ def mesh_struct(
         normals=chosen("normals", normals, _NORMALS),
         space=chosen("space", space, _SPACES),
         values=None if values is None else values._handle.pointer,
+        extractor=chosen("extractor", extractor, _EXTRACTORS),
     )

@@ -5,13 +5,13 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
-from typing import Any, Protocol, Sequence, Union
+from typing import Any, Callable, Protocol, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _library as c
-from ._mesh import Mesh, mesh_of_handle
+from ._mesh import mesh_of_handle
 from ._report import Report
 from ._run import RunState
 
@@ -71,13 +71,19 @@ class Outputs:
     """The outputs of one run."""
 
     def __init__(
-        self, outputs: Sequence[OutputLike], state: RunState, compress: bool = False, labels: Sequence[int] = ()
+        self,
+        outputs: Sequence[OutputLike],
+        state: RunState,
+        compress: bool = False,
+        labels: Sequence[int] = (),
+        isos: Sequence[float] = (),
     ) -> None:
         self._outputs = outputs
         self.structs = (c.Output * len(outputs))()
         self._keep: list[Any] = []
         for n, output in enumerate(outputs):
-            struct = c.Output(compress=int(compress), label=c.encoded(str(labels[n])) if labels else None)
+            label = c.encoded(str(labels[n])) if labels else None
+            struct = c.Output(compress=int(compress), label=label, iso=isos[n] if isos else 0.0)
             if isinstance(output, (str, os.PathLike)):
                 struct.path = os.fsencode(output)
             elif output is not None:
@@ -106,15 +112,49 @@ class Outputs:
         return results
 
 
-def level_paths(path: str | os.PathLike[str], levels: int) -> list[str]:
-    """Names as those of the command line: a.ply becomes a_lod0.ply, a_lod1.ply, ..."""
+def level_path(path: str | os.PathLike[str], level: int) -> str:
+    """As the command line names it: a.ply becomes a_lod0.ply, a_lod1.ply, ..."""
+    return _with_part(path, f"lod{level}")
+
+
+def iso_path(path: str | os.PathLike[str], iso: float) -> str:
+    """As the command line names it: a.ply becomes a_iso10.ply."""
+    return _with_part(path, f"iso{repr(iso).removesuffix('.0')}")
+
+
+def label_path(path: str | os.PathLike[str], label: int) -> str:
+    return _with_part(path, f"label{label}")
+
+
+def _with_part(path: str | os.PathLike[str], part: str) -> str:
     whole = pathlib.Path(path)
-    return [str(whole.with_name(f"{whole.stem}_lod{level}{whole.suffix}")) for level in range(levels)]
+    return str(whole.with_name(f"{whole.stem}_{part}{whole.suffix}"))
 
 
-def label_path(path: str | os.PathLike[str], label: int) -> pathlib.Path:
-    whole = pathlib.Path(path)
-    return whole.with_name(f"{whole.stem}_label{label}{whole.suffix}")
+def outputs_for(
+    out: OutputLike | Sequence[OutputLike], count: int, name: Callable[[str | os.PathLike[str], int], str]
+) -> list[OutputLike]:
+    """An output for each of several meshes, whose files `name` calls by the number of the mesh."""
+    if isinstance(out, (list, tuple)):
+        if len(out) != count:
+            raise ValueError(f"out: expected {count} outputs, found {len(out)}")
+        return list(out)
+    if out is None:
+        return [None] * count
+    if isinstance(out, (str, os.PathLike)):
+        return [name(out, n) for n in range(count)]
+    raise ValueError(f"out: expected a path or a list of {count} sinks, found one sink")
 
 
-__all__ = ["Mesh", "OutputLike", "Outputs", "Sink"]
+def level_outputs(out: OutputLike | Sequence[OutputLike], levels: int) -> list[OutputLike]:
+    """The outputs of a run with so many levels, or with one mesh, where they are 0."""
+    if levels == 0 and not isinstance(out, (list, tuple)):
+        return [out]  # type: ignore[list-item]
+    return outputs_for(out, max(levels, 1), level_path)
+
+
+def level_reports(report: Report, levels: int) -> list[Report]:
+    """The report of each level: the finer ones have their counts, and the last one is that of the run."""
+    if levels == 0:
+        return [report]
+    return [Report({**report, **finer}) for finer in report.get("levels", [])] + [report]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import os
+import queue
 import sys
 import threading
 from dataclasses import dataclass
@@ -11,6 +13,7 @@ from typing import Any, Callable, Protocol, Union
 from . import _library as c
 
 _DEVICES = {"auto": 0, "cpu": 1, "cuda": 2}
+_SECONDS = {"s": 1, "min": 60, "h": 3600}
 _BYTES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12, "Ki": 2**10, "Mi": 2**20, "Gi": 2**30, "Ti": 2**40}
 
 
@@ -105,6 +108,41 @@ def parse_bytes(memory: int | str | None) -> int:
     return memory
 
 
+def parse_every(every: float | str) -> tuple[float, int]:
+    """How often a state is saved: seconds, and layers or 0. As the command line's --every: 300, "5min" or "16layers"."""
+    number, unit = str(every), "s"
+    if isinstance(every, str):
+        number = every.rstrip("abcdefghijklmnopqrstuvwxyz")
+        unit = every[len(number) :]
+    try:
+        if unit == "layers":
+            seconds, layers = 0.0, int(number)
+        else:
+            seconds, layers = float(number) * _SECONDS[unit], 0
+    except (KeyError, ValueError):
+        seconds, layers = 0.0, 0
+    if not (seconds > 0 or layers > 0):
+        raise ValueError(f"every: expected seconds above 0, or a text such as 90s, 5min, 2h or 16layers, found {every!r}")
+    return seconds, layers
+
+
+class _Errand:
+    """Work for another thread, and what became of it."""
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self._work = work
+        self.done = threading.Event()
+        self.result: Any = None
+        self.error: BaseException | None = None
+
+    def do(self) -> None:
+        try:
+            self.result = self._work()
+        except BaseException as error:
+            self.error = error
+        self.done.set()
+
+
 class RunState:
     """A run that may be stopped: by Ctrl-C, by a callback's exception, or by False from a progress callback.
 
@@ -117,6 +155,8 @@ class RunState:
             raise MemoryError("expected memory for a run, found none")
         self._lock = threading.Lock()
         self._error: BaseException | None = None
+        self._errands: queue.SimpleQueue[_Errand | None] | None = None  # where the call has a thread of its own
+        self._abandoned = False
 
     @property
     def stop_pointer(self) -> int | None:
@@ -136,6 +176,31 @@ class RunState:
             self.stop()
             return 1
 
+    def in_caller(self, work: Callable[[], Any]) -> Any:
+        """Does work in the thread that has asked for the run, where programs with windows must touch them."""
+        if self._errands is None:
+            return work()
+        errand = _Errand(work)
+        self._errands.put(errand)
+        while not errand.done.wait(0.1):
+            if self._abandoned:
+                return False
+        if errand.error is not None:
+            raise errand.error
+        return errand.result
+
+    @staticmethod
+    def _call_is_done(errands: queue.SimpleQueue[_Errand | None]) -> bool:
+        """Does the next errand of the thread that makes the call."""
+        try:
+            errand = errands.get(timeout=0.1)
+        except queue.Empty:
+            return False
+        if errand is None:
+            return True
+        errand.do()
+        return False
+
     def call(self, name: str, *arguments: Any) -> Any:
         """Makes a call of the C interface, without the GIL.
 
@@ -144,23 +209,24 @@ class RunState:
         if threading.current_thread() is not threading.main_thread():
             return self._finish(lambda: c.call(name, *arguments))
         outcome: list[Any] = []
-        done = threading.Event()
+        self._errands = queue.SimpleQueue()
 
         def work() -> None:
             try:
                 outcome.append((c.call(name, *arguments), None))
             except BaseException as error:
                 outcome.append((None, error))
-            done.set()
+            errands.put(None)
 
+        errands = self._errands
         thread = threading.Thread(target=work, name="isoweave")
         thread.start()
         try:
-            while not done.wait(0.1):
+            while not self._call_is_done(errands):
                 pass
         except BaseException:  # KeyboardInterrupt, or what a signal handler of the program raises
+            self._abandoned = True
             self.stop()
-            done.wait()
             thread.join()
             raise
         thread.join()
@@ -205,9 +271,20 @@ class Runner:
         def tell(_context: int | None, told: Any) -> int:
             p = told.contents
             now = Progress(p.layer, p.layers, p.voxels, p.live_triangles, p.final_triangles, p.bytes)
-            return self.state.guarded(lambda: teller.tell(now))
+            return self.state.guarded(lambda: self.state.in_caller(lambda: teller.tell(now)))
 
         self.struct.progress = c.TellProgress(tell)
+
+    def save_in(self, checkpoint: str | os.PathLike[str] | None, resume: bool, every: float | str) -> None:
+        """Saves the state of the run in a folder, where one is named."""
+        seconds, layers = parse_every(every)
+        if checkpoint is None:
+            if resume:
+                raise ValueError("resume: expected the folder of the run as checkpoint, found none")
+            return
+        self.struct.checkpoint = os.fsencode(checkpoint)
+        self.struct.checkpoint_seconds, self.struct.checkpoint_layers = seconds, layers
+        self.struct.resume = int(resume)
 
     def call(self, name: str, *arguments: Any) -> Any:
         try:

@@ -33,6 +33,9 @@ def _optional(number: int | None) -> Any:
     return None if number is None else ctypes.pointer(ctypes.c_int64(number))
 
 
+Roi = Iterable["slice | tuple[int | None, int | None]"]
+
+
 class Volume:
     """A regular grid of samples, read slice by slice by every run anew: never as a whole.
 
@@ -131,7 +134,7 @@ class Volume:
         result: npt.NDArray[Any] = self._read(k, k + 1)[0]
         return result
 
-    def crop(self, roi: Iterable[slice | tuple[int | None, int | None]]) -> Volume:
+    def crop(self, roi: Roi) -> Volume:
         """A part of the volume, at its place in the whole: three slices or pairs (first, end) along z, y, x.
 
         >>> import numpy as np
@@ -355,3 +358,16 @@ def open_volume(
     slices = slices_of(volume, axes=axes, channel=channel, time=time, scalars=scalars)
     slices.geometry = _set_geometry(slices.geometry, spacing, origin, direction, affine, unit)
     return _volume_of_slices(slices, f"{type(volume).__name__} array")
+
+
+def volume_for(volume: VolumeLike, roi: Roi | None, step: int, **opening: Any) -> Volume:
+    """The volume of a run: a part of it where that is asked for, or a smaller one."""
+    opened = open_volume(volume, **opening)
+    if roi is not None:
+        opened = opened.crop(roi)
+    return opened if step == 1 else opened.downsample(step)
+
+
+def level_of(volume: Volume, level: Any) -> float:
+    """The iso-value of a run: Otsu's threshold where none is named."""
+    return volume.suggest_level() if level is None else float(level)

@@ -7,7 +7,7 @@ from typing import Any, Literal, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ._api import mesh
+from ._meshing import mesh
 from ._options import Length
 from ._volume import VolumeLike, open_volume
 

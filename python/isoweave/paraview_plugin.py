@@ -17,6 +17,13 @@ _SCALARS = """
   </ArrayListDomain>
 </StringVectorProperty>
 """
+_EXTRACTOR = """
+<StringVectorProperty name="Extractor" command="SetExtractor" number_of_elements="1" default_values="cubes">
+  <StringListDomain name="list">
+    <String value="cubes"/><String value="trilinear"/><String value="tetrahedra"/><String value="dual"/>
+  </StringListDomain>
+</StringVectorProperty>
+"""
 
 
 @smproxy.filter(label="Isoweave Contour")
@@ -32,6 +39,7 @@ class IsoweaveContour(VTKPythonAlgorithmBase):
         self._level = 0.0
         self._error = "0.2vox"
         self._closed = True
+        self._extractor: Any = "cubes"
 
     @smproperty.xml(_SCALARS)
     def SetScalars(self, _index: int, _port: int, _connection: int, _association: int, name: str) -> None:
@@ -50,6 +58,10 @@ class IsoweaveContour(VTKPythonAlgorithmBase):
     def SetClosed(self, closed: int) -> None:
         self._set("_closed", bool(closed))
 
+    @smproperty.xml(_EXTRACTOR)
+    def SetExtractor(self, extractor: str) -> None:
+        self._set("_extractor", extractor)
+
     def FillInputPortInformation(self, _port: int, info: Any) -> int:
         info.Set(self.INPUT_REQUIRED_DATA_TYPE(), "vtkImageData")
         return 1
@@ -58,7 +70,8 @@ class IsoweaveContour(VTKPythonAlgorithmBase):
         image = vtkImageData.GetData(inputs[0], 0)
         surface = vtkPolyData.GetData(outputs, 0)
         mesh = isoweave.mesh(
-            image, self._level, error=self._error, closed=self._closed, scalars=self._scalars, progress=self._tell
+            image, self._level, error=self._error, closed=self._closed, extractor=self._extractor, scalars=self._scalars,
+            progress=self._tell,
         )
         surface.ShallowCopy(mesh.to_vtk())
         return 1

@@ -6,7 +6,8 @@ from typing import Any
 
 import pyvista
 
-from . import _api
+import isoweave
+
 from ._mesh import Mesh
 from ._report import Check, Comparison
 
@@ -24,14 +25,23 @@ class ImageAccessor:
     def __init__(self, dataset: Any) -> None:
         self._dataset = dataset
 
-    def contour(self, level: float | None = None, **options: Any) -> Any:
-        """The simplified surface at a level as ``PolyData``. Options: those of :func:`isoweave.mesh`."""
-        return _surface(_api.mesh(self._dataset, level, **options))
+    def contour(self, level: Any = None, **options: Any) -> Any:
+        """The simplified surface at a level as ``PolyData``; at several levels, or with ``lods``, a ``MultiBlock``.
+
+        Options: those of :func:`isoweave.mesh`.
+        """
+        meshes: Any = isoweave.mesh(self._dataset, level, **options)
+        if isinstance(meshes, Mesh):
+            return _surface(meshes)
+        blocks = pyvista.MultiBlock()
+        for mesh, name in zip(meshes, options.get("lods", level)):
+            blocks.append(_surface(mesh), str(name))
+        return blocks
 
     def labels(self, labels: Any = "all", **options: Any) -> Any:
         """A surface for each label as a ``MultiBlock``. Options: those of :func:`isoweave.labels`."""
         blocks = pyvista.MultiBlock()
-        for label, mesh in _api.labels(self._dataset, labels, **options).items():
+        for label, mesh in isoweave.labels(self._dataset, labels, **options).items():
             blocks.append(_surface(mesh), str(label))
         return blocks
 
@@ -45,12 +55,12 @@ class SurfaceAccessor:
 
     def simplify(self, **options: Any) -> Any:
         """The simplified surface as ``PolyData``. Options: those of :func:`isoweave.simplify`."""
-        return _surface(_api.simplify(self._dataset, **options))
+        return _surface(isoweave.simplify(self._dataset, **options))
 
     def check(self, **options: Any) -> Check:
         """As :func:`isoweave.check`."""
-        return _api.check(self._dataset, **options)
+        return isoweave.check(self._dataset, **options)
 
     def compare(self, other: Any, **options: Any) -> Comparison:
         """Distances to another surface, as :func:`isoweave.compare`."""
-        return _api.compare(self._dataset, other, **options)
+        return isoweave.compare(self._dataset, other, **options)

@@ -1,6 +1,6 @@
 """Run by pvpython: loads the plugin, applies its filter to an image, and writes the surface.
 
-pvpython paraview_contour.py PLUGIN IMAGE LEVEL SURFACE
+pvpython paraview_contour.py PLUGIN IMAGE LEVEL EXTRACTOR SURFACE
 """
 
 import inspect
@@ -13,10 +13,11 @@ if not hasattr(inspect, "getargspec"):
 
 from paraview import simple
 
-plugin, image, level, surface = sys.argv[1:]
+plugin, image, level, extractor, surface = sys.argv[1:]
 simple.LoadPlugin(plugin, ns=globals())
 contour = globals()["IsoweaveContour"](Input=simple.OpenDataFile(image))
 contour.Scalars = ["POINTS", "ct"]
 contour.Level = float(level)
+contour.Extractor = extractor
 contour.UpdatePipeline()
 simple.SaveData(surface, proxy=contour, DataMode="Appended")

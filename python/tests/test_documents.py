@@ -15,7 +15,10 @@ import isoweave
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("name", ["isoweave", "isoweave._api", "isoweave._report", "isoweave._volume", "isoweave.compat"])
+EXAMPLES = ["", "._meshing", "._labels", "._surfaces", "._report", "._volume", ".compat"]
+
+
+@pytest.mark.parametrize("name", [f"isoweave{module}" for module in EXAMPLES])
 def test_docstrings(name: str) -> None:
     done = doctest.testmod(importlib.import_module(name), extraglobs={"isoweave": isoweave})
     assert done.attempted > 0 and done.failed == 0
@@ -31,3 +34,17 @@ def test_page(folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for block in blocks:
         exec(compile(block, "docs/python.md", "exec"), names)  # noqa: S102
     assert {"ball.glb", "ball.ply"} <= set(os.listdir(folder))
+
+
+def test_notebook(folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every cell runs, and the meshes that are last in a cell show themselves."""
+    for name in ("IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR"):
+        monkeypatch.setenv(name, str(folder / name))
+    nbformat = pytest.importorskip("nbformat")
+    client = pytest.importorskip("nbclient")
+    notebook = nbformat.read(ROOT / "docs" / "notebook.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells)  # what is committed is the text
+    client.NotebookClient(notebook, timeout=60, resources={"metadata": {"path": str(folder)}}).execute()
+    shown = [output["data"] for cell in notebook.cells for output in cell.get("outputs", []) if "data" in output]
+    assert sum("Mesh(" in data.get("text/html", "") for data in shown) == 2
+    assert sum("image/png" in data for data in shown) == 2

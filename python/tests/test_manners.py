@@ -108,6 +108,35 @@ def test_leaving_a_loop_stops_the_run() -> None:
         list(isoweave.iter_mesh(Slow(fail_at=300), 0))
 
 
+def test_progress_is_told_in_the_thread_that_asked() -> None:
+    told: list[threading.Thread] = []
+
+    def progress(now: isoweave.Progress) -> None:
+        told.append(threading.current_thread())
+
+    isoweave.mesh(Slow(), 0, progress=progress)
+    assert len(told) > 1 and set(told) == {threading.main_thread()}
+    told.clear()
+    other = threading.Thread(target=lambda: isoweave.mesh(Slow(), 0, progress=progress))
+    other.start()
+    other.join()
+    assert len(told) > 1 and set(told) == {other}
+
+
+def test_ctrl_c_in_a_progress_callback(folder: pathlib.Path) -> None:
+    slept = []
+
+    def progress(now: isoweave.Progress) -> None:
+        if now.layer > 100:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(5)
+            slept.append(now.layer)
+
+    with pytest.raises(KeyboardInterrupt):
+        isoweave.mesh(Slow(), 0, out=folder / "m.ply", progress=progress)
+    assert not slept and list(folder.iterdir()) == []
+
+
 def test_two_runs_in_two_threads() -> None:
     volumes = [np.roll(Slow()(0, 60), n, axis=1) for n in range(4)]
     alone = [isoweave.mesh(volume, 0).digest for volume in volumes]

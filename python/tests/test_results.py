@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import pathlib
 from typing import Any, Callable
@@ -11,6 +12,7 @@ import pytest
 from conftest import ORIGIN, SPACING, run_cli
 
 import isoweave
+from isoweave._settings import LabelSettings, MeshSettings, StopSettings
 
 Reporter = Callable[..., dict[str, Any]]
 
@@ -37,6 +39,9 @@ def signed_volume(vertices: np.ndarray, faces: np.ndarray) -> float:
         ({"roi": np.s_[4:, 2:-3, :30]}, ["--roi", ":30,2:31,4:"]),
         ({"step": 2}, ["--step", "2"]),
         ({"specks": "drop", "error": "3vox"}, ["--specks", "drop", "--error", "3vox"]),
+        ({"extractor": "trilinear"}, ["--extractor", "trilinear"]),
+        ({"extractor": "tetrahedra", "largest": True}, ["--extractor", "tetrahedra", "--largest"]),
+        ({"extractor": "dual", "normals": "gradient"}, ["--extractor", "dual", "--normals", "gradient"]),
     ],
 )
 def test_options_are_those_of_the_command_line(
@@ -46,14 +51,14 @@ def test_options_are_those_of_the_command_line(
     mesh = isoweave.mesh(volume, 100, **options)
     assert mesh.digest == report["digest"]
     assert mesh.report["triangles"] == report["triangles"] == len(mesh.faces)
-    for key in ("iso", "closed", "inside", "triangles_extracted", "collapses", "components", "euler", "error", "space"):
+    for key in ("iso", "closed", "inside", "triangles_extracted", "collapses", "components", "euler", "error", "space", "extractor"):
         assert mesh.report[key] == report[key], key
 
 
 def test_every_key_of_the_report_is_there(volume: np.ndarray, cli_report: Reporter) -> None:
     report = cli_report(volume, "--iso", 100)
     ours = isoweave.mesh(volume, 100).report
-    assert set(report) - set(ours) <= {"extractor", "forecast", "quality", "normals", "output"}
+    assert set(report) - set(ours) <= {"forecast", "quality", "normals", "output"}
     assert set(report["input"]) == set(ours["input"])
 
 
@@ -99,6 +104,58 @@ def test_files_and_levels(volume: np.ndarray, cli_report: Reporter, folder: path
         meshes[0].save(folder / "m.doc")
 
 
+def test_several_levels(volume: np.ndarray, cli_report: Reporter, folder: pathlib.Path) -> None:
+    levels = [60, 100.5, 170]
+    by_cli = cli_report(volume, "--iso", "60,100.5,170", "--extractor", "dual", "--triangles", "400")
+    meshes = isoweave.mesh(volume, levels, extractor="dual", triangles=400)
+    assert [mesh.digest for mesh in meshes] == [each["digest"] for each in by_cli["isos"]]
+    assert [mesh.digest for mesh in meshes] == [
+        isoweave.mesh(volume, level, extractor="dual", triangles=400).digest for level in levels
+    ]
+    for mesh, entry in zip(meshes, by_cli["isos"]):
+        assert set(entry) - set(mesh.report) == {"output"}
+        assert mesh.report.iso == entry["iso"] and mesh.report.triangles == entry["triangles"] == len(mesh.faces)
+    assert set(by_cli) - set(meshes[0].report) <= {"quality", "normals"}
+
+    reports = isoweave.mesh(volume, np.array(levels), error=0, out=folder / "m.stl")
+    assert sorted(path.name for path in folder.iterdir()) == ["m_iso100.5.stl", "m_iso170.stl", "m_iso60.stl"]
+    for report in reports:
+        path = folder / f"m_iso{report.iso:g}.stl"
+        assert isoweave.check(path).digest == report.digest == isoweave.mesh(volume, report.iso, error=0).digest
+    one, two = isoweave.mesh(volume, (60, 170), out=[None, folder / "two.ply"])
+    assert isoweave.check(one).digest == isoweave.mesh(volume, 60).digest and two.iso == 170
+    assert [each.digest for each in isoweave.mesh(volume, [100])] == [isoweave.mesh(volume, 100).digest]
+
+
+@pytest.mark.parametrize(
+    ("levels", "options", "message"),
+    [
+        ([], {}, "value"),
+        ([60, 60], {}, "60"),
+        ([60, 100], {"lods": [0.1, 0.5]}, "lods"),
+        ([60, 100], {"ratio": 0.5}, "ratio"),
+        ([60, 100], {"largest": True}, "largest"),
+        ([60, 100], {"memory": "2G"}, "memory"),
+        ([60, 100], {"values": np.zeros((30, 34, 38))}, "values"),
+        ([60, 100], {"out": [None]}, "out"),
+        ([60, np.nan], {}, "iso"),
+    ],
+)
+def test_what_does_not_go_with_several_levels(
+    volume: np.ndarray, levels: list[float], options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        isoweave.mesh(volume, levels, **options)
+
+
+def test_types_are_those_of_the_signatures() -> None:
+    """What type checkers know of the keyword arguments is what the functions take."""
+    pairs = [(isoweave.mesh, MeshSettings), (isoweave.simplify, StopSettings), (isoweave.labels, LabelSettings)]
+    for function, settings in pairs:
+        taken = {p.name for p in inspect.signature(function).parameters.values() if p.kind is p.KEYWORD_ONLY}
+        assert taken - {"lods", "out"} == set(settings.__annotations__), function
+
+
 def test_far_from_the_origin(volume: np.ndarray, folder: pathlib.Path) -> None:
     far = {"spacing": 0.001, "origin": (5e5, 4e6, 0)}
     mesh = isoweave.mesh(volume, 100, **far)
@@ -114,6 +171,9 @@ def test_far_from_the_origin(volume: np.ndarray, folder: pathlib.Path) -> None:
 def test_pieces_are_the_mesh(volume: np.ndarray) -> None:
     vertices, faces = zip(*isoweave.iter_mesh(volume, 100))
     assert isoweave.check((np.concatenate(vertices), np.concatenate(faces))).digest == isoweave.mesh(volume, 100).digest
+    vertices, faces = zip(*isoweave.iter_mesh(volume, 100, extractor="dual"))
+    dual = isoweave.mesh(volume, 100, extractor="dual")
+    assert isoweave.check((np.concatenate(vertices), np.concatenate(faces))).digest == dual.digest
 
 
 def test_sinks(volume: np.ndarray) -> None:
@@ -147,6 +207,10 @@ def test_labels(folder: pathlib.Path, cli_report: Reporter) -> None:
     meshes = isoweave.labels(cells)
     assert {label: mesh.digest for label, mesh in meshes.items()} == {e["label"]: e["digest"] for e in report["labels"]}
     assert isoweave.open_volume(cells).find_labels() == {7: 9 * 16 * 15, 300: 8 * 16 * 15}
+    tetrahedra = isoweave.labels(cells, [7], extractor="tetrahedra")[7]
+    by_cli = cli_report(cells, "--labels", "7", "--smooth", "--extractor", "tetrahedra")
+    assert tetrahedra.digest == by_cli["labels"][0]["digest"] != meshes[7].digest
+    assert tetrahedra.report.extractor == by_cli["extractor"] == "tetrahedra"
     files = isoweave.labels(cells, [300], out=folder / "seg.ply")
     assert isoweave.check(folder / "seg_label300.ply").digest == files[300].digest == meshes[300].digest
     assert isoweave.labels(cells, out=lambda label, mesh: len(mesh.faces)) == {k: len(m.faces) for k, m in meshes.items()}
@@ -197,6 +261,11 @@ def test_forecast(volume: np.ndarray) -> None:
     extracted = isoweave.mesh(volume, 100).report.triangles_extracted
     assert 0.5 * extracted < forecast.triangles_extracted < 2 * extracted
     assert forecast.peak_bytes > 0 and forecast.seconds >= 0
+    extracted = isoweave.mesh(volume, 100, extractor="tetrahedra").report.triangles_extracted
+    of_tetrahedra = isoweave.forecast(volume, 100, extractor="tetrahedra").triangles_extracted
+    assert forecast.triangles_extracted < 0.5 * of_tetrahedra and 0.5 * extracted < of_tetrahedra < 2 * extracted
+    with pytest.raises(ValueError, match="extractor"):
+        isoweave.forecast(volume, 100, extractor="cube")  # type: ignore[arg-type]
 
 
 def test_volumes(volume: np.ndarray) -> None:
@@ -271,6 +340,11 @@ def test_pyvista_accessor(volume: np.ndarray, wanted: str) -> None:
     mask = pyvista.ImageData(dimensions=volume.shape[::-1])
     mask.point_data["labels"] = (volume.ravel() >= 100).astype(np.uint8) * 5
     assert mask.isoweave.labels().keys() == ["5"]
+    several = grid.isoweave.contour([100, 150])
+    assert several.keys() == ["100", "150"] and several[0].field_data["isoweave digest"][0] == wanted
+    assert grid.isoweave.contour(100, lods=["0.1vox", "0.2vox"])[1].field_data["isoweave digest"][0] == wanted
+    dual = isoweave.mesh(volume, 100, spacing=SPACING, origin=ORIGIN, extractor="dual")
+    assert grid.isoweave.contour(100, extractor="dual").field_data["isoweave digest"][0] == dual.digest != wanted
 
 
 def test_html(volume: np.ndarray) -> None:

@@ -50,6 +50,18 @@ Length error_of(const iw_simplify_options& given, const std::string& unit, const
   return length("error", usual, unit);
 }
 
+CheckpointOptions checkpoint_options(const iw_run& given) {
+  if (!(given.checkpoint_seconds >= 0) || given.checkpoint_layers < 0)
+    throw std::invalid_argument("checkpoint_seconds, checkpoint_layers: expected numbers of at least 0, found " +
+                                std::to_string(given.checkpoint_seconds) + " and " +
+                                std::to_string(given.checkpoint_layers));
+  CheckpointOptions options;
+  options.folder = text_of(given.checkpoint);
+  options.layers = given.checkpoint_layers;
+  if (given.checkpoint_seconds > 0) options.seconds = given.checkpoint_seconds;
+  return options;
+}
+
 }  // namespace
 
 SimplifyOptions simplify_options(const iw_simplify_options& given, const std::string& unit, const std::string& usual) {
@@ -90,6 +102,9 @@ MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options
   options.inside_above = given.inside_below == 0;
   options.closed = given.open == 0;
   options.smooth = given.smooth;
+  options.extractor =
+      choice("extractor", given.extractor,
+             {ExtractorKind::kCubes, ExtractorKind::kTrilinear, ExtractorKind::kTetrahedra, ExtractorKind::kDual});
   options.normals = choice("normals", given.normals, {Normals::kAbsent, Normals::kGradient, Normals::kQuadric});
   options.space =
       choice("space", given.space, {OutputSpace::kAsVolume, OutputSpace::kLps, OutputSpace::kRas, OutputSpace::kIndex});
@@ -103,6 +118,7 @@ RunControl run_control(const iw_run& given) {
   control.device = choice("device", given.device, {Device::kAutomatic, Device::kCpu, Device::kCuda});
   control.slab = given.slab;
   control.memory = given.memory;
+  control.checkpoint = checkpoint_options(given);
   if (given.stop != nullptr) control.stop = given.stop->wish;
   if (given.progress == nullptr) return control;
   control.progress = [given](const Progress& progress) {
@@ -111,13 +127,6 @@ RunControl run_control(const iw_run& given) {
     if (given.progress(given.context, &told) != 0) throw Interrupted("stopped by the caller");
   };
   return control;
-}
-
-std::string space_of_mesh(const Geometry& geometry, OutputSpace space) {
-  if (space == OutputSpace::kIndex) return "index";
-  if (geometry.space == Space::kUnknown) return "";  // coordinates are those of the volume, whatever was asked for
-  const bool as_lps = space == OutputSpace::kLps || (space == OutputSpace::kAsVolume && geometry.space == Space::kLps);
-  return as_lps ? "LPS" : "RAS";
 }
 
 }  // namespace isoweave::capi

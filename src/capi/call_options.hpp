@@ -27,7 +27,4 @@ MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options
 
 RunControl run_control(const iw_run& given);
 
-// The name of the space of the coordinates of a volume's mesh: "LPS", "RAS", "index" or nothing.
-std::string space_of_mesh(const Geometry& geometry, OutputSpace space);
-
 }  // namespace isoweave::capi

@@ -61,9 +61,17 @@ std::vector<iw_output> taken_outputs(const iw_output* outputs, std::size_t count
 
 }  // namespace
 
-CallOutputs::CallOutputs(iw_output* outputs, std::size_t count, const MeshFileOptions& file)
+CallOutputs::CallOutputs(iw_output* outputs, std::size_t count, MeshFileOptions file,
+                         const std::vector<UnfinishedMesh>& unfinished)
     : given_(outputs), outputs_(taken_outputs(outputs, count)) {
-  for (const iw_output& output : outputs_) pointers_.push_back(open(output, file));
+  for (const iw_output& output : outputs_) {
+    if (!unfinished.empty()) {
+      if (output.path == nullptr) throw std::invalid_argument("checkpoint: expected outputs that are files");
+      file.parts = unfinished[pointers_.size()].parts;
+      file.mark = unfinished[pointers_.size()].mark;
+    }
+    pointers_.push_back(open(output, file));
+  }
 }
 
 MeshSink* CallOutputs::open(const iw_output& output, const MeshFileOptions& file) {

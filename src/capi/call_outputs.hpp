@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "capi/call_checkpoint.hpp"
 #include "capi/handles.hpp"
 #include "isoweave/isoweave.h"
 #include "isoweave/mesh.hpp"
@@ -15,9 +16,11 @@ namespace isoweave::capi {
 // The sinks of a call, in the order of its outputs.
 class CallOutputs {
  public:
-  // Opens all outputs. file: the options of mesh files, and the unit, space and offset of all meshes.
+  // Opens all outputs. file: the options of mesh files, and the unit, space and offset of all meshes. unfinished: where
+  // the mesh of each output is kept while it is not finished; empty: nowhere.
   // @throws std::invalid_argument, CannotWrite
-  CallOutputs(iw_output* outputs, std::size_t count, const MeshFileOptions& file);
+  CallOutputs(iw_output* outputs, std::size_t count, MeshFileOptions file,
+              const std::vector<UnfinishedMesh>& unfinished = {});
 
   std::span<MeshSink* const> pointers() const { return pointers_; }
   const iw_output& operator[](std::size_t n) const { return outputs_[n]; }

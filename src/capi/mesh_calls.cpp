@@ -88,7 +88,7 @@ Json compared(const iw_mesh& given_a, const iw_mesh& given_b, const iw_compare_o
   asked.threads = options.threads;
   const std::vector<std::string> notes = match_place(b, a);
   Json json = {{"version", ISOWEAVE_VERSION}, {"samples", asked.samples}, {"unit", a.unit}, {"notes", notes}};
-  json.update(distances_json(compare_meshes(a, b, asked)));
+  json.update(Json::parse(distances_json(compare_meshes(a, b, asked))));
   if (options.distances != nullptr) std::ranges::copy(vertex_distances(a, b, asked.threads), options.distances);
   return json;
 }
@@ -151,9 +151,9 @@ iw_status iw_check_mesh(const iw_mesh* mesh, int32_t self_intersections, int32_t
   return guarded(result, [&] {
     TriangleMesh copy;
     const TriangleMesh& all = triangle_mesh(required(mesh, "mesh"), copy);
-    Json json = check_json(check_mesh(all));
+    Json json = Json::parse(check_json(check_mesh(all)));
     if (self_intersections != 0)
-      json["self_intersections"] = self_intersections_json(count_self_intersections(all, 10, threads));
+      json["self_intersections"] = Json::parse(self_intersections_json(count_self_intersections(all, 10, threads)));
     set_report(result, text_of(json));
   });
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "capi/call_checkpoint.hpp"
 #include "capi/call_options.hpp"
 #include "capi/call_outputs.hpp"
 #include "capi/guard.hpp"
@@ -20,6 +21,7 @@ struct VolumeRun {
   const VolumeOpener& opener;
   iw_mesh_options given;
   iw_simplify_options simplify;
+  iw_run way;
   MeshOptions options;
   RunControl control;
 
@@ -27,17 +29,20 @@ struct VolumeRun {
       : opener(*required(volume, "volume").opener),
         given(taken(options_given)),
         simplify(taken(given.simplify)),
+        way(taken(run)),
         options(mesh_options(given, simplify, info())),
-        control(run_control(taken(run))) {}
+        control(run_control(way)) {}
 
   const VolumeInfo& info() const { return opener.info(); }
 
   // Counts what the number of triangles and the choice of components depend on. These passes over the volume are not
-  // part of the progress.
+  // part of the progress, and not saved.
   void pass_before() {
     RunControl silent = control;
     silent.progress = {};
     silent.memory = 0;
+    silent.checkpoint = {};
+    silent.resume.reset();
     const ComponentRule rule = component_rule(simplify);
     if (!rule.keeps_all()) {
       options.components = std::make_shared<ComponentChoice>(choose_components(*opener.open(), options, rule, silent));
@@ -63,28 +68,37 @@ struct VolumeRun {
 };
 
 Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOptions& file) {
-  Json input = volume_json(run.info());
-  add_range(report, input);
+  Json input = Json::parse(volume_json(run.info()));
+  input.update(Json::parse(range_json(report.min, report.max, report.nan)));
   Json json = run_json(report, std::move(input));
   json["closed"] = run.options.closed;
   json["smooth"] = run.options.smooth;
+  json["extractor"] = extractor_name(run.options.extractor);
   json["space"] = file.space;
   json["offset"] = file.offset;
   return json;
 }
 
+// What the report of a surface at one iso-value, and of several, have beside that.
+void describe_level_set(const VolumeRun& run, Json& json) {
+  json["inside"] = run.options.inside_above ? "above" : "below";
+  if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};
+}
+
 void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
   const MeshFileOptions file = run.file();
-  CallOutputs sinks(outputs, count, file);
+  const CallCheckpoint saved(run.way, count, run.control);
+  CallOutputs sinks(outputs, count, file, saved.meshes());
   run.pass_before();
   const MeshReport report = mesh_volume(*run.opener.open(), sinks.pointers(), run.options, run.control);
   Json json = report_of(run, report, file);
+  if (!saved.meshes().empty()) json["resumed_at"] = report.resumed_at;
   json["iso"] = run.options.iso;
-  json["inside"] = run.options.inside_above ? "above" : "below";
-  if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};
+  describe_level_set(run, json);
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
+  saved.finish();
 }
 
 Label label_of(const iw_output& output) {
@@ -114,13 +128,35 @@ void mesh_labels_into(const VolumeRun& run, iw_output* outputs, std::size_t coun
   Json json = report_of(run, report.total, file);
   json["labels"] = Json::array();
   for (std::size_t n = 0; n < report.labels.size(); ++n) {
-    Json entry = surface_json(report.labels[n]);
+    Json entry = Json::parse(surface_json(report.labels[n]));
     entry["label"] = Json::parse(sinks[n].label);
     entry["triangles_extracted"] = report.labels[n].triangles_extracted;
     entry["warnings"] = report.labels[n].warnings;
     json["labels"].push_back(std::move(entry));
   }
   json["notes"] = sinks.notes();
+  set_report(result, text_of(json));
+  sinks.deliver();
+}
+
+void mesh_isos_into(const VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
+  if (run.simplify.ratio != 0 || !component_rule(run.simplify).keeps_all())
+    throw std::invalid_argument("ratio, largest and min_component do not go with several iso-values");
+  const MeshFileOptions file = run.file();
+  CallOutputs sinks(outputs, count, file);
+  std::vector<IsoSink> surfaces;
+  for (std::size_t n = 0; n < count; ++n) surfaces.push_back({sinks[n].iso, sinks.pointers()[n]});
+  const IsoValuesReport report = mesh_iso_values(*run.opener.open(), surfaces, run.options, run.control);
+  Json json = report_of(run, report.total, file);
+  describe_level_set(run, json);
+  json["isos"] = Json::array();
+  for (std::size_t n = 0; n < count; ++n) {
+    Json entry = {{"iso", surfaces[n].iso}};
+    entry.update(Json::parse(counts_json(report.meshes[n])));
+    entry["notes"] = surfaces[n].sink->notes();
+    entry.update(Json::parse(surface_json(report.meshes[n])));
+    json["isos"].push_back(std::move(entry));
+  }
   set_report(result, text_of(json));
   sinks.deliver();
 }
@@ -174,6 +210,11 @@ iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options
   return guarded(result, [&] { mesh_labels_into(VolumeRun(volume, options, run), outputs, count, result); });
 }
 
+iw_status iw_mesh_isos(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
+                       size_t count, iw_result* result) {
+  return guarded(result, [&] { mesh_isos_into(VolumeRun(volume, options, run), outputs, count, result); });
+}
+
 iw_status iw_simplify_mesh(const iw_mesh* mesh, const iw_simplify_options* options, const iw_run* run,
                            iw_output* outputs, size_t count, iw_result* result) {
   return guarded(result, [&] {
@@ -187,6 +228,7 @@ iw_status iw_forecast(const iw_volume* volume, const iw_mesh_options* options, c
   return guarded(result, [&] {
     VolumeRun all(volume, options, run);
     all.pass_before();
-    set_report(result, text_of(forecast_json(forecast_mesh(*all.opener.open(), all.options, all.control))));
+    all.control.checkpoint = {};
+    set_report(result, forecast_json(forecast_mesh(*all.opener.open(), all.options, all.control)));
   });
 }

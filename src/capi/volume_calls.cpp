@@ -185,7 +185,7 @@ iw_status iw_get_volume_info(const iw_volume* volume, iw_volume_info* info, iw_r
     all.unit = found.geometry.unit.c_str();
     all.path = found.path.c_str();
     hand_back(all, info);
-    set_report(result, text_of(volume_json(found)));
+    set_report(result, volume_json(found));
   });
 }
 

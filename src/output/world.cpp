@@ -84,6 +84,13 @@ double rounding_of_places(const VolumeInfo& volume, OutputSpace space, bool to_6
   return to_64_bits ? half_last_place<double>(farthest) : half_last_place<float>(farthest);
 }
 
+std::string space_of_mesh(const Geometry& volume, OutputSpace space) {
+  if (space == OutputSpace::kIndex) return "index";
+  if (volume.space == Space::kUnknown) return "";  // coordinates are those of the volume, whatever was asked for
+  const bool as_lps = space == OutputSpace::kLps || (space == OutputSpace::kAsVolume && volume.space == Space::kLps);
+  return as_lps ? "LPS" : "RAS";
+}
+
 std::array<double, 3> output_place(const VolumeInfo& volume, OutputSpace space, const std::array<double, 3>& index) {
   const StandardFloats floats;
   const auto& spacing = volume.geometry.spacing;

@@ -40,4 +40,16 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view space_name(Space space) {
+  switch (space) {
+    case Space::kLps:
+      return "lps";
+    case Space::kRas:
+      return "ras";
+    case Space::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
 }  // namespace isoweave

@@ -1,81 +1,11 @@
 // The C interface from C99: every call, beside the command line where that says the same.
 //   isoweave_c_tests [PROGRAM]
-#include <isoweave/isoweave.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 36, SAMPLES = SIDE * SIDE * SIDE };
-
-static int faults = 0;
-
-#define EXPECT(condition)                                            \
-  do {                                                               \
-    if (!(condition)) {                                              \
-      printf("interface.c:%d: expected %s\n", __LINE__, #condition); \
-      ++faults;                                                      \
-    }                                                                \
-  } while (0)
-
-static iw_result result = {sizeof(iw_result), NULL, NULL};
-
-// The status of a call, with its message where it is none that was expected.
-static int is(iw_status found, iw_status expected) {
-  if (found != expected) printf("status %d: %s\n", found, result.message == NULL ? "" : result.message);
-  return found == expected && (found == IW_DONE) == (result.message == NULL);
-}
-
-// The text after "KEY": in JSON, up to the next comma or bracket, without quotes.
-static void text_in(const char* json, const char* key, char* out, size_t room) {
-  char quoted[64];
-  snprintf(quoted, sizeof quoted, "\"%s\":", key);
-  out[0] = 0;
-  const char* at = json == NULL ? NULL : strstr(json, quoted);
-  if (at == NULL) return;
-  at += strlen(quoted);
-  while (*at == ' ' || *at == '"') ++at;
-  const size_t length = strcspn(at, "\",}]");
-  snprintf(out, room, "%.*s", (int)(length < room ? length : room - 1), at);
-}
-
-static double number_in(const char* json, const char* key) {
-  char text[64];
-  text_in(json, key, text, sizeof text);
-  return text[0] == 0 ? (double)NAN : strtod(text, NULL);
-}
-
-static void keep_digest(char digest[17]) { text_in(result.report, "digest", digest, 17); }
-
-static int exists(const char* path) {
-  FILE* file = fopen(path, "rb");
-  if (file != NULL) fclose(file);
-  return file != NULL;
-}
-
-// A ball with a dent and a small one beside it: not the same along any two axes.
-static void fill(float* samples) {
-  for (int k = 0; k < SIDE; ++k)
-    for (int j = 0; j < SIDE; ++j)
-      for (int i = 0; i < SIDE; ++i) {
-        const double x = i - 15.2, y = j - 14.1, z = k - 17.7;
-        const double ball =
-            11.3 - sqrt(x * x + 1.1 * y * y + 0.9 * z * z) + 0.8 * sin(0.7 * x) * cos(0.5 * y + 0.3 * z);
-        const double small = 3.1 - sqrt((i - 31) * (i - 31) + (j - 30) * (j - 30) + (k - 29) * (k - 29));
-        samples[(k * SIDE + j) * SIDE + i] = (float)(ball > small ? ball : small);
-      }
-}
-
-static iw_volume_info info_of_samples(void) {
-  iw_volume_info info = {.struct_size = sizeof info};
-  info.dims[0] = info.dims[1] = info.dims[2] = SIDE;
-  info.type = IW_FLOAT32;
-  info.spacing[0] = 0.5;
-  info.spacing[1] = 0.75;
-  info.spacing[2] = 1.25;
-  info.origin[0] = 3;
-  return info;
-}
+#include "support.h"
 
 static void write_samples(const float* samples) {
   FILE* file = fopen("c_volume.raw", "wb");
@@ -84,13 +14,13 @@ static void write_samples(const float* samples) {
 }
 
 // The digest that the command line prints for the same volume and options.
-static void digest_of_program(const char* program, char digest[17]) {
+static void digest_of_program(const char* program, const char* extractor, char digest[17]) {
   char command[1024];
   static char report[1 << 16];
   snprintf(command, sizeof command,
            "'%s' mesh c_volume.raw --raw 36x36x36:float32 --spacing 0.5,0.75,1.25 --origin 3,0,0 --iso 0 "
-           "--error 0.3vox --quiet -o c_program.ply --report c_report.json",
-           program);
+           "--error 0.3vox --extractor %s --quiet -o c_program.ply --report c_report.json",
+           program, extractor);
   EXPECT(system(command) == 0);
   FILE* file = fopen("c_report.json", "rb");
   EXPECT(file != NULL);
@@ -98,12 +28,6 @@ static void digest_of_program(const char* program, char digest[17]) {
   report[fread(report, 1, sizeof report - 1, file)] = 0;
   fclose(file);
   text_in(report, "digest", digest, 17);
-}
-
-static iw_simplify_options within(const char* error) {
-  iw_simplify_options simplify = {.struct_size = sizeof simplify};
-  simplify.error = error;
-  return simplify;
 }
 
 // ------------------------------------------------------------------------------------------ sources, sinks, progress
@@ -152,13 +76,6 @@ static int32_t count_and_stop(void* context, const iw_progress* progress) {
 }
 
 // ------------------------------------------------------------------------------------------------------------- tests
-
-static iw_volume* volume_of(const float* samples) {
-  const iw_volume_info info = info_of_samples();
-  iw_volume* volume = NULL;
-  EXPECT(is(iw_volume_in_memory(&info, samples, SAMPLES * sizeof(float), &volume, &result), IW_DONE));
-  return volume;
-}
 
 static void test_digests(const float* samples, const char* program) {
   char wanted[17] = "", found[17];
@@ -238,10 +155,16 @@ static void test_digests(const float* samples, const char* program) {
   EXPECT(is(iw_write_mesh(memory.mesh, "c_again.stl", 0, &result), IW_DONE));
   EXPECT(exists("c_again.stl"));
 
-  if (program != NULL) {
-    char by_program[17] = "";
-    digest_of_program(program, by_program);
-    EXPECT(strcmp(by_program, wanted) == 0);
+  static const char* const extractors[] = {"cubes", "trilinear", "tetrahedra", "dual"};
+  for (int32_t n = IW_EXTRACTOR_CUBES; program != NULL && n <= IW_EXTRACTOR_DUAL; ++n) {
+    char by_program[17] = "", named[16];
+    digest_of_program(program, extractors[n], by_program);
+    options.extractor = n;
+    EXPECT(is(iw_mesh_volume(file, &options, NULL, &to_file, 1, &result), IW_DONE));
+    keep_digest(found);
+    text_in(result.report, "extractor", named, sizeof named);
+    EXPECT(strcmp(by_program, found) == 0 && strcmp(named, extractors[n]) == 0);
+    EXPECT((n == IW_EXTRACTOR_CUBES) == (strcmp(found, wanted) == 0));
   }
   iw_free_mesh(read);
   iw_free_mesh(memory.mesh);
@@ -432,6 +355,9 @@ static void test_faults(const float* samples) {
   options.normals = 3;
   EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
   options.normals = IW_NORMALS_NONE;
+  options.extractor = 4;
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  options.extractor = IW_EXTRACTOR_CUBES;
   iw_simplify_options simplify = within("0.2furlong");
   options.simplify = &simplify;
   EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
@@ -476,8 +402,10 @@ int main(int count, char** arguments) {
   test_digests(samples, count > 1 ? arguments[1] : NULL);
   test_volumes(samples);
   test_labels();
+  test_isos(samples);
   test_meshes(samples);
   test_stops(samples);
+  test_checkpoints(samples);
   test_faults(samples);
   iw_result_clear(&result);
   free(samples);

@@ -1,6 +1,7 @@
 // Reads the input as a program in C that gives its calls anything but wild pointers: members of structs, sizes,
 // samples.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -115,19 +116,24 @@ void mesh_anything(Input& input, const iw_volume* volume, iw_result* result) {
   options.normals = input.byte() % 4;
   options.space = input.byte() % 5;
   options.values = input.byte() % 8 == 0 ? volume : nullptr;
+  options.extractor = input.byte() % 6;
   iw_run run{};
   run.struct_size = size_like(input, sizeof run);
   run.threads = 1;
   run.slab = input.byte() % 4;
+  run.checkpoint_layers = input.number<std::int8_t>();
+  run.checkpoint_seconds = input.byte() % 8 == 0 ? input.number<double>() : 0;
+  run.resume = input.byte() % 2;
   iw_output outputs[2]{};
   const std::size_t size = size_like(input, sizeof(iw_output));
   for (iw_output& output : outputs) {
     output.struct_size = size;
     output.label = input.text();
+    output.iso = input.byte();
   }
   const std::size_t count = size == sizeof(iw_output) ? input.byte() % 3 : 1;
-  const bool labels = input.byte() % 4 == 0;
-  const auto call = labels ? iw_mesh_labels : iw_mesh_volume;
+  const std::array calls{iw_mesh_labels, iw_mesh_isos, iw_mesh_volume, iw_mesh_volume};
+  const auto call = calls[input.byte() % calls.size()];
   expect_sane(call(volume, &options, &run, outputs, count, result), *result);
   for (const iw_output& output : outputs) use_mesh(output.mesh, result);
 }
