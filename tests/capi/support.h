@@ -10,12 +10,12 @@ enum { SIDE = 36, SAMPLES = SIDE * SIDE * SIDE };
 extern int faults;
 extern iw_result result;
 
-#define EXPECT(condition)                                            \
-  do {                                                               \
-    if (!(condition)) {                                              \
-      printf("interface.c:%d: expected %s\n", __LINE__, #condition); \
-      ++faults;                                                      \
-    }                                                                \
+#define EXPECT(condition)                                             \
+  do {                                                                \
+    if (!(condition)) {                                               \
+      printf("%s:%d: expected %s\n", __FILE__, __LINE__, #condition); \
+      ++faults;                                                       \
+    }                                                                 \
   } while (0)
 
 // Whether the status of a call is the expected one. It prints the message where it is not.
