@@ -51,7 +51,7 @@ test_packages=(ccache libgtest-dev libgdcm-dev clang clang-tidy clang-format lib
   clang-19 libc++-19-dev libc++abi-19-dev g++-aarch64-linux-gnu qemu-user
   python3-numpy python3-nibabel python3-pydicom python3-tifffile python3-pil python3-vtk9 teem-apps
   python3-h5py python3-numcodecs python3-zarr draco chromium abigail-tools python3-venv
-  paraview python3-paraview xvfb lintian man-db mricron-data)
+  paraview libopenmpi3 libpython3.11 xvfb lintian man-db mricron-data)
 
 # What the page for the browser is built with. Where there is a node that is not Debian's, Debian's npm conflicts with it.
 viewer_packages=()
@@ -99,4 +99,20 @@ install_nvcc() {
   cp "$list" "$unpacked/nvidia/cu13/packages.txt"
   mv -T "$unpacked/nvidia/cu13" "$cuda_folder"
   rm -rf "$unpacked"
+}
+
+# Where pvpython is: outside any clone, too, and beside Debian's packages, as python3-paraview conflicts with python3-vtk9,
+# which other tests need. What it needs of Debian is among the test_packages.
+paraview_folder=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/paraview
+
+# Unpacks pvpython where there is none.
+install_pvpython() {
+  if [ -e "$paraview_folder" ]; then return; fi
+  say "unpacking pvpython into $paraview_folder"
+  mkdir -p "$(dirname "$paraview_folder")"
+  local unpacked
+  unpacked=$(mktemp -d -p "$(dirname "$paraview_folder")")
+  (cd "$unpacked" && quietly apt-get download python3-paraview && dpkg -x python3-paraview_*.deb . && rm ./*.deb) \
+    || { rm -rf "$unpacked"; fail "could not unpack pvpython"; }
+  mv -T "$unpacked" "$paraview_folder"
 }

@@ -4,7 +4,11 @@ pvpython paraview_contour.py PLUGIN IMAGE LEVEL EXTRACTOR SURFACE
 """
 
 import inspect
+import os
 import sys
+
+# Debian's pvpython looks for VTK in the system's folder first, where that of other programs may be.
+sys.path[:0] = os.environ["PYTHONPATH"].split(os.pathsep)
 
 # ParaView 5.11 asks for a function that Python 3.11, beside which Debian 12 puts it, has no longer: it loads no plugin in
 # Python without that.

@@ -18,7 +18,10 @@ from conftest import ORIGIN, SPACING
 import isoweave
 
 
-@pytest.mark.skipif(shutil.which("pvpython") is None, reason="needs ParaView")
+PVPYTHON = shutil.which("pvpython")
+
+
+@pytest.mark.skipif(PVPYTHON is None, reason="needs ParaView")
 @pytest.mark.parametrize("extractor", ["cubes", "dual"])
 def test_paraview(volume: np.ndarray, extractor: str, wanted: str, folder: pathlib.Path) -> None:
     pyvista = pytest.importorskip("pyvista")
@@ -27,13 +30,14 @@ def test_paraview(volume: np.ndarray, extractor: str, wanted: str, folder: pathl
     grid.save(str(folder / "v.vti"))
     package = pathlib.Path(isoweave.__file__).parent
     script = pathlib.Path(__file__).with_name("paraview_contour.py")
-    # ParaView has numpy and VTK of its own.
-    environment = {**os.environ, "PYTHONPATH": str(folder), "QT_QPA_PLATFORM": "offscreen"}
+    # ParaView has numpy and VTK of its own, the latter beside its Python.
+    modules = pathlib.Path(str(PVPYTHON)).parent.parent / "lib/python3/dist-packages"
+    environment = {**os.environ, "PYTHONPATH": f"{modules}:{folder}", "QT_QPA_PLATFORM": "offscreen"}
     for name in ("isoweave", "isoweave.libs"):
         if (package.parent / name).exists():
             (folder / name).symlink_to(package.parent / name)
     done = subprocess.run(
-        ["pvpython", script, package / "paraview_plugin.py", folder / "v.vti", "100", extractor, folder / "surface.vtp"],
+        [str(PVPYTHON), script, package / "paraview_plugin.py", folder / "v.vti", "100", extractor, folder / "surface.vtp"],
         capture_output=True, text=True, env=environment, timeout=120, check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
