@@ -113,7 +113,7 @@ def test_several_levels(volume: np.ndarray, cli_report: Reporter, folder: pathli
         isoweave.mesh(volume, level, extractor="dual", triangles=400).digest for level in levels
     ]
     for mesh, entry in zip(meshes, by_cli["isos"]):
-        assert set(entry) - set(mesh.report) == {"output"}
+        assert set(entry) - set(mesh.report) == {"output", "name", "color", "opacity"}  # of a file and its parts
         assert mesh.report.iso == entry["iso"] and mesh.report.triangles == entry["triangles"] == len(mesh.faces)
     assert set(by_cli) - set(meshes[0].report) <= {"quality", "normals"}
 
