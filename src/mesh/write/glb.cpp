@@ -57,7 +57,8 @@ std::string scene_text(const std::string& path, const MeshFileOptions& options, 
   if (counts.vertices == 0) return gltf_text(gltf_empty_scene(options));
   GltfJson json = gltf_scene(options);
   std::uint64_t end = 0;
-  json["meshes"] = {gltf_mesh(gltf_name(path), 0, add_arrays(json, options.normals, counts, bounds, end))};
+  json["meshes"] =
+      GltfJson::array({gltf_mesh(gltf_name(path), 0, add_arrays(json, options.normals, counts, bounds, end))});
   json["buffers"] = {{{"byteLength", end}}};
   return gltf_text(json);
 }
