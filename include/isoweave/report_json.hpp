@@ -28,8 +28,8 @@ std::string range_json(double min, double max, std::uint64_t nan);
 // A surface as it was written.
 std::string surface_json(const SurfaceReport& surface);
 
-// What a run did and took, and its surface. `input` is an empty object, for the facts of the volume or mesh. Finer
-// levels have a surface_json each, which is not in it.
+// The facts of a run: its counts, times and memory, and its surface. `input` is an empty object, for the facts of the
+// volume or mesh. Finer levels have a surface_json each, which is not in it.
 std::string run_json(const MeshReport& report);
 
 // The counts and warnings of one mesh of a run that makes several. Its surface is not in it.

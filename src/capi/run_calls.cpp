@@ -79,7 +79,7 @@ Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOpt
   return json;
 }
 
-// What the report of a surface at one iso-value, and of several, have beside that.
+// Keys that the reports of volumes have beside the common ones: of one iso-value, and of several.
 void describe_level_set(const VolumeRun& run, Json& json) {
   json["inside"] = run.options.inside_above ? "above" : "below";
   if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};

@@ -1,4 +1,4 @@
-// What the tests of the C interface share: a volume, a result, and what is read from reports.
+// Parts that the tests of the C interface share: a volume, a result, and numbers read from reports.
 #ifndef ISOWEAVE_TESTS_SUPPORT_H
 #define ISOWEAVE_TESTS_SUPPORT_H
 

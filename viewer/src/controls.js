@@ -17,7 +17,7 @@ export function surfaceNames() {
     (surface.level === undefined ? names[surface.name] ?? `LOD ${(level += 1)}` : `LOD ${surface.level}`));
 }
 
-// What a surface is called in the list of them: its name, or its iso-value with its colour.
+// The name of a surface in the list of them, or its iso-value with its colour.
 export function surfaceTitle(index) {
   const { iso } = report.page.surfaces[index];
   return iso === undefined ? surfaceNames()[index] : isoTitle(iso);

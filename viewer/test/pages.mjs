@@ -1,4 +1,4 @@
-// What the tests of several pages share: loading, comparing every number with the report, looking at pictures.
+// Functions that the tests of several pages share: loading, comparing every number with the report, looking at pictures.
 import assert from 'node:assert/strict';
 import { numberIn } from './numbers.mjs';
 
@@ -58,13 +58,13 @@ export const kOtherDigits = `(() => {
   return found;
 })()`;
 
-// What an element says to those who see it.
+// The text of an element, as a reader sees it.
 export const visibleText = (page, id) => page.evaluate(`(() => {
   const e = document.getElementById('${id}');
   return e.offsetHeight > 0 ? e.innerText : '';
 })()`);
 
-// What is drawn: how much of the canvas, in how many colours, and a sum that changes with the picture.
+// Figures of the picture: how much of the canvas is drawn, in how many colours, and a sum that changes with it.
 export const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
   view.drawNow();
   const copy = document.createElement('canvas');
