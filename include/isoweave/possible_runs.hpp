@@ -13,8 +13,8 @@
 namespace isoweave {
 
 // The kinds of runs: the mesh of a volume, the meshes of labels, those of several iso-values, a choice of components, a
-// mesh from a mesh.
-enum class RunKind : std::uint8_t { kMesh, kLabels, kIsoValues, kComponents, kSimplify };
+// mesh from a mesh, the mesh of a volume in blocks.
+enum class RunKind : std::uint8_t { kMesh, kLabels, kIsoValues, kComponents, kSimplify, kBlocks };
 
 // The features that do not go with every kind of run, or not with a device. In parentheses the options that ask for
 // them.
@@ -30,6 +30,7 @@ enum class RunFeature : std::uint8_t {
   kObserver,        // an observer (RunControl::observer)
   kMemoryCap,       // a cap on memory (RunControl::memory)
   kExtractor,       // an extractor other than marching cubes (SurfaceOptions::extractor)
+  kDual,            // dual marching cubes (SurfaceOptions::extractor)
   kSchedule,        // a schedule other than rounds (RunControl::schedule)
   kIndex            // an index of the volume (RunControl::index)
 };

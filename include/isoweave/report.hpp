@@ -31,6 +31,13 @@ struct LeftOutReport {
   std::uint64_t bytes_left_out = 0;  // of samples as they are in memory
 };
 
+// A stage of a run in blocks.
+struct BlockStage {
+  std::int64_t size = 0;        // of its blocks, in cells
+  std::uint64_t blocks = 0;     // that had triangles
+  std::uint64_t triangles = 0;  // taken in: extracted in the first stage, undecided ones later
+};
+
 // The report of a run, and of its mesh with the largest error.
 struct MeshReport : SurfaceReport {
   int threads = 0;
@@ -51,8 +58,9 @@ struct MeshReport : SurfaceReport {
   double seconds_read = 0, seconds_extract = 0, seconds_simplify = 0, seconds_write = 0, seconds_total = 0;
   std::uint64_t peak_bytes = 0;             // of the process, as the system counts it
   std::optional<LeftOutReport> left_out{};  // where the run had an index
-  std::vector<SlabRecord> sweep;
-  std::vector<std::string> warnings;  // one line each
+  std::vector<BlockStage> blocks;           // of a run in blocks; else none
+  std::vector<SlabRecord> sweep;            // in blocks: one for each layer of blocks
+  std::vector<std::string> warnings;        // one line each
 };
 
 }  // namespace isoweave

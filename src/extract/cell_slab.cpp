@@ -31,20 +31,25 @@ const std::array<std::int64_t, 3>& checked_dims(const VolumeInfo& volume) {
 
 }  // namespace
 
-CellSlab::CellSlab(const VolumeInfo& volume, const IsoRule& rule, std::size_t below, const Executor& executor)
+CellSlab::CellSlab(const VolumeInfo& volume, const IsoRule& rule, const CellBox& cells, std::size_t below,
+                   const Executor& executor)
     : dims_(checked_dims(volume)),
+      cells_(cells),
       type_(volume.type),
       rule_(rule),
       executor_(executor),
       rows_(to_size(volume.dims[1] + 2)),
       words_(to_size((volume.dims[0] + 2 + 63) / 64)),
       below_(static_cast<std::ptrdiff_t>(below)),
-      end_layer_(rule.closed ? volume.dims[2] : volume.dims[2] - 1),
+      edge_mask_(bit_range(words_, cells.first[0] + 1, cells.end[0] + 1)),
+      end_mask_(bit_range(words_, 1, 2)),
+      next_layer_(std::max<std::int64_t>(cells.first[2] - 1, -1)),
+      end_layer_(cells.end[2]),
       slices_(below + 1, std::vector<std::uint64_t>(to_size(rows_, words_), 0)) {
   const std::int64_t nx = dims_[0];
-  edge_mask_ = rule.closed ? bit_range(words_, 0, nx + 1) : bit_range(words_, 1, nx);
-  end_mask_ = bit_range(words_, 1, 2);
   end_mask_[static_cast<std::size_t>(nx >> 6)] |= std::uint64_t{1} << (nx & 63);
+  if (cells.has_point(0, 0) && cells.has_point(0, nx - 1)) return;
+  point_mask_ = bit_range(words_, cells.first[0] + 1, cells.end[0] + 2);
 }
 
 void CellSlab::classify(const SliceWindow& window, std::size_t layers) {
@@ -69,14 +74,13 @@ void CellSlab::classify_row_of(const SliceWindow& window, std::int64_t k, std::s
   classify_row(window.slice(k) + static_cast<std::size_t>(j) * row_bytes, type_, dims_[0], rule_, bits, kernels_);
 }
 
-bool CellSlab::has_y(std::size_t row) const {
-  const std::int64_t j = static_cast<std::int64_t>(row) - 1;
-  return row + 1 < rows_ && (rule_.closed || (j >= 0 && j + 1 < dims_[1]));
-}
+bool CellSlab::has_y(std::size_t row) const { return cells_.has_cell(1, static_cast<std::int64_t>(row) - 1); }
 
-bool CellSlab::has_z(std::ptrdiff_t n) const {
-  const std::int64_t k = next_layer_ + n;
-  return k >= -1 && k < dims_[2] && (rule_.closed || (k >= 0 && k + 1 < dims_[2]));
+bool CellSlab::has_z(std::ptrdiff_t n) const { return cells_.has_cell(2, next_layer_ + n); }
+
+// Whether the points of a row are corners of cells, along y and z.
+bool CellSlab::has_points(std::ptrdiff_t n, std::size_t row) const {
+  return cells_.has_point(1, static_cast<std::int64_t>(row) - 1) && cells_.has_point(2, next_layer_ + n);
 }
 
 std::array<const std::uint64_t*, 4> CellSlab::rows_around(std::ptrdiff_t n, std::size_t row) const {

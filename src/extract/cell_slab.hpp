@@ -16,6 +16,7 @@
 #include "extract/row_kernels.hpp"
 #include "files/state_file.hpp"
 #include "isoweave/volume.hpp"
+#include "lattice/lattice.hpp"
 #include "parallel/parallel.hpp"
 #include "volume/slice_window.hpp"
 
@@ -23,8 +24,10 @@ namespace isoweave {
 
 class CellSlab {
  public:
-  // below: layers under the slab whose cells can be asked for. Throws OverMemory for rows of more than kMostRowSamples.
-  CellSlab(const VolumeInfo& volume, const IsoRule& rule, std::size_t below, const Executor& executor);
+  // cells: of the volume; no others have a surface. below: layers under the slab whose cells can be asked for. Throws
+  // OverMemory for rows of more than kMostRowSamples.
+  CellSlab(const VolumeInfo& volume, const IsoRule& rule, const CellBox& cells, std::size_t below,
+           const Executor& executor);
 
   std::size_t rows() const { return rows_; }    // padded, of a slice
   std::size_t words() const { return words_; }  // of a padded row
@@ -34,7 +37,7 @@ class CellSlab {
   const Executor& executor() const { return executor_; }
   const RowKernels& kernels() const { return kernels_; }
 
-  // The first layer is -1, in the pad, and empty in open mode.
+  // The first layer is the one below the cells, which is empty, or -1, in the pad.
   std::int64_t next_layer() const { return next_layer_; }
   std::int64_t layers_left() const { return end_layer_ - next_layer_; }
 
@@ -82,7 +85,10 @@ class CellSlab {
 
   void classify_row_of(const SliceWindow& window, std::int64_t k, std::size_t row, std::vector<std::uint64_t>& slice);
 
+  bool has_points(std::ptrdiff_t n, std::size_t row) const;
+
   std::array<std::int64_t, 3> dims_;
+  CellBox cells_;
   SampleType type_;
   IsoRule rule_;
   const Executor& executor_;
@@ -90,7 +96,8 @@ class CellSlab {
   std::size_t rows_, words_;
   std::ptrdiff_t below_;
   std::vector<std::uint64_t> edge_mask_, end_mask_;
-  std::int64_t next_layer_ = -1;
+  std::vector<std::uint64_t> point_mask_;  // the corners of cells in a row; empty: no bit of a row is set elsewhere
+  std::int64_t next_layer_;
   std::int64_t end_layer_;
   std::vector<std::vector<std::uint64_t>> slices_;  // from next_layer() - below on
 };
@@ -99,7 +106,7 @@ template <std::uint8_t Direction>
 void CellSlab::find_along(std::ptrdiff_t n, std::size_t row, std::span<std::uint64_t> out) const {
   constexpr bool kX = (Direction & 1) != 0, kY = (Direction & 2) != 0, kZ = (Direction & 4) != 0;
   const std::span<std::uint64_t> words = out.subspan(row * words_, words_);
-  if ((kY && !has_y(row)) || (kZ && !has_z(n))) {
+  if (!has_points(n, row) || (kY && !has_y(row)) || (kZ && !has_z(n))) {
     std::ranges::fill(words, 0);
     return;
   }
@@ -109,6 +116,7 @@ void CellSlab::find_along(std::ptrdiff_t n, std::size_t row, std::span<std::uint
     kernels_.differ_along(low, high, edge_mask_.data(), words_, words.data());
   } else {
     kernels_.differ(low, high, words_, words.data());
+    for (std::size_t w = 0; w < point_mask_.size(); ++w) words[w] &= point_mask_[w];
   }
 }
 

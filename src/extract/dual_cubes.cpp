@@ -41,7 +41,7 @@ DualCubes::DualCubes(const VolumeInfo& volume, const ExtractOptions& options, co
       first_(options.part_of.value_or(PartOfLattice{}).first),
       spacing_(volume.geometry.spacing),
       options_(options),
-      slab_(volume, options.rule, 1, executor),
+      slab_(volume, options.rule, options.cells_of(volume), 1, executor),
       inner_points_(inner_points(slab_)) {}
 
 // Gradients look one slice further, and those of the layer below the slab are asked for again.

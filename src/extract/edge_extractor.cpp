@@ -49,7 +49,7 @@ EdgeExtractor<Edges>::EdgeExtractor(const VolumeInfo& volume, const ExtractOptio
       type_(volume.type),
       spacing_(volume.geometry.spacing),
       options_(options),
-      slab_(volume, options.rule, 0, executor),
+      slab_(volume, options.rule, options.cells_of(volume), 0, executor),
       on_slices_(1) {
   on_slices_[0].resize(slab_.plane_words());
 }

@@ -29,8 +29,14 @@ struct ExtractOptions {
   IsoRule rule;
   bool normals = false;  // from central differences of the samples; needs one slice more on either side
   // The place of a volume that is a part of another one: its vertices have the places and ids that they have in the
-  // whole. There is no surface at a border inside the whole, so no sample there may be inside.
+  // whole. Where a border inside the whole has cells, no sample there may be inside.
   std::optional<PartOfLattice> part_of{};
+  // The cells of the volume that have a surface; none: all. The samples around them are there for normals alone.
+  std::optional<CellBox> cells{};
+
+  CellBox cells_of(const VolumeInfo& volume) const {
+    return cells.value_or(CellBox::of_volume(volume.dims, rule.closed));
+  }
 
   const std::array<std::int64_t, 3>& whole(const VolumeInfo& volume) const {
     return part_of ? part_of->dims : volume.dims;

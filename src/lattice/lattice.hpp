@@ -34,4 +34,21 @@ struct PartOfLattice {
   std::array<std::int64_t, 3> first{0, 0, 0};  // sample of it
 };
 
+// A box of cells, [first, end) along each axis. Cell (i, j, k) lies between samples (i, j, k) and (i + 1, j + 1, k +
+// 1).
+struct CellBox {
+  std::array<std::int64_t, 3> first{0, 0, 0};
+  std::array<std::int64_t, 3> end{0, 0, 0};
+
+  // The cells of a volume. Closed: those between samples and pad as well.
+  static CellBox of_volume(const std::array<std::int64_t, 3>& dims, bool closed) {
+    const std::int64_t pad = closed ? 1 : 0;
+    return {{-pad, -pad, -pad}, {dims[0] - 1 + pad, dims[1] - 1 + pad, dims[2] - 1 + pad}};
+  }
+
+  // Whether cell `at` of an axis is in the box, and whether a lattice point is a corner of one.
+  bool has_cell(std::size_t axis, std::int64_t at) const { return at >= first[axis] && at < end[axis]; }
+  bool has_point(std::size_t axis, std::int64_t at) const { return at >= first[axis] && at <= end[axis]; }
+};
+
 }  // namespace isoweave

@@ -12,13 +12,15 @@ constexpr unsigned kLabels = 2;      // meshes of labels
 constexpr unsigned kComponents = 4;  // the choice of components
 constexpr unsigned kSimplify = 8;    // a mesh from a mesh
 constexpr unsigned kIsoValues = 16;  // meshes of several iso-values
+constexpr unsigned kBlocks = 32;     // a mesh in blocks
 
 struct Refuser {
   unsigned bit;
   const char* name;
   const char* reason;
 };
-constexpr std::array<Refuser, 5> kRefusers{{{kLabels, "labels", "which takes one surface"},
+constexpr std::array<Refuser, 6> kRefusers{{{kLabels, "labels", "which takes one surface"},
+                                            {kBlocks, "blocks", "which takes slabs"},
                                             {kIsoValues, "several iso-values", "which takes one surface"},
                                             {kComponents, "a choice of components", "which takes processors"},
                                             {kSimplify, "a mesh", "which takes a volume"},
@@ -32,34 +34,36 @@ struct Feature {
   unsigned refused_by;
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
-constexpr std::array<Feature, 13> kFeatures{{
-    {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify,
+constexpr std::array<Feature, 14> kFeatures{{
+    {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
-    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels,
+    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kBlocks,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0; }},
     {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},
-    {RunFeature::kMaxDistance, "a guaranteed distance", kDevice,
+    {RunFeature::kMaxDistance, "a guaranteed distance", kDevice | kBlocks,
      [](const MeshOptions& options, const RunControl&) { return options.max_distance.value > 0; }},
-    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels | kIsoValues,
+    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels | kIsoValues | kBlocks,
      [](const MeshOptions& options, const RunControl&) { return options.components != nullptr; }},
     {RunFeature::kQuadricNormals, "normals by quadrics", kDevice,
      [](const MeshOptions& options, const RunControl&) { return options.normals == Normals::kQuadric; }},
-    {RunFeature::kValues, "values of another volume", kDevice | kLabels | kIsoValues,
+    {RunFeature::kValues, "values of another volume", kDevice | kLabels | kIsoValues | kBlocks,
      [](const MeshOptions& options, const RunControl&) { return options.values != nullptr; }},
-    {RunFeature::kStates, "states to be saved or resumed", kLabels | kIsoValues | kSimplify,
+    {RunFeature::kStates, "states to be saved or resumed", kLabels | kIsoValues | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
-    {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify,
+    {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
-    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify,
+    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
     {RunFeature::kExtractor, "an extractor other than marching cubes", kDevice | kSimplify,
      [](const MeshOptions& options, const RunControl&) { return options.extractor != ExtractorKind::kCubes; }},
+    {RunFeature::kDual, "dual marching cubes", kBlocks,
+     [](const MeshOptions& options, const RunControl&) { return options.extractor == ExtractorKind::kDual; }},
     {RunFeature::kSchedule, "a schedule other than rounds", kDevice,
      [](const MeshOptions&, const RunControl& control) {
        return control.schedule != Schedule::kAutomatic && control.schedule != Schedule::kRounds;
      }},
-    {RunFeature::kIndex, "an index of the volume", kLabels | kIsoValues | kSimplify,
+    {RunFeature::kIndex, "an index of the volume", kLabels | kIsoValues | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return control.index != nullptr; }},
 }};
 
@@ -67,6 +71,7 @@ unsigned refusers_of(RunKind kind, const RunControl& control) {
   const unsigned device = control.device == Device::kCuda ? kDevice : 0;
   if (kind == RunKind::kLabels) return kLabels | device;
   if (kind == RunKind::kIsoValues) return kIsoValues | device;
+  if (kind == RunKind::kBlocks) return kBlocks | device;
   if (kind == RunKind::kComponents) return kComponents | device;
   return (kind == RunKind::kSimplify ? kSimplify : 0) | device;
 }

@@ -143,12 +143,15 @@ void add_extracted(const SlabCounts& slab, MeshReport& report) {
   report.vertices_extracted += slab.vertices;
 }
 
-void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
-  const DecisionCounts counts = simplifier.counts();
+void report_decisions(const DecisionCounts& counts, MeshReport& report) {
   report.collapses = counts.collapses;
   report.postponed = counts.postponed;
   report.rekeyed = counts.rekeyed;
   report.specks = counts.specks;
+}
+
+void report_simplifier(const Simplifier& simplifier, MeshReport& report) {
+  report_decisions(simplifier.counts(), report);
   report.rounds = simplifier.rounds();
   report_defects(simplifier.defects(), report);
 }

@@ -65,6 +65,7 @@ void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshR
 void add_extracted(const SlabCounts& slab, MeshReport& report);
 
 // Copies the simplifier's counters.
+void report_decisions(const DecisionCounts& counts, MeshReport& report);
 void report_simplifier(const Simplifier& simplifier, MeshReport& report);
 void report_defects(const SurfaceDefects& defects, SurfaceReport& report);
 

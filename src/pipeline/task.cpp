@@ -106,7 +106,7 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
   task.offset = offset;
   task.rule = stored_rule(volume, options);
   task.simplify = resolve_simplification(options, measure_of(volume, options.extractor));
-  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options);
+  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options) || kind == RunKind::kBlocks;
   task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
   task.simplify.normals = task.has_normals();
   task.simplify.values = options.values != nullptr;

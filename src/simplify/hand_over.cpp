@@ -25,7 +25,7 @@ void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, F
   piece.open_edges = open_edges_;
 }
 
-// Lists the vertices that triangles name, in memory order, and numbers them.
+// Lists the vertices that triangles name, and final ones where they go early, in memory order, and numbers them.
 void HandOver::list_vertices(const std::vector<Index>& triangles) {
   place_.assign(zone_.vertices.size(), 0);
   executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t n) {
@@ -33,6 +33,12 @@ void HandOver::list_vertices(const std::vector<Index>& triangles) {
       std::atomic_ref(place_[side.vertex]).store(1, std::memory_order_relaxed);
     }
   });
+  if (early_) {
+    executor_.for_each(signed_count(place_.size()), kBlock, [&](std::int64_t n) {
+      const auto v = static_cast<Index>(n);
+      if (is_final(v) && number(v) == kNotHandedOver && exists(zone_.vertices[v].half_edge)) place_[v] = 1;
+    });
+  }
   const auto list = [&](bool known, std::uint32_t first, std::vector<Index>& vertices) {
     collect(
         executor_, signed_count(place_.size()), kBlock,

@@ -13,8 +13,10 @@ namespace isoweave {
 
 class HandOver {
  public:
-  // level: of the zone's levels, or their number for the last mesh. Both other arguments must outlive this.
-  HandOver(Zone& zone, std::size_t level, const Executor& executor) : zone_(zone), level_(level), executor_(executor) {}
+  // level: of the zone's levels, or their number for the last mesh. Both other arguments must outlive this. early:
+  // final vertices are handed over before any triangle of them is, so that copies of them have the same receipts.
+  HandOver(Zone& zone, std::size_t level, bool early, const Executor& executor)
+      : zone_(zone), level_(level), early_(early), executor_(executor) {}
 
   // Fills in triangles of the level, which have become final there, with their vertices in memory order. Those of the
   // last mesh are cut off from the triangles beside them; the others stay for the levels behind.
@@ -28,6 +30,10 @@ class HandOver {
   std::uint64_t& number(Index v) const { return is_last() ? zone_.vertices[v].number : zone_.levels[level_][v].number; }
   std::uint32_t& label(Index v) const { return is_last() ? zone_.vertices[v].label : zone_.levels[level_][v].label; }
 
+  bool is_final(Index v) const {
+    return is_last() ? zone_.states[v] == VertexState::kFinal : zone_.levels[level_][v].final;
+  }
+
   void list_vertices(const std::vector<Index>& triangles);
   void fill_vertices(const Receipt& first, FinalPiece& piece) const;
   void fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const;
@@ -38,6 +44,7 @@ class HandOver {
 
   Zone& zone_;
   const std::size_t level_;
+  const bool early_;
   const Executor& executor_;
   std::vector<std::uint32_t> place_;  // per vertex of the zone: its number in the piece, where that names it
   std::vector<Index> known_, new_;    // vertices of the piece

@@ -18,7 +18,8 @@ void Queue::run(const std::atomic<bool>* stop) {
 
 void Queue::offer_live_edges() {
   heap_.clear();
-  flags_.assign(zone_.vertices.size(), 0);
+  flags_.resize(zone_.vertices.size());
+  for (Index v = 0; v < flags_.size(); ++v) flags_[v] = zone_.states[v] == VertexState::kCut ? 1 : 0;
   for (Index t = 0; t < zone_.triangle_count(); ++t) {
     for (Index h = half_edge(t, 0); h <= half_edge(t, 2); ++h) {
       if (!zone_.alive(h) || zone_.cost(h) > zone_.limit) continue;

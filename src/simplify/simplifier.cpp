@@ -31,8 +31,8 @@ std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, const Executo
 
 class Simplifier::Source final : public FinalSource {
  public:
-  Source(Simplifier& simplifier, std::size_t level)
-      : simplifier_(simplifier), level_(level), hand_over_(simplifier.zone_, level, simplifier.executor_) {}
+  Source(Simplifier& simplifier, std::size_t level, bool cut)
+      : simplifier_(simplifier), level_(level), hand_over_(simplifier.zone_, level, cut, simplifier.executor_) {}
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
     const std::vector<Index> triangles = simplifier_.final_triangles(level_);
@@ -59,7 +59,9 @@ Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executo
       inspects_(options.inspect),
       driver_(make_driver(schedule_, zone_, executor)),
       defects_(levels()) {
-  for (std::size_t level = 0; level < levels(); ++level) sources_.push_back(std::make_unique<Source>(*this, level));
+  for (std::size_t level = 0; level < levels(); ++level) {
+    sources_.push_back(std::make_unique<Source>(*this, level, options.cut));
+  }
 }
 
 Simplifier::~Simplifier() = default;

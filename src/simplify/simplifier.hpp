@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "isoweave/run.hpp"
@@ -20,6 +22,7 @@ struct SimplifierOptions {
   // The costs of the finer meshes, ascending, all below the cost at which edges are retired.
   std::vector<CostBits> finer{};
   bool inspect = true;  // inspect final vertices for defects
+  bool cut = false;     // the surface is cut: other parts of it have copies of vertices
 };
 
 class Simplifier {
@@ -34,6 +37,18 @@ class Simplifier {
     zone_.append(piece, executor_);
     if (schedule_ != Schedule::kLocal) zone_.settle_edges(executor_);  // the local one settles edges while it decides
     appended_ += piece.triangles.size();
+  }
+
+  // Takes a part in that is linked, before anything else.
+  void put_part(ZonePart part) {
+    appended_ = part.triangles.size();
+    zone_.put_part(std::move(part), executor_);
+  }
+
+  // The undecided surface as a part (Zone::take_part), once all levels have handed out their final triangles. The
+  // simplifier is of no use afterwards, but for its counts.
+  ZonePart take_part(const std::function<bool(std::uint64_t, std::uint64_t)>& is_border) {
+    return zone_.take_part(is_border, executor_);
   }
 
   // The number of meshes that come out: one for each finer level, and the last one.

@@ -67,9 +67,14 @@ ISOWEAVE_HD inline void renew_turn(const ZoneView& zone, const Star& star) {
   star.overflow ? turn_rules::set_turn(zone, star.vertex, star.vertex) : turn_rules::set_turn(zone, star.vertex, star);
 }
 
+// Whether a vertex in that state blocks: its turn cannot be known here, or not yet.
+ISOWEAVE_HD inline bool blocks(VertexState state) {
+  return state == VertexState::kIncomplete || state == VertexState::kDeferred || state == VertexState::kCut;
+}
+
 // Sets the turn of a vertex in any state.
 ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
-  if (zone.states[v] == VertexState::kIncomplete || zone.states[v] == VertexState::kDeferred) {
+  if (blocks(zone.states[v])) {
     publish(zone.turn_keys[v], kUnknownTurn);
   } else if (zone.states[v] == VertexState::kLocked || !exists(zone.vertices[v].half_edge)) {
     publish(zone.turn_keys[v], kNoTurn);

@@ -77,6 +77,10 @@ void Zone::serialize(StateReader& state, const PartShape& shape) {
   state.value(limit);
   state.require(limit <= options.retire, "a limit of costs that the run has");
   if (extracted_surface_) extracted_surface_->serialize(state, shape.farthest);
+  take_arrays(part);
+}
+
+void Zone::take_arrays(ZonePart& part) {
   vertex_array_ = std::move(part.vertices);
   state_array_ = std::move(part.states);
   normal_array_ = std::move(part.normals);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -88,6 +89,14 @@ class Zone : public ZoneView {
   void serialize(StateWriter& state) const;
   void serialize(StateReader& state, const PartShape& shape);
 
+  // The undecided surface as a part of one that is cut. The zone is of no use afterwards. is_border(id, id): whether an
+  // edge between two incomplete vertices, with one triangle here, lies on a border of the surface.
+  ZonePart take_part(const std::function<bool(std::uint64_t, std::uint64_t)>& is_border, const Executor& executor);
+
+  // Puts a part that is linked into an empty zone. Vertices that it completes get their quadrics, their edges get keys,
+  // and all undecided vertices count as settled.
+  void put_part(ZonePart part, const Executor& executor);
+
   // The vertices that the next piece inherits.
   std::size_t front_size() const { return front_.size(); }
 
@@ -95,6 +104,7 @@ class Zone : public ZoneView {
   class Linker;
   struct EdgeBatch;
 
+  void take_arrays(ZonePart& part);
   void show_arrays();
   void forget_turns();
   void list_settled(Index end);

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "simplify/part_linker.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -224,119 +226,6 @@ class PartReader {
   ZonePart part_;
 };
 
-// The most triangles around a vertex. Extraction makes fewer, and kMaxValence bounds what is merged.
-constexpr Index kMostFaces = 256;
-
-// Links a part: twins, and where the fans of vertices start. Refuses a surface that no zone could hold.
-class PartLinker {
- public:
-  PartLinker(StateReader& state, ZonePart& part, CostBits retire)
-      : state_(state), part_(part), retire_(retire), zone_(part.view()) {}
-
-  void link() {
-    list_leaving();
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) link_side(half_edge(t, c));
-    }
-    leaving_ = {};
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) settle(half_edge(t, c));
-    }
-    start_fans();
-  }
-
- private:
-  // Lists the half-edges that leave each vertex.
-  void list_leaving() {
-    std::vector<Index> end(part_.vertices.size() + 1, 0);
-    for (const Triangle& triangle : part_.triangles) {
-      for (const HalfEdge& side : triangle.sides) ++end[side.vertex + 1];
-    }
-    state_.require(*std::max_element(end.begin(), end.end()) <= kMostFaces, "stars as small as they are in volumes");
-    std::partial_sum(end.begin(), end.end(), end.begin());
-    first_leaving_ = end;
-    leaving_.resize(end.back());
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) leaving_[end[part_.triangles[t].sides[c].vertex]++] = half_edge(t, c);
-    }
-  }
-
-  // The only half-edge from one vertex to another, or kNone.
-  Index find_side(Index from, Index to) const {
-    Index found = kNone;
-    for (Index n = first_leaving_[from]; n < first_leaving_[from + 1]; ++n) {
-      if (zone_.destination(leaving_[n]) != to) continue;
-      state_.require(found == kNone, "edges of one triangle or two");
-      found = leaving_[n];
-    }
-    return found;
-  }
-
-  void link_side(Index h) {
-    static_cast<void>(find_side(zone_.origin(h), zone_.destination(h)));  // refuses two
-    const Index back = find_side(zone_.destination(h), zone_.origin(h));
-    if (back == kNone) return;
-    const bool fits = zone_.twin(h) != kWritten && zone_.twin(back) != kWritten && zone_.key(h) == zone_.key(back) &&
-                      zone_.tie_low(h) == zone_.tie_low(back);
-    state_.require(fits, "edges whose two sides fit together");
-    zone_.set_twin(h, back);
-  }
-
-  bool is_incomplete(Index v) const { return zone_.states[v] == VertexState::kIncomplete; }
-
-  // Checks the key of a side, or sets it aside where an end is incomplete.
-  void settle(Index h) {
-    const Index ends[2] = {zone_.origin(h), zone_.destination(h)};
-    if (is_incomplete(ends[0]) || is_incomplete(ends[1])) {
-      state_.require(zone_.key(h) == 0, "no keys where a vertex is incomplete");
-      if (zone_.represents_edge(h)) part_.unkeyed_edges.push_back(h);
-      return;
-    }
-    state_.require(zone_.cost(h) != kUnknownCost, "keys of edges");
-    for (const Index v : ends) {
-      const bool live = zone_.cost(h) <= retire_;
-      state_.require(!live || zone_.states[v] != VertexState::kFinal, "no edge to decide at a final vertex");
-    }
-  }
-
-  // Starts the fan of a vertex on a border at that border, and any other fan anywhere.
-  void start_fans() {
-    std::vector<std::uint32_t> corners(part_.vertices.size(), 0);
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) {
-        const Index h = half_edge(t, c);
-        Index& start = zone_.vertices[zone_.origin(h)].half_edge;
-        if (start == kNone || !exists(zone_.twin(h))) start = h;
-        ++corners[zone_.origin(h)];
-      }
-    }
-    for (Index v = 0; v < corners.size(); ++v) {
-      state_.require(corners[v] > 0 || is_incomplete(v), "vertices of triangles");
-      if (zone_.states[v] == VertexState::kComplete) check_fan(v, corners[v]);
-    }
-  }
-
-  // A vertex with an edge to decide has all its triangles here, in one fan.
-  void check_fan(Index v, std::uint32_t corners) {
-    const Index first = zone_.vertices[v].half_edge;
-    std::uint32_t faces = 0;
-    Index h = first;
-    do {
-      state_.require(zone_.twin(h) != kWritten && zone_.twin(previous(h)) != kWritten && ++faces <= corners,
-                     "whole stars around vertices that are not final");
-      h = zone_.rotate(h);
-    } while (h != first && exists(h));
-    state_.require(faces == corners, "one fan of triangles around each vertex that is not final");
-  }
-
-  StateReader& state_;
-  ZonePart& part_;
-  const CostBits retire_;
-  ZoneView zone_;
-  std::vector<Index> first_leaving_;  // per vertex, and one more
-  std::vector<Index> leaving_;
-};
-
 }  // namespace
 
 ZoneView ZonePart::view() {
@@ -394,7 +283,7 @@ void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<
 
 ZonePart read_part(StateReader& state, const PartShape& shape) {
   ZonePart part = PartReader(state, shape).read();
-  PartLinker(state, part, shape.retire).link();
+  link_part(part, shape.retire, PartScope::kAll, [&](bool holds, const char* what) { state.require(holds, what); });
   return part;
 }
 

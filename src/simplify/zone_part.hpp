@@ -40,7 +40,8 @@ struct ZonePart {
   Array<Triangle> triangles;
   std::vector<Array<LevelVertex>> levels;  // before the last one
   std::vector<Index> front;                // incomplete vertices, in the order in which the next piece names them
-  std::vector<Index> unkeyed_edges;        // an end is incomplete
+  std::vector<Index> unkeyed_edges;        // an end is incomplete, or has been
+  std::vector<Index> completed;            // vertices that have got the last of their triangles, and have no quadrics
 
   // Vertices, normals and triangles as a zone, without options.
   ZoneView view();

@@ -23,7 +23,7 @@ namespace isoweave {
 using Index = std::uint32_t;  // of a vertex, triangle or half-edge in the zone; a zone holds fewer than 2^30 triangles
 
 inline constexpr Index kNone = 0xffffffffu;     // no half-edge: a border
-inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and gone
+inline constexpr Index kWritten = 0xfffffffeu;  // the other side is final and gone, or in another part of the surface
 
 ISOWEAVE_HD inline Index half_edge(Index triangle, Index corner) { return 4 * triangle + corner; }
 
@@ -38,6 +38,7 @@ enum class VertexState : std::uint8_t {
   kIncomplete,  // later pieces give it more triangles: no quadric yet, blocks everything near
   kComplete,
   kDeferred,  // complete; an edge of it cannot be decided before more of the surface is known: blocks as well
+  kCut,       // has its quadric; triangles of it are in another part of the surface: blocks as well
   kFinal,     // all its edges are retired
   kLocked,    // stays where it is; all its edges are retired from the start
 };
@@ -140,7 +141,8 @@ struct ZoneView {
   // Whether the star of v is one fan that can be walked around.
   ISOWEAVE_HD bool walkable(Index v) const {
     const VertexState state = states[v];
-    return state != VertexState::kIncomplete && state != VertexState::kLocked && exists(vertices[v].half_edge);
+    return state != VertexState::kIncomplete && state != VertexState::kCut && state != VertexState::kLocked &&
+           exists(vertices[v].half_edge);
   }
 
   // Whether a half-edge represents its edge: the smaller of two does, and a single one, as numbers that stand for no

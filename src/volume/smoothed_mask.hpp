@@ -38,8 +38,9 @@ class SmoothedMask final : public SliceSource {
     return ranges_.empty() ? nullptr : &ranges_[static_cast<std::size_t>(k)];
   }
 
-  // Slices on either side that a sample depends on.
-  std::int64_t reach() const { return kReach * options_.passes; }
+  // Slices on either side that a sample depends on, and as many samples along the other axes.
+  std::int64_t reach() const { return reach(options_.passes); }
+  static std::int64_t reach(int passes) { return kReach * passes; }
 
   // The most bytes that a smoothed mask holds, and the description that it will have.
   static std::uint64_t memory(const VolumeInfo& volume, int passes);

@@ -1,0 +1,62 @@
+// The parts of a surface on their way from block to block.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "lattice/vertex_numbering.hpp"
+#include "pipeline/parts/block_grid.hpp"
+#include "simplify/part_algebra.hpp"
+
+namespace isoweave {
+
+class PartStore {
+ public:
+  // The first stage takes no parts: it makes them.
+  PartStore(std::vector<BlockGrid> grids, const VertexNumbering& numbering)
+      : grids_(std::move(grids)), numbering_(numbering), waiting_(grids_.size()) {
+    closed_.assign(stages(), std::numeric_limits<std::int64_t>::min());
+  }
+
+  const BlockGrid& grid(std::size_t stage) const { return grids_[stage]; }
+  std::size_t stages() const { return grids_.size(); }
+
+  // Hands triangles on to the blocks of a stage, each by the point of its vertex with the smallest id. Where the layer
+  // of the block is closed, a later stage gets them.
+  void hand_on(ZonePart part, std::size_t stage);
+
+  // Closes the layers of a stage below one: they take no more parts.
+  void close_below(std::size_t stage, std::int64_t layer) { closed_[stage] = layer; }
+
+  // The blocks of a layer of a stage for which there are parts, and their parts.
+  std::vector<BlockIndex> blocks(std::size_t stage, std::int64_t layer) const;
+  std::vector<ZonePart> take(std::size_t stage, const BlockIndex& block);
+
+  std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t triangles() const { return triangles_; }
+  std::uint64_t bytes() const;
+
+  // Calls visit(part) for each part that waits.
+  void each_part(const std::function<void(ZonePart&)>& visit);
+
+ private:
+  struct Address {
+    std::size_t stage;
+    BlockIndex block;
+  };
+
+  Address address_of(std::uint64_t id, std::size_t stage) const;
+  void put(const Address& address, ZonePart part);
+
+  std::vector<BlockGrid> grids_;
+  VertexNumbering numbering_;
+  std::vector<std::map<BlockIndex, std::vector<ZonePart>>> waiting_;  // per stage; blocks with their axes turned around
+  std::vector<std::int64_t> closed_;                                  // per stage: layers below take no more parts
+  std::uint64_t vertices_ = 0;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace isoweave
