@@ -100,6 +100,7 @@ constexpr std::array kEntries{
     Entry{"threads", "N", kResources},
     Entry{"memory", "SIZE", kResources},
     Entry{"slab", "N", kResources},
+    Entry{"blocks", "N", kResources},
     Entry{"device", "NAME", kResources},
     Entry{"schedule", "NAME", kResources},
     Entry{"checkpoint", "FOLDER", kResources},

@@ -31,6 +31,8 @@ std::string_view option_of(RunFeature feature, const AskedRun& run) {
       return "--memory";
     case RunFeature::kExtractor:
       return "an --extractor other than cubes";
+    case RunFeature::kDual:
+      return "--extractor dual";
     case RunFeature::kIndex:
       return "--index";
     case RunFeature::kSchedule:

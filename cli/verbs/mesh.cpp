@@ -31,8 +31,8 @@ Examples:
   isoweave mesh huge.zarr --iso 100 --memory 2G --checkpoint run -o huge.ply
   isoweave mesh --resume run
 
-Without an option of Simplification the error is 0.2vox. --threads, --schedule
-and --slab never change the result.)";
+Without an option of Simplification the error is 0.2vox. --threads, --schedule,
+--slab and --blocks never change the result.)";
 
 void run_mesh(MeshArguments arguments) {
   if (arguments.resume.empty()) {
@@ -111,6 +111,11 @@ void add_task_options(CLI::App& verb, MeshArguments& arguments) {
 void add_way_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option("--slab", arguments.slab, "Layers per slab: a number, auto or whole; never changes the result")
       ->default_str("auto");
+  verb.add_option(
+          "--blocks", arguments.blocks,
+          "Cells along each side of the blocks in which the volume is taken; auto: blocks where slabs do not fit "
+          "into --memory; or off. Never changes the result")
+      ->default_str("auto");
   verb.add_option("--memory", arguments.memory, "Cap on the memory of the process, such as 800M or 2G");
   verb.add_option("--every", arguments.every, "How often --checkpoint saves: 16layers, 90s, 5min, 2h")
       ->default_str("5min");
@@ -124,7 +129,8 @@ void add_way_options(CLI::App& verb, MeshArguments& arguments) {
 // require_possible.
 void exclude_from_labels(CLI::App& verb) {
   verb.get_option("--labels")
-      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--dry-run", "--every", "--html", "--page-triangles");
+      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--dry-run", "--every", "--html", "--page-triangles",
+                 "--blocks");
 }
 
 }  // namespace

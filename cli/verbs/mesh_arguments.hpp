@@ -26,7 +26,7 @@ struct MeshArguments {
   WatchOptions watch;
   IndexOptions index;
   std::string iso, quality = "normal", slab, inside = "above", normals = "auto", extractor = "cubes";
-  std::string color_by, space, memory, checkpoint, every, resume, labels, label_names, smooth;
+  std::string color_by, space, memory, blocks, checkpoint, every, resume, labels, label_names, smooth;
   bool open = false, closed = false, dry_run = false, numbered = false;
 };
 

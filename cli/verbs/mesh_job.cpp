@@ -27,6 +27,7 @@
 #include "report/print.hpp"
 #include "report/report.hpp"
 #include "signals.hpp"
+#include "verbs/mesh_blocks.hpp"
 #include "verbs/mesh_forecast.hpp"
 #include "verbs/mesh_isos.hpp"
 #include "verbs/mesh_labels.hpp"
@@ -181,6 +182,11 @@ class MeshJob {
     check_possible();
     check_labels(arguments_);
     check_isos(arguments_);
+    if (asked_blocks(arguments_) && (arguments_.dry_run || is_read_once(arguments_.input.path))) {
+      throw std::invalid_argument(arguments_.dry_run
+                                      ? "--blocks: expected a run without --dry-run, which foresees slabs"
+                                      : "--blocks: expected a volume that can be read again, found a pipe");
+    }
     if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
       throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
     }
@@ -207,8 +213,13 @@ class MeshJob {
     control.resume = resume_;
     const bool labels = !arguments_.labels.empty();
     const bool isos = has_several_isos(arguments_);
-    const RunKind kind = labels ? RunKind::kLabels : isos ? RunKind::kIsoValues : RunKind::kMesh;
-    const char* const name = labels ? "--labels" : "--iso with several values";
+    const bool blocks = asked_blocks(arguments_).has_value();
+    if (isos && blocks) throw std::invalid_argument("--iso with several values: expected a run without --blocks");
+    const RunKind kind = labels   ? RunKind::kLabels
+                         : isos   ? RunKind::kIsoValues
+                         : blocks ? RunKind::kBlocks
+                                  : RunKind::kMesh;
+    const char* const name = labels ? "--labels" : isos ? "--iso with several values" : "--blocks";
     require_possible({kind, name, asked, control, arguments_.stop, arguments_.components});
   }
 
@@ -296,7 +307,29 @@ class MeshJob {
     options_.triangles = 0;
   }
 
+  // Foresees the run. Where its slabs do not fit into the cap, it takes blocks instead.
   void foresee() {
+    block_size_ = asked_blocks(arguments_);
+    if (block_size_) return;
+    try {
+      foresee_slabs();
+    } catch (const OverMemory&) {
+      if (arguments_.dry_run || !may_take_blocks(arguments_, options_, control_, *volume_)) throw;
+      choose_blocks();
+    }
+  }
+
+  void choose_blocks() {
+    RunControl uncapped = control_;
+    uncapped.memory = 0;
+    const Forecast forecast = forecast_mesh(*open_input(arguments_.input), options_, uncapped);
+    block_size_ = block_size_for(info_, forecast.triangles_extracted, control_.memory);
+    if (quiet()) return;
+    print_note(fmt::format("--memory {}: too little for slabs, so blocks of {} are taken (--blocks off: they are not)",
+                           arguments_.memory, *block_size_));
+  }
+
+  void foresee_slabs() {
     const CheckedForecast checked = checked_forecast(arguments_, options_, file_, control_);
     forecast_ = checked.run;
     files_bytes_ = checked.files;
@@ -363,7 +396,8 @@ class MeshJob {
   // Says what to try where nothing is at the iso-value.
   MeshReport mesh(const LevelSinks& sinks) {
     try {
-      return mesh_volume(*volume_, sinks.pointers(), options_, control_);
+      if (!block_size_) return mesh_volume(*volume_, sinks.pointers(), options_, control_);
+      return mesh_input_in_blocks(arguments_, *block_size_, sinks.pointers(), options_, control_);
     } catch (const EmptySurface& empty) {
       const bool misses = arguments_.iso != "auto" && rule_.keeps_all();
       throw EmptySurface(std::string(empty.what()) + (misses ? ": try --iso auto" : ""));
@@ -412,8 +446,9 @@ class MeshJob {
   VolumeInfo info_;
   FoundIndex index_;
   MeshFileOptions file_;
-  std::optional<Forecast> forecast_;  // of a run that is not resumed
-  std::uint64_t files_bytes_ = 0;     // that writing is forecast to hold
+  std::optional<Forecast> forecast_;        // of a run in slabs that is not resumed
+  std::optional<std::int64_t> block_size_;  // of a run in blocks
+  std::uint64_t files_bytes_ = 0;           // that writing is forecast to hold
 };
 
 }  // namespace

@@ -46,6 +46,8 @@ struct CellBox {
     return {{-pad, -pad, -pad}, {dims[0] - 1 + pad, dims[1] - 1 + pad, dims[2] - 1 + pad}};
   }
 
+  bool empty() const { return first[0] >= end[0] || first[1] >= end[1] || first[2] >= end[2]; }
+
   // Whether cell `at` of an axis is in the box, and whether a lattice point is a corner of one.
   bool has_cell(std::size_t axis, std::int64_t at) const { return at >= first[axis] && at < end[axis]; }
   bool has_point(std::size_t axis, std::int64_t at) const { return at >= first[axis] && at <= end[axis]; }

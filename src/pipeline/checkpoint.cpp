@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "files/atomic_file.hpp"
+#include "files/file_lock.hpp"
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
 #include "system/descriptor.hpp"
@@ -92,13 +93,6 @@ namespace {
 
 constexpr int kLockAttempts = 100;
 
-// Whether the file that was locked still has its name: a process that gives up its lock removes the file.
-bool is_still_there(int fd, const std::string& path) {
-  const std::optional<system::FileStatus> locked = system::status_of(fd);
-  const std::optional<system::FileStatus> named = system::status_of(path);
-  return locked && named && locked->same_file(*named);
-}
-
 [[noreturn]] void refuse_lock(const std::string& folder, int fd) {
   std::array<char, 20> digits{};
   const std::int64_t got = system::read_at(fd, 0, std::as_writable_bytes(std::span(digits)));
@@ -115,7 +109,7 @@ int open_lock(const std::string& folder, const std::string& path) {
     throw CannotWrite(folder + ": cannot be locked against other processes: " + std::generic_category().message(errno));
   }
   if (!try_lock(fd.get(), path)) refuse_lock(folder, fd.get());
-  return is_still_there(fd.get(), path) ? fd.release() : -1;
+  return keeps_name(fd.get(), path) ? fd.release() : -1;
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ constexpr std::array<Feature, 14> kFeatures{{
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
     {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify | kBlocks,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
-    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify | kBlocks,
+    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
     {RunFeature::kExtractor, "an extractor other than marching cubes", kDevice | kSimplify,
      [](const MeshOptions& options, const RunControl&) { return options.extractor != ExtractorKind::kCubes; }},

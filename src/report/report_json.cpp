@@ -26,6 +26,14 @@ Json sweep_of(std::span<const SlabRecord> sweep) {
   return records;
 }
 
+Json blocks_of(std::span<const BlockStage> stages) {
+  Json list = Json::array();
+  for (const BlockStage& stage : stages) {
+    list.push_back({{"size", stage.size}, {"blocks", stage.blocks}, {"triangles", stage.triangles}});
+  }
+  return list;
+}
+
 Json surface_of(const SurfaceReport& surface) {
   return {{"error", number_or_null(surface.error)},
           {"triangles", surface.triangles},
@@ -121,6 +129,7 @@ std::string run_json(const MeshReport& report) {
                {"sweep", sweep_of(report.sweep)},
                {"warnings", report.warnings}};
   json.update(surface_of(report));
+  if (!report.blocks.empty()) json["blocks"] = blocks_of(report.blocks);
   return text_of(json);
 }
 

@@ -234,6 +234,8 @@ ZoneView ZonePart::view() {
   view.vertices = show(vertices);
   view.states = show(states);
   view.normals = show(normals);
+  view.normal_quadrics = show(normal_quadrics);
+  view.values = show(values);
   view.triangles = show(triangles);
   return view;
 }
@@ -279,6 +281,20 @@ void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<
   each_triangle([&](const Sides& sides) { return zone.triangles[sides[0] >> 2].levels; });
   state.value(static_cast<std::uint64_t>(front.size()));
   state.each(front.size(), [&](std::size_t n) { return order.place(front[n]); });
+}
+
+void write_part(StateWriter& state, ZonePart& part) {
+  std::vector<Index> incomplete;
+  for (Index v = 0; v < part.states.size(); ++v) {
+    if (part.states[v] == VertexState::kIncomplete) incomplete.push_back(v);
+  }
+  write_part(state, part.view(), part.levels, incomplete);
+}
+
+ZonePart read_cut_part(StateReader& state, const PartShape& shape) {
+  ZonePart part = PartReader(state, shape).read();
+  part.front = {};
+  return part;
 }
 
 ZonePart read_part(StateReader& state, const PartShape& shape) {

@@ -43,7 +43,7 @@ struct ZonePart {
   std::vector<Index> unkeyed_edges;        // an end is incomplete, or has been
   std::vector<Index> completed;            // vertices that have got the last of their triangles, and have no quadrics
 
-  // Vertices, normals and triangles as a zone, without options.
+  // Its arrays as a zone, without options and levels.
   ZoneView view();
 };
 
@@ -59,6 +59,12 @@ struct PartShape {
 // triangle.
 void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<LevelVertex>> levels,
                 std::span<const Index> front);
+
+// Writes a part that is not linked.
+void write_part(StateWriter& state, ZonePart& part);
+
+// Reads a part without linking it: one of a surface that is cut. Throws BadInput when it is not of that shape.
+ZonePart read_cut_part(StateReader& state, const PartShape& shape);
 
 // Reads a part, and links it. Throws BadInput when it is not one of that shape, or no part that a zone could hold.
 // Memory besides the part: 12 bytes for each triangle, and 8 for each vertex.

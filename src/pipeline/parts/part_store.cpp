@@ -8,15 +8,6 @@ namespace {
 // Blocks in the order of layers.
 BlockIndex by_layer(const BlockIndex& block) { return {block[2], block[1], block[0]}; }
 
-std::uint64_t bytes_of(const ZonePart& part) {
-  std::uint64_t bytes = part.vertices.capacity() * sizeof(Vertex) + part.triangles.capacity() * sizeof(Triangle) +
-                        part.states.capacity() + part.normals.capacity() * sizeof(Point) +
-                        part.normal_quadrics.capacity() * sizeof(NormalQuadric) +
-                        part.values.capacity() * sizeof(float);
-  for (const Array<LevelVertex>& level : part.levels) bytes += level.capacity() * sizeof(LevelVertex);
-  return bytes;
-}
-
 }  // namespace
 
 PartStore::Address PartStore::address_of(std::uint64_t id, std::size_t stage) const {
@@ -40,7 +31,12 @@ void PartStore::hand_on(ZonePart part, std::size_t stage) {
 void PartStore::put(const Address& address, ZonePart part) {
   vertices_ += part.vertices.size();
   triangles_ += part.triangles.size();
-  waiting_[address.stage][by_layer(address.block)].push_back(std::move(part));
+  std::vector<WaitingPart>& waiting = waiting_[address.stage][by_layer(address.block)];
+  if (folder_.empty()) {
+    waiting.emplace_back(std::move(part));
+  } else {
+    waiting.emplace_back(std::move(part), folder_ + "/" + std::to_string(++files_) + ".part");
+  }
 }
 
 std::vector<BlockIndex> PartStore::blocks(std::size_t stage, std::int64_t layer) const {
@@ -53,12 +49,13 @@ std::vector<BlockIndex> PartStore::blocks(std::size_t stage, std::int64_t layer)
 
 std::vector<ZonePart> PartStore::take(std::size_t stage, const BlockIndex& block) {
   const auto found = waiting_[stage].find(by_layer(block));
-  std::vector<ZonePart> parts = std::move(found->second);
-  waiting_[stage].erase(found);
-  for (const ZonePart& part : parts) {
-    vertices_ -= part.vertices.size();
-    triangles_ -= part.triangles.size();
+  std::vector<ZonePart> parts;
+  for (WaitingPart& waiting : found->second) {
+    vertices_ -= waiting.vertices();
+    triangles_ -= waiting.triangles();
+    parts.push_back(waiting.take(shape_));
   }
+  waiting_[stage].erase(found);
   return parts;
 }
 
@@ -66,16 +63,16 @@ std::uint64_t PartStore::bytes() const {
   std::uint64_t bytes = 0;
   for (const auto& stage : waiting_) {
     for (const auto& [index, parts] : stage) {
-      for (const ZonePart& part : parts) bytes += bytes_of(part);
+      for (const WaitingPart& part : parts) bytes += part.bytes();
     }
   }
   return bytes;
 }
 
-void PartStore::each_part(const std::function<void(ZonePart&)>& visit) {
+void PartStore::list_labels(std::size_t level, std::vector<std::uint32_t*>& labels) {
   for (auto& stage : waiting_) {
     for (auto& [index, parts] : stage) {
-      for (ZonePart& part : parts) visit(part);
+      for (WaitingPart& part : parts) part.list_labels(level, labels);
     }
   }
 }

@@ -2,22 +2,29 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lattice/vertex_numbering.hpp"
 #include "pipeline/parts/block_grid.hpp"
+#include "pipeline/parts/waiting_part.hpp"
 #include "simplify/part_algebra.hpp"
 
 namespace isoweave {
 
 class PartStore {
  public:
-  // The first stage takes no parts: it makes them.
-  PartStore(std::vector<BlockGrid> grids, const VertexNumbering& numbering)
-      : grids_(std::move(grids)), numbering_(numbering), waiting_(grids_.size()) {
+  // The first stage takes no parts: it makes them. shape: that of all parts. folder: where parts wait in files; empty:
+  // they wait in memory.
+  PartStore(std::vector<BlockGrid> grids, const VertexNumbering& numbering, PartShape shape, std::string folder)
+      : grids_(std::move(grids)),
+        numbering_(numbering),
+        shape_(std::move(shape)),
+        folder_(std::move(folder)),
+        waiting_(grids_.size()) {
     closed_.assign(stages(), std::numeric_limits<std::int64_t>::min());
   }
 
@@ -39,8 +46,8 @@ class PartStore {
   std::uint64_t triangles() const { return triangles_; }
   std::uint64_t bytes() const;
 
-  // Calls visit(part) for each part that waits.
-  void each_part(const std::function<void(ZonePart&)>& visit);
+  // Lists the labels of all parts that belong to a receipt of a level.
+  void list_labels(std::size_t level, std::vector<std::uint32_t*>& labels);
 
  private:
   struct Address {
@@ -53,8 +60,11 @@ class PartStore {
 
   std::vector<BlockGrid> grids_;
   VertexNumbering numbering_;
-  std::vector<std::map<BlockIndex, std::vector<ZonePart>>> waiting_;  // per stage; blocks with their axes turned around
-  std::vector<std::int64_t> closed_;                                  // per stage: layers below take no more parts
+  PartShape shape_;
+  std::string folder_;
+  std::vector<std::map<BlockIndex, std::vector<WaitingPart>>> waiting_;  // per stage; blocks in the order of layers
+  std::vector<std::int64_t> closed_;                                     // per stage: layers below take no more parts
+  std::uint64_t files_ = 0;                                              // so far
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
 };

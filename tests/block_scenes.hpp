@@ -1,0 +1,136 @@
+// Small surfaces with all that a run in blocks can do, and the comparison with the sweep.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "isoweave/blocks.hpp"
+#include "isoweave/generate.hpp"
+#include "isoweave/measure.hpp"
+#include "sanitized.hpp"
+#include "surfaces.hpp"
+
+namespace isoweave::testing {
+
+struct BlockScene {
+  std::string name;
+  GenerateOptions volume{};
+  MeshOptions options{};
+};
+
+inline BlockScene scene_of(const std::string& name, const std::string& kind, const MeshOptions& options) {
+  GenerateOptions volume;
+  volume.kind = kind;
+  volume.dims = {30, 26, 41};
+  volume.spacing = {0.7, 0.9, 1.6};
+  volume.seed = 3;
+  BlockScene scene{name, volume, options};
+  scene.options.iso = suggested_iso(kind, volume.type);
+  return scene;
+}
+
+inline std::vector<BlockScene> block_scenes() {
+  std::vector<BlockScene> all;
+  const auto add = [&](const std::string& kind, const std::string& how, const auto& set) {
+    MeshOptions options;
+    options.error = Length::voxels(0.4);
+    set(options);
+    all.push_back(scene_of(kind + how, kind, options));
+  };
+  for (const char* const kind : {"noise", "gyroid", "box", "white", "specks"}) {
+    add(kind, "", [](MeshOptions&) {});
+    add(kind, "Open", [](MeshOptions& options) { options.closed = false; });
+  }
+  add("noise", "Full", [](MeshOptions& options) { options.error = Length::units(0); });
+  add("noise", "Fine", [](MeshOptions& options) { options.quality = Quality::kFine; });
+  add("noise", "Fast", [](MeshOptions& options) { options.quality = Quality::kFast; });
+  add("noise", "Below", [](MeshOptions& options) { options.inside_above = false; });
+  add("gyroid", "Normals", [](MeshOptions& options) { options.normals = Normals::kGradient; });
+  add("gyroid", "Quadric", [](MeshOptions& options) { options.normals = Normals::kQuadric; });
+  add("smooth", "Smooth", [](MeshOptions& options) { options.smooth = 2; });
+  add("specks", "Dropped", [](MeshOptions& options) { options.drop_specks = true; });
+  add("white", "Trilinear", [](MeshOptions& options) { options.extractor = ExtractorKind::kTrilinear; });
+  add("noise", "Tetrahedra", [](MeshOptions& options) { options.extractor = ExtractorKind::kTetrahedra; });
+  add("noise", "OpenTetrahedra", [](MeshOptions& options) {
+    options.closed = false;
+    options.extractor = ExtractorKind::kTetrahedra;
+  });
+  add("white", "OpenTrilinear", [](MeshOptions& options) {
+    options.closed = false;
+    options.extractor = ExtractorKind::kTrilinear;
+  });
+  add("noise", "Levels", [](MeshOptions& options) { options.levels = {Length::units(0), Length::voxels(0.1)}; });
+  return all;
+}
+
+struct BlockRun {
+  std::vector<TriangleMesh> meshes;
+  MeshReport report;
+};
+
+inline VolumeOpener opener(const BlockScene& scene) {
+  return [volume = scene.volume] { return generate_volume(volume); };
+}
+
+// mesh(sinks): makes the meshes of all levels.
+template <class Mesh>
+BlockRun run_into_memory(const BlockScene& scene, const Mesh& mesh) {
+  std::vector<MemorySink> sinks(scene.options.levels.size() + 1);
+  std::vector<MeshSink*> pointers;
+  for (MemorySink& sink : sinks) pointers.push_back(&sink);
+  BlockRun run;
+  run.report = mesh(std::span<MeshSink* const>(pointers));
+  for (MemorySink& sink : sinks) {
+    EXPECT_TRUE(sink.finished);
+    run.meshes.push_back(std::move(sink.mesh));
+  }
+  return run;
+}
+
+inline BlockRun run_sweep(const BlockScene& scene) {
+  return run_into_memory(
+      scene, [&](std::span<MeshSink* const> sinks) { return mesh_volume(*opener(scene)(), sinks, scene.options); });
+}
+
+inline void expect_same(const SurfaceReport& a, const SurfaceReport& b) {
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.open_edges, b.open_edges);
+  EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
+  EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
+  EXPECT_EQ(a.components, b.components);
+  EXPECT_EQ(a.euler, b.euler);
+  EXPECT_EQ(digest_text(a.digest), digest_text(b.digest));
+}
+
+inline void expect_same(const BlockRun& found, const BlockRun& expected) {
+  const MeshReport& a = found.report;
+  const MeshReport& b = expected.report;
+  expect_same(static_cast<const SurfaceReport&>(a), b);
+  ASSERT_EQ(a.levels.size(), b.levels.size());
+  for (std::size_t level = 0; level < a.levels.size(); ++level) expect_same(a.levels[level], b.levels[level]);
+  EXPECT_EQ(a.cells_crossed, b.cells_crossed);
+  EXPECT_EQ(a.triangles_extracted, b.triangles_extracted);
+  EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
+  EXPECT_EQ(a.collapses, b.collapses);
+  EXPECT_EQ(a.postponed, b.postponed);
+  EXPECT_EQ(a.rekeyed, b.rekeyed);
+  EXPECT_EQ(a.specks, b.specks);
+  EXPECT_EQ(a.min, b.min);
+  EXPECT_EQ(a.max, b.max);
+  EXPECT_EQ(a.nan, b.nan);
+  EXPECT_EQ(a.warnings, b.warnings);
+  // What has arrived: each vertex once, at its number.
+  for (std::size_t n = 0; n < found.meshes.size(); ++n) {
+    const MeshCheck check = check_mesh(found.meshes[n]);
+    EXPECT_EQ(digest_text(check.digest), digest_text(check_mesh(expected.meshes[n]).digest));
+    EXPECT_EQ(found.meshes[n].vertices.size(), expected.meshes[n].vertices.size());
+    EXPECT_EQ(riders_digest(found.meshes[n]), riders_digest(expected.meshes[n]));
+  }
+}
+
+}  // namespace isoweave::testing
