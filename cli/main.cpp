@@ -79,6 +79,10 @@ void add_verbs(CLI::App& app) {
   add_render_verb(app);
   add_view_verb(app);
   add_generate_verb(app);
+  add_plan_verb(app);
+  add_work_verb(app);
+  add_status_verb(app);
+  add_collect_verb(app);
   refuse_empty_values(app);
   describe_options(app);
   for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) describe_options(*verb);

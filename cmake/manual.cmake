@@ -4,7 +4,7 @@ if(CMAKE_CROSSCOMPILING)
 endif()
 set(manual ${PROJECT_BINARY_DIR}/manual)
 file(MAKE_DIRECTORY ${manual})
-set(ISOWEAVE_VERBS mesh simplify info check compare render view generate index)
+set(ISOWEAVE_VERBS mesh simplify info check compare render view generate index plan work status collect)
 
 # isoweave_manual_file(NAME ARGUMENTS...): what `isoweave help ARGUMENTS` prints.
 set(manual_files)

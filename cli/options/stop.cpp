@@ -23,9 +23,11 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option("--ratio", stop.ratio,
                   "Stop at this part of the full surface's triangles, such as 10%; a volume is read twice")
       ->excludes(triangles);
-  verb.add_option("--lods", stop.lods,
-                  "Several errors E1,E2,... in one sweep: -o a.ply makes a_lod0.ply (the finest), a_lod1.ply, ...")
-      ->excludes("--error", "--triangles", "--ratio", "--to-stdout");
+  CLI::Option* lods =
+      verb.add_option("--lods", stop.lods,
+                      "Several errors E1,E2,... in one sweep: -o a.ply makes a_lod0.ply (the finest), a_lod1.ply, ...")
+          ->excludes("--error", "--triangles", "--ratio");
+  if (verb.get_option_no_throw("--to-stdout") != nullptr) lods->excludes("--to-stdout");
   verb.add_option("--max-distance", stop.max_distance,
                   "Guarantee: no point of the result is farther than this length from the full surface");
   verb.add_option("--specks", stop.specks, "drop: remove closed pieces that are smaller than the error; or keep")

@@ -13,6 +13,7 @@
 #include "verbs/mesh_arguments.hpp"
 #include "verbs/mesh_job.hpp"
 #include "verbs/mesh_state.hpp"
+#include "verbs/mesh_task_options.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isoweave::cli {
@@ -55,25 +56,6 @@ void run_mesh(MeshArguments arguments) {
   run_mesh_job(arguments, checkpoint, std::move(lock));
 }
 
-void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
-  verb.add_option(
-      "--iso", arguments.iso,
-      "Value of the surface; auto (Otsu's threshold); or bone, skin or lung in CT. Several with commas: a file "
-      "each, such as a_iso10.ply for a.ply, or one with --one-file");
-  CLI::Option* open = verb.add_flag("--open", arguments.open, "Let the surface end at the volume's border");
-  verb.add_flag("--closed", arguments.closed, "Close the surface at the volume's border (default)")->excludes(open);
-  verb.add_option("--inside", arguments.inside, "Side of --iso that is inside: above or below")->capture_default_str();
-  verb.add_option(
-          "--extractor", arguments.extractor,
-          "How the surface is made: cubes; trilinear, with tunnels and faces as the samples say; tetrahedra; dual, "
-          "which keeps sharp edges")
-      ->capture_default_str();
-  // --smooth is a flag, as a value that stands apart would be taken for the volume.
-  verb.add_flag(fmt::format("--smooth{{{}}}", kUsualSmoothing), arguments.smooth,
-                "Smooth the mask of what is inside, each vertex within its edge of the lattice; --smooth=N: passes");
-  add_component_options(verb, arguments.components, "full surface; a volume is read twice");
-}
-
 void add_label_options(CLI::App& verb, MeshArguments& arguments) {
   verb.add_option(
       "--labels", arguments.labels,
@@ -90,16 +72,10 @@ void add_task_options(CLI::App& verb, MeshArguments& arguments) {
   add_output_options(verb, arguments.output);
   add_placing_options(verb, arguments.output.placing);
   add_surface_options(verb, arguments);
-  add_stop_options(verb, arguments.stop);
-  verb.get_option("--error")->default_str(kUsualError);
-  verb.add_option("--quality", arguments.quality, "fast, normal or fine")->capture_default_str();
-  verb.add_option(
-          "--normals", arguments.normals,
-          "none, gradient, quadric (gradients that simplification takes into account), or auto: gradient in .glb")
-      ->capture_default_str();
+  add_component_options(verb, arguments.components, "full surface; a volume is read twice");
+  add_simplification_options(verb, arguments);
   verb.add_option("--color-by", arguments.color_by,
                   "Volume of the same size whose values the vertices get: 'quality' in PLY, 'value' in VTP");
-  verb.add_option("--space", arguments.space, "Coordinates of the output: lps, ras or index (default: the volume's)");
   add_label_options(verb, arguments);
   verb.add_flag("--dry-run", arguments.dry_run, "Say what the run would take, from a sample of the volume");
   verb.add_option("--checkpoint", arguments.checkpoint,

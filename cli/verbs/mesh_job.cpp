@@ -233,10 +233,7 @@ class MeshJob {
     // Viewers of GLB draw a surface without normals in facets.
     const bool automatic = arguments_.normals == "auto";
     if (automatic && output_format(arguments_.output) == MeshFormat::kGlb) options_.normals = Normals::kGradient;
-    options_.error = stop_error(arguments_.stop, kUsualError, info_.geometry.unit);
-    if (std::isinf(options_.error.value)) options_.error = Length::units(most_shape_error(info_));
-    options_.max_distance = stop_distance(arguments_.stop, info_.geometry.unit);
-    options_.levels = finer_levels(arguments_.stop, info_.geometry.unit);
+    set_lengths(arguments_, info_, options_);
     control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     control_.stop = borrow(stop_on_signal());
   }

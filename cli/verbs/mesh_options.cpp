@@ -11,6 +11,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/histogram.hpp"
 #include "options/input_volume.hpp"
+#include "options/levels.hpp"
 #include "options/values.hpp"
 #include "report/report.hpp"
 #include "report/suggestions.hpp"
@@ -92,6 +93,14 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   options.drop_specks = drops_specks(arguments.stop);
   options.space = parse_space(arguments.space);
   return options;
+}
+
+void set_lengths(const MeshArguments& arguments, const VolumeInfo& volume, MeshOptions& options) {
+  const std::string& unit = volume.geometry.unit;
+  options.error = stop_error(arguments.stop, kUsualError, unit);
+  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(volume));
+  options.max_distance = stop_distance(arguments.stop, unit);
+  options.levels = finer_levels(arguments.stop, unit);
 }
 
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {

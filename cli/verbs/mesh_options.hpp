@@ -20,6 +20,9 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices);
 // The options that need no volume.
 MeshOptions mesh_options(const MeshArguments& arguments);
 
+// Sets the lengths among the options, which may be in the unit of the volume.
+void set_lengths(const MeshArguments& arguments, const VolumeInfo& volume, MeshOptions& options);
+
 // The volume whose values the vertices get, opened with the choices made for the first volume; or null.
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
 

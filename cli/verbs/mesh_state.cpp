@@ -15,9 +15,13 @@
 namespace isoweave::cli {
 namespace {
 
-std::string absolute_path(const std::string& path) { return std::filesystem::absolute(path).string(); }
+// Empty where the path is.
+std::string absolute_path(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).string();
+}
 
-// Sets the task of a saved state, and the way to run where the command line does not set it.
+}  // namespace
+
 void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task) {
   arguments.input = {task.at("volume"),       task.at("raw"),         task.at("spacing"), task.at("origin"),
                      task.at("series"),       task.at("dataset"),     task.at("level"),   task.at("channel"),
@@ -43,8 +47,6 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.every.empty()) arguments.every = task.at("every");
 }
 
-}  // namespace
-
 Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
   return {{"volume", generated_input(arguments.input) ? arguments.input.path : absolute_path(arguments.input.path)},
           {"raw", arguments.input.raw},
@@ -65,7 +67,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"compress", arguments.output.compress},
           {"one_file", arguments.output.one_file},
           {"segment", arguments.output.segment},
-          {"report", arguments.run.report.empty() ? "" : absolute_path(arguments.run.report)},
+          {"report", absolute_path(arguments.run.report)},
           {"html", arguments.page.given() ? absolute_path(arguments.page.path) : ""},
           {"page_triangles", arguments.page.triangles},
           {"iso", fmt::format("{}", options.iso)},
@@ -82,7 +84,7 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"smooth", arguments.smooth},
           {"extractor", arguments.extractor},
           {"normals", arguments.normals},
-          {"color_by", arguments.color_by.empty() ? "" : absolute_path(arguments.color_by)},
+          {"color_by", absolute_path(arguments.color_by)},
           {"space", arguments.space},
           {"open", arguments.open},
           {"memory", arguments.memory},

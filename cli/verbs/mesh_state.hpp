@@ -6,12 +6,17 @@
 
 #include "isoweave/pipeline.hpp"
 #include "report/print.hpp"
+#include "report/report.hpp"
 #include "verbs/mesh_arguments.hpp"
 
 namespace isoweave::cli {
 
 // The command line in a saved state: the task, with paths that hold wherever it is resumed.
 Json task_json(const MeshArguments& arguments, const MeshOptions& options);
+
+// Sets the task of a saved command line, and the way to run where the present one does not set it. Throws
+// Json::exception for another text.
+void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& task);
 
 // The arguments of a resumed run: the saved task, and the way to run of the present command line. Throws BadInput for a
 // state with another task.

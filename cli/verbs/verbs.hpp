@@ -14,5 +14,9 @@ void add_compare_verb(CLI::App& app);
 void add_render_verb(CLI::App& app);
 void add_view_verb(CLI::App& app);
 void add_generate_verb(CLI::App& app);
+void add_plan_verb(CLI::App& app);
+void add_work_verb(CLI::App& app);
+void add_status_verb(CLI::App& app);
+void add_collect_verb(CLI::App& app);
 
 }  // namespace isoweave::cli
