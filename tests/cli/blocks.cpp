@@ -1,0 +1,172 @@
+// Meshes in blocks, and by tasks that many processes share: killed, restarted, with files that do not belong there.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+#include "sanitized.hpp"
+
+namespace isoweave {
+namespace {
+
+using program::expect_failed;
+using program::listing;
+using program::Result;
+using program::run;
+using Words = std::vector<std::string>;
+
+const std::string kVolume = testing::kSanitized ? "generate:noise:40x36x44" : "generate:noise:72x60x80";
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Words mesh(const Words& more) {
+  return with({"mesh", kVolume, "--iso", "0.5", "-o", "out.ply", "--report", "out.json", "--quiet"}, more);
+}
+
+nlohmann::json report_in(const files::Folder& folder, const std::string& name = "out.json") {
+  return nlohmann::json::parse(files::read_bytes(folder / name));
+}
+
+std::string digest_of_sweep() {
+  const files::Folder folder;
+  EXPECT_EQ(run(folder.path(), mesh({})).code, 0);
+  return report_in(folder).at("digest");
+}
+
+TEST(CliBlocks, GiveTheMeshOfTheSweepAndSayWhatTheyHandedOn) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"--blocks", "24"})).code, 0);
+  const nlohmann::json report = report_in(folder);
+  EXPECT_EQ(report.at("digest"), digest_of_sweep());
+  const nlohmann::json& stages = report.at("blocks");
+  ASSERT_GE(stages.size(), 3U);
+  EXPECT_EQ(stages[0].at("size"), 24);
+  EXPECT_EQ(stages[0].at("triangles"), report.at("triangles_extracted"));
+  EXPECT_LT(stages[1].at("triangles"), stages[0].at("triangles"));
+  EXPECT_EQ(listing(folder), (Words{"out.json", "out.ply"}));
+}
+
+TEST(CliBlocks, TakeOverWhereSlabsDoNotFit) {
+  if (testing::kSanitized) GTEST_SKIP() << "a sanitizer takes memory of its own";
+  const files::Folder folder;
+  const Words sphere{"mesh", "generate:sphere:2400x2400x12:float64", "--iso", "0", "-o", "a.ply", "--threads", "1"};
+  expect_failed(run(folder.path(), with(sphere, {"--memory", "150M", "--blocks", "off"})), 5, "expected --memory");
+  const Result blocks = run(folder.path(), with(sphere, {"--memory", "150M"}));
+  EXPECT_EQ(blocks.code, 0) << blocks.err;
+  EXPECT_NE(blocks.err.find("--memory 150M: too little for slabs, so blocks of 256 are taken"), std::string::npos);
+  EXPECT_LT(blocks.peak_bytes, 150'000'000U);
+  EXPECT_EQ(listing(folder), (Words{"a.ply"}));
+}
+
+TEST(CliBlocks, AreRefusedWithWhatTheyDoNotHave) {
+  const files::Folder folder;
+  expect_failed(run(folder.path(), mesh({"--blocks", "7"})), 2, "--blocks");
+  expect_failed(run(folder.path(), mesh({"--blocks", "24", "--triangles", "100"})), 2,
+                "--blocks: expected a run without --triangles");
+  expect_failed(run(folder.path(), mesh({"--blocks", "24", "--extractor", "dual"})), 2,
+                "--blocks: expected a run without --extractor dual");
+  expect_failed(run(folder.path(), mesh({"--blocks", "24", "--max-distance", "1vox"})), 2, "--max-distance");
+  expect_failed(run(folder.path(), mesh({"--blocks", "24", "--dry-run"})), 2, "--dry-run");
+  expect_failed(run(folder.path(), with({"mesh", kVolume, "--iso", "0.4,0.5", "-o", "a.ply"}, {"--blocks", "24"})), 2,
+                "--blocks");
+  // A stream has to be read from its beginning.
+  ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", "24", "--type", "uint8", "-o", "a.raw"}).code, 0);
+  ASSERT_EQ(std::system(("gzip -k '" + folder / "a.raw'").c_str()), 0);
+  const Words packed{"mesh", "a.raw.gz", "--raw", "24x24x24:uint8", "--iso", "127.5", "-o", "b.ply", "--blocks", "12"};
+  expect_failed(run(folder.path(), packed), 3, "a.raw.gz: expected a volume that can be read anywhere");
+  EXPECT_EQ(listing(folder), (Words{"a.raw", "a.raw.gz"}));
+}
+
+// A folder with the tasks of the mesh.
+void plan(const files::Folder& folder, const std::string& block) {
+  const Result planned = run(folder.path(), {"plan", kVolume, "--iso", "0.5", "--blocks", block, "-o", "tasks"});
+  ASSERT_EQ(planned.code, 0) << planned.err;
+}
+
+void expect_collected(const files::Folder& folder) {
+  const Result collected = run(folder.path(), {"collect", "tasks", "-o", "out.ply", "--report", "out.json", "--quiet"});
+  ASSERT_EQ(collected.code, 0) << collected.err;
+  EXPECT_EQ(report_in(folder).at("digest"), digest_of_sweep());
+  EXPECT_EQ(run(folder.path(), {"check", "out.ply"}).code, 0);
+}
+
+TEST(CliTasks, KilledWorkersLoseNothing) {
+  const files::Folder folder;
+  plan(folder, "24");
+  std::mt19937 random(5);
+  constexpr int kKills = testing::kSanitized ? 3 : 20;
+  for (int n = 0; n < kKills; ++n) {
+    std::vector<std::unique_ptr<program::Running>> workers;
+    for (int worker = 0; worker < 2; ++worker) {
+      workers.push_back(std::make_unique<program::Running>(folder.path(), Words{"work", "tasks", "--threads", "1"}));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 120));
+    workers.clear();  // killed
+  }
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  expect_collected(folder);
+}
+
+TEST(CliTasks, OneByOneInTheOrderOfStages) {
+  const files::Folder folder;
+  plan(folder, "40");
+  const auto status = [&] {
+    return nlohmann::json::parse(run(folder.path(), {"status", "tasks", "--json"}).out).at("stages");
+  };
+  const nlohmann::json stages = status();
+  const std::uint64_t first = stages[0].at("tasks");
+  expect_failed(run(folder.path(), {"work", "tasks", "--task", std::to_string(first)}), 3,
+                "expected all tasks of that stage to be done");
+  expect_failed(run(folder.path(), {"collect", "tasks", "-o", "out.ply"}), 3, "found task 0 undone");
+  std::uint64_t count = 0;
+  for (const nlohmann::json& stage : stages) count += stage.at("tasks").get<std::uint64_t>();
+  expect_failed(run(folder.path(), {"work", "tasks", "--task", std::to_string(count)}), 2, "--task");
+  for (std::uint64_t task = 0; task < count; ++task) {
+    ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", std::to_string(task)}).code, 0);
+  }
+  for (const nlohmann::json& stage : status()) EXPECT_EQ(stage.at("done"), stage.at("tasks"));
+  expect_collected(folder);
+}
+
+TEST(CliTasks, MakeWorksOnThem) {
+  const files::Folder folder;
+  plan(folder, "40");
+  const std::string program = std::filesystem::absolute(ISOWEAVE_BINARY).string();
+  ASSERT_EQ(std::system(("make -s -j3 -C '" + folder / "tasks' ISOWEAVE='" + program + "'").c_str()), 0);
+  ASSERT_EQ(std::system(("sh -n '" + folder / "tasks/slurm.sh'").c_str()), 0);
+  expect_collected(folder);
+}
+
+TEST(CliTasks, OtherFoldersAndVolumesAreRefused) {
+  const files::Folder folder;
+  expect_failed(run(folder.path(), {"work", "nothing"}), 3, "nothing/plan.json: expected the plan");
+  ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", "24", "--type", "uint8", "-o", "a.nrrd"}).code, 0);
+  const Words plan{"plan", "a.nrrd", "--iso", "127.5", "--blocks", "16", "-o", "tasks"};
+  ASSERT_EQ(run(folder.path(), plan).code, 0);
+  expect_failed(run(folder.path(), plan), 4, "tasks: expected a new or empty folder");
+  expect_failed(run(folder.path(), with(plan, {"--triangles", "10"})), 2, "--triangles");
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", "0"}).code, 0);
+  // Another volume of that name: its tasks go together, but not with the first one.
+  std::filesystem::remove(folder / "a.nrrd");
+  ASSERT_EQ(run(folder.path(), {"generate", "box", "--size", "24", "--type", "uint8", "-o", "a.nrrd"}).code, 0);
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", "1"}).code, 0);
+  const Result work = run(folder.path(), {"work", "tasks", "--quiet"});
+  expect_failed(work, 3, "tasks/0.rest: belongs to another mesh");
+  files::write_bytes(folder / "tasks/plan.json", "{}");
+  expect_failed(run(folder.path(), {"status", "tasks"}), 3, "tasks/plan.json");
+}
+
+}  // namespace
+}  // namespace isoweave
