@@ -17,7 +17,9 @@ PartShape part_shape(const SimplifyTask& task) {
   shape.retire = task.zone.retire;
   // A vertex may leave the volume by a little. In numbers as large as these, searches still end.
   constexpr double kFar = 1 << 20;
-  const auto& dims = task.zone.numbering.lattice.dims;
+  const VertexNumbering& numbering = task.zone.numbering;
+  const auto& dims = numbering.lattice.dims;
+  shape.end_id = numbering.id(dims[0], dims[1], dims[2], numbering.slots);
   const auto far = [&](std::size_t n, double cell) { return kFar * static_cast<double>(dims[n] + 2) * cell; };
   shape.farthest = {far(0, task.zone.cell.x), far(1, task.zone.cell.y), far(2, task.zone.cell.z)};
   return shape;

@@ -97,11 +97,23 @@ class Places {
 };
 
 void require_whole(bool holds, const char* what) {
-  if (!holds) throw std::logic_error(std::string("parts of a surface: expected ") + what);
+  if (!holds) throw UnfitParts(std::string("parts of a surface: expected ") + what);
+}
+
+constexpr std::uint64_t kNoId = ~std::uint64_t{0};
+
+// Checks that a vertex is the same in two parts, where another one has brought it already.
+void check_copy(const Vertex& here, const Vertex& copy) {
+  if (here.id == kNoId) return;
+  const Vec3 apart = here.position - copy.position;
+  require_whole(dot(apart, apart) == 0 && here.number == copy.number, "copies of vertices that are the same");
 }
 
 // Puts the vertices and triangles of a part where they belong in the glued one.
 void add_part(const ZonePart& part, std::size_t number, const Places& places, ZonePart& glued) {
+  for (const Vertex& vertex : part.vertices) {
+    check_copy(glued.vertices[places.of(number, static_cast<Index>(&vertex - part.vertices.begin()))], vertex);
+  }
   for_vertex_arrays(part, glued, [&](const auto& from, auto& to) {
     to.resize(from.empty() ? to.size() : places.vertices());
     for (Index v = 0; v < from.size(); ++v) to[places.of(number, v)] = from[v];
@@ -131,15 +143,19 @@ std::vector<SplitPart> split_part(ZonePart part, const std::function<std::size_t
   return split;
 }
 
-ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire) {
+ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire, const Executor& executor) {
   const Places places(parts);
   ZonePart glued;
+  glued.vertices.resize(places.vertices());
+  Vertex none;
+  none.id = kNoId;
+  std::fill(glued.vertices.begin(), glued.vertices.end(), none);
   for (std::size_t n = 0; n < parts.size(); ++n) {
     add_part(parts[n], n, places, glued);
     parts[n] = {};
   }
   for (Vertex& vertex : glued.vertices) vertex.half_edge = kNone;
-  link_part(glued, retire, PartScope::kSome, require_whole);
+  link_part(glued, retire, PartScope::kSome, executor, require_whole);
   return glued;
 }
 

@@ -8,8 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
+#include "parallel/parallel.hpp"
 #include "simplify/zone_part.hpp"
 
 namespace isoweave {
@@ -24,8 +26,14 @@ struct SplitPart {
 // that one. The parts come with ascending owners, and none is empty.
 std::vector<SplitPart> split_part(ZonePart part, const std::function<std::size_t(std::uint64_t)>& owner);
 
+// Parts that are not of one surface. what() tells what they should have.
+class UnfitParts : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
 // Glues parts that are not linked, and links what they are together. Vertices are in ascending order of their ids.
-// Throws std::logic_error for parts that are not of one surface. retire: the cost above which edges are retired.
-ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire);
+// retire: the cost above which edges are retired. Throws UnfitParts.
+ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire, const Executor& executor);
 
 }  // namespace isoweave

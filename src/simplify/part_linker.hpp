@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "parallel/collect.hpp"
+#include "parallel/parallel.hpp"
 #include "simplify/zone_part.hpp"
 
 namespace isoweave {
@@ -20,22 +22,29 @@ enum class PartScope : std::uint8_t { kAll, kSome };
 template <class Require>
 class PartLinker {
  public:
-  PartLinker(ZonePart& part, CostBits retire, PartScope scope, const Require& require)
-      : part_(part), retire_(retire), scope_(scope), require_(require), zone_(part.view()) {}
+  PartLinker(ZonePart& part, CostBits retire, PartScope scope, const Executor& executor, const Require& require)
+      : part_(part), retire_(retire), scope_(scope), executor_(executor), require_(require), zone_(part.view()) {}
 
   void link() {
     list_leaving();
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) link_side(half_edge(t, c));
-    }
+    executor_.for_each(zone_.triangle_count(), kBlock, [&](std::int64_t t) {
+      for (Index c = 0; c < 3; ++c) link_side(half_edge(static_cast<Index>(t), c));
+    });
     leaving_ = {};
-    for (Index t = 0; t < zone_.triangle_count(); ++t) {
-      for (Index c = 0; c < 3; ++c) settle(half_edge(t, c));
-    }
+    collect(
+        executor_, zone_.triangle_count(), kBlock,
+        [&](std::int64_t begin, std::int64_t end, std::vector<Index>& unkeyed) {
+          for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
+            for (Index c = 0; c < 3; ++c) settle(half_edge(t, c), unkeyed);
+          }
+        },
+        part_.unkeyed_edges);
     start_fans();
   }
 
  private:
+  static constexpr std::int64_t kBlock = 2048;
+
   // Lists the half-edges that leave each vertex.
   void list_leaving() {
     std::vector<Index> end(part_.vertices.size() + 1, 0);
@@ -62,14 +71,17 @@ class PartLinker {
     return found;
   }
 
+  // Links both sides of an edge, by the one that begins at the vertex with the smaller number.
   void link_side(Index h) {
     static_cast<void>(find_side(zone_.origin(h), zone_.destination(h)));  // refuses two
+    if (zone_.origin(h) > zone_.destination(h)) return;
     const Index back = find_side(zone_.destination(h), zone_.origin(h));
     if (back == kNone) return;
     const bool fits = expects_twin(h) && expects_twin(back) && zone_.key(h) == zone_.key(back) &&
                       zone_.tie_low(h) == zone_.tie_low(back);
     require_(fits, "edges whose two sides fit together");
     zone_.set_twin(h, back);
+    zone_.set_twin(back, h);
   }
 
   // Whether the triangle beside a side may be here: it has not left, and the side is not on a border.
@@ -80,11 +92,11 @@ class PartLinker {
   bool is_incomplete(Index v) const { return zone_.states[v] == VertexState::kIncomplete; }
 
   // Checks the key of a side, or sets it aside where an end is incomplete.
-  void settle(Index h) {
+  void settle(Index h, std::vector<Index>& unkeyed) {
     const Index ends[2] = {zone_.origin(h), zone_.destination(h)};
     if (is_incomplete(ends[0]) || is_incomplete(ends[1])) {
       require_(zone_.key(h) == 0, "no keys where a vertex is incomplete");
-      if (zone_.represents_edge(h)) part_.unkeyed_edges.push_back(h);
+      if (zone_.represents_edge(h)) unkeyed.push_back(h);
       return;
     }
     require_(zone_.cost(h) != kUnknownCost, "keys of edges");
@@ -149,6 +161,7 @@ class PartLinker {
   ZonePart& part_;
   const CostBits retire_;
   const PartScope scope_;
+  const Executor& executor_;
   const Require& require_;
   ZoneView zone_;
   std::vector<Index> first_leaving_;  // per vertex, and one more
@@ -157,8 +170,8 @@ class PartLinker {
 
 // Links a part. require(holds, what): is told what a part must have, and does not return where it does not hold.
 template <class Require>
-void link_part(ZonePart& part, CostBits retire, PartScope scope, const Require& require) {
-  PartLinker<Require>(part, retire, scope, require).link();
+void link_part(ZonePart& part, CostBits retire, PartScope scope, const Executor& executor, const Require& require) {
+  PartLinker<Require>(part, retire, scope, executor, require).link();
 }
 
 }  // namespace isoweave

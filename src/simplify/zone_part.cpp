@@ -126,6 +126,7 @@ class PartReader {
     std::fill(part_.vertices.begin(), part_.vertices.end(), Vertex());
     state_.each<std::uint64_t>(count, [&](std::size_t n, std::uint64_t id) {
       state_.require(n == 0 || part_.vertices[n - 1].id < id, "ids that ascend");
+      state_.require(id < shape_.end_id, "ids of the volume's vertices");
       part_.vertices[n].id = id;
     });
     state_.each<Vec3>(count, [&](std::size_t n, const Vec3& position) {
@@ -299,7 +300,9 @@ ZonePart read_cut_part(StateReader& state, const PartShape& shape) {
 
 ZonePart read_part(StateReader& state, const PartShape& shape) {
   ZonePart part = PartReader(state, shape).read();
-  link_part(part, shape.retire, PartScope::kAll, [&](bool holds, const char* what) { state.require(holds, what); });
+  const Executor alone(1);
+  link_part(part, shape.retire, PartScope::kAll, alone,
+            [&](bool holds, const char* what) { state.require(holds, what); });
   return part;
 }
 

@@ -51,6 +51,7 @@ struct ZonePart {
 struct PartShape {
   bool normals = false, normal_quadrics = false, values = false;
   CostBits retire = 0;
+  std::uint64_t end_id = 0;   // ids are smaller
   Vec3 farthest{};            // limits of positions, along each axis
   std::vector<Receipt> ends;  // of each level, the last one included: receipts have smaller numbers and labels
 };

@@ -14,6 +14,7 @@
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
 #include "saved_runs.hpp"
+#include "task_meshes.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/volume_index.hpp"
 #include "vti_helpers.hpp"
@@ -456,6 +457,15 @@ void put_state_bodies(Seeds& seeds) {
   }
 }
 
+void put_task_bodies(Seeds& seeds) {
+  for (std::size_t number = 0; number < fuzz::kTaskMeshes; ++number) {
+    const TempFolder folder;
+    const fuzz::TaskFiles files = fuzz::first_stage(number, folder / "");
+    seeds.put("task_body", static_cast<char>(number) + files.rest[0].substr(files.beginning));
+    seeds.put("task_body", static_cast<char>(number + fuzz::kTaskMeshes) + files.final[0].substr(files.beginning));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -490,6 +500,7 @@ int main(int argc, char** argv) {
   put_label_names(seeds);
   put_state(seeds);
   put_state_bodies(seeds);
+  put_task_bodies(seeds);
   put_indices(seeds);
   return 0;
 }

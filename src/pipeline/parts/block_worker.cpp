@@ -45,7 +45,7 @@ ZonePart BlockWorker::glue(std::vector<ZonePart> parts) {
   check_stop(control_);
   Stopwatch clock;
   const auto simplifier = make_simplifier();
-  simplifier->put_part(glue_parts(std::move(parts), task_.simplify.zone.retire));
+  simplifier->put_part(glue_parts(std::move(parts), task_.simplify.zone.retire, executor_));
   totals_.triangles = simplifier->triangles();
   clock.lap(report_.seconds_simplify);
   decide(*simplifier);

@@ -71,7 +71,12 @@ class TaskRun {
       parts.push_back(index.read_part(from, number_, cut_part_shape(task_.simplify)));
     }
     if (parts.empty()) return std::nullopt;
-    return worker_.glue(std::move(parts));
+    try {
+      return worker_.glue(std::move(parts));
+    } catch (const UnfitParts& unfit) {
+      throw BadInput(mesh_.folder + ": the files for task " + std::to_string(number_) +
+                     " do not fit together: " + unfit.what());
+    }
   }
 
   std::vector<SplitPart> split(ZonePart rest) const {
