@@ -52,7 +52,8 @@ std::optional<std::int64_t> asked_blocks(const MeshArguments& arguments) {
 bool may_take_blocks(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
                      const SliceSource& volume) {
   const bool is_auto = arguments.blocks.empty() || arguments.blocks == "auto";
-  if (!is_auto || control.memory == 0 || !volume.skips() || is_read_once(arguments.input.path)) return false;
+  if (!is_auto || control.memory == 0 || is_read_once(arguments.input.path)) return false;
+  if (!volume.skips() || !volume.reads_parts_of_rows()) return false;
   if (!arguments.checkpoint.empty() || arguments.watch.given() || arguments.index.named()) return false;
   try {
     require_possible(RunKind::kBlocks, options, control);

@@ -313,15 +313,17 @@ class MeshJob {
     } catch (const OverMemory&) {
       if (arguments_.dry_run || !may_take_blocks(arguments_, options_, control_, *volume_)) throw;
       choose_blocks();
+      if (!block_size_) throw;
     }
   }
 
+  // Chooses blocks that are expected to fit into the cap, if there are any.
   void choose_blocks() {
     RunControl uncapped = control_;
     uncapped.memory = 0;
     const Forecast forecast = forecast_mesh(*open_input(arguments_.input), options_, uncapped);
     block_size_ = block_size_for(info_, forecast.triangles_extracted, control_.memory);
-    if (quiet()) return;
+    if (quiet() || !block_size_) return;
     print_note(fmt::format("--memory {}: too little for slabs, so blocks of {} are taken (--blocks off: they are not)",
                            arguments_.memory, *block_size_));
   }

@@ -29,10 +29,10 @@ struct BlockOptions {
   std::string folder{};
 };
 
-// The largest size of blocks for which a run is expected to stay below `memory` bytes, with a folder: 32 to 512.
-// triangles: of the full surface.
+// The largest size of blocks, 512, 256 or 128, for which a run with a folder is expected to stay below `memory` bytes;
+// nothing where not even those of 128 are. triangles: of the full surface.
 // @cost None. An estimate: the run itself counts, and throws OverMemory.
-std::int64_t block_size_for(const VolumeInfo& volume, std::uint64_t triangles, std::uint64_t memory);
+std::optional<std::int64_t> block_size_for(const VolumeInfo& volume, std::uint64_t triangles, std::uint64_t memory);
 
 // Meshes a volume block by block into a sink, and finishes the sink. Options are those of mesh_volume. The volume must
 // be one in which skipping costs next to nothing (SliceSource::skips): each block opens it and reads its own rows.

@@ -104,6 +104,10 @@ class SliceSource {
   // Whether skipping slices costs next to nothing. It does not in a compressed stream.
   virtual bool skips() const { return true; }
 
+  // Whether a part of a row costs next to nothing but its own samples. So it is where samples lie in a file or in
+  // memory as they are, and not where rows are computed, or are parts of chunks that must be decoded.
+  virtual bool reads_parts_of_rows() const { return !held().empty(); }
+
   // All slices as read() gives them, if the source has them in memory anyway, else nothing. A run uses such slices
   // where they are, and reads no others.
   virtual std::span<const std::byte> held() const { return {}; }

@@ -36,7 +36,11 @@ void check_range(const VolumeInfo& info, std::int64_t first, std::int64_t count)
 class CroppedVolume final : public RowSource {
  public:
   CroppedVolume(std::unique_ptr<SliceSource> whole, const Region& region)
-      : whole_(std::move(whole)), reader_(*whole_), info_(whole_->info()), region_(region) {
+      : whole_(std::move(whole)),
+        parts_(whole_->reads_parts_of_rows() ? dynamic_cast<RowSource*>(whole_.get()) : nullptr),
+        reader_(*whole_),
+        info_(whole_->info()),
+        region_(region) {
     std::array<double, 3> first{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (region.first[axis] < 0 || region.first[axis] >= region.end[axis] || region.end[axis] > info_.dims[axis]) {
@@ -60,20 +64,15 @@ class CroppedVolume final : public RowSource {
     }
   }
 
-  // Reads some rows of the whole at a time.
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    const std::size_t sample = sample_bytes(info_.type);
-    const std::size_t row = to_size(info_.dims[0], sample);
-    const std::size_t whole_row = to_size(whole_->info().dims[0], sample);
-    const auto most = static_cast<std::int64_t>(std::max<std::size_t>(kBlockBytes / whole_row, 1));
-    std::byte* to = out.data();
-    for (std::int64_t j = first; j < first + count; j += most) {
-      const std::int64_t rows = std::min(most, first + count - j);
-      block_.resize(to_size(rows, whole_row));
-      reader_.read(region_.first[2] + k, region_.first[1] + j, rows, block_);
-      const std::byte* from = block_.data() + static_cast<std::size_t>(region_.first[0]) * sample;
-      for (std::int64_t n = 0; n < rows; ++n, from += whole_row, to += row) std::memcpy(to, from, row);
-    }
+    whole_->held().empty() ? reads_parts() ? read_parts(k, first, count, out) : read_whole_rows(k, first, count, out)
+                           : copy_rows(k, first, count, out);
+  }
+
+  bool reads_parts_of_rows() const override { return parts_ != nullptr; }
+
+  void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override {
+    parts_->read_part_of_row(region_.first[2] + k, region_.first[1] + j, region_.first[0] + i, out);
   }
 
   std::uint64_t held_bytes() const override { return held_by_rows(*whole_); }
@@ -81,8 +80,42 @@ class CroppedVolume final : public RowSource {
 
  private:
   static constexpr std::size_t kBlockBytes = 1 << 20;
+  static constexpr std::size_t kLongRow = 1 << 14;  // bytes: parts of shorter rows take as long as the rows
+
+  std::size_t sample() const { return sample_bytes(info_.type); }
+  std::size_t row() const { return to_size(info_.dims[0], sample()); }
+  std::size_t whole_row() const { return to_size(whole_->info().dims[0], sample()); }
+  bool reads_parts() const { return parts_ != nullptr && whole_row() >= kLongRow && row() <= whole_row() / 2; }
+
+  void copy_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) const {
+    const std::int64_t slice = (region_.first[2] + k) * whole_->info().dims[1];
+    for (std::int64_t j = first; j < first + count; ++j, out = out.subspan(row())) {
+      const std::int64_t from = (slice + region_.first[1] + j) * whole_->info().dims[0] + region_.first[0];
+      std::memcpy(out.data(), whole_->held().data() + static_cast<std::size_t>(from) * sample(), row());
+    }
+  }
+
+  void read_parts(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+    for (std::int64_t j = first; j < first + count; ++j, out = out.subspan(row())) {
+      parts_->read_part_of_row(region_.first[2] + k, region_.first[1] + j, region_.first[0], out.first(row()));
+    }
+  }
+
+  // Reads some rows of the whole at a time.
+  void read_whole_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
+    const auto most = static_cast<std::int64_t>(std::max<std::size_t>(kBlockBytes / whole_row(), 1));
+    std::byte* to = out.data();
+    for (std::int64_t j = first; j < first + count; j += most) {
+      const std::int64_t rows = std::min(most, first + count - j);
+      block_.resize(to_size(rows, whole_row()));
+      reader_.read(region_.first[2] + k, region_.first[1] + j, rows, block_);
+      const std::byte* from = block_.data() + static_cast<std::size_t>(region_.first[0]) * sample();
+      for (std::int64_t n = 0; n < rows; ++n, from += whole_row(), to += row()) std::memcpy(to, from, row());
+    }
+  }
 
   std::unique_ptr<SliceSource> whole_;
+  RowSource* parts_;  // the same, where parts of its rows can be read
   RowReader reader_;
   VolumeInfo info_;
   Region region_;

@@ -1,8 +1,13 @@
 #include "volume/row_source.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace isoweave {
+
+void RowSource::read_part_of_row(std::int64_t, std::int64_t, std::int64_t, std::span<std::byte>) {
+  throw std::logic_error("this volume has no parts of rows");
+}
 
 RowReader::RowReader(SliceSource& volume) : volume_(volume), rows_(dynamic_cast<RowSource*>(&volume)) {}
 

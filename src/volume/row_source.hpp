@@ -23,6 +23,10 @@ class RowSource : public SliceSource {
   // a slice has been read, the slices before it are behind.
   virtual void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) = 0;
 
+  // Reads samples of row j of slice k from sample i on, likewise: samples before are behind. Only where
+  // reads_parts_of_rows() says so.
+  virtual void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out);
+
   // The most bytes that reading holds beside the memory it is given: a band of slices, a strip, a decoded slice.
   virtual std::uint64_t held_bytes() const { return 0; }
 

@@ -74,6 +74,16 @@ void StreamSource::read_rows(std::int64_t k, std::int64_t first, std::int64_t co
   read_from(place, out.first(static_cast<std::size_t>(count) * row));
 }
 
+void StreamSource::read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) {
+  const VolumeInfo& info = volume_.info;
+  const std::size_t sample = sample_bytes(info.type);
+  const std::size_t row = to_size(info.dims[0], sample);
+  const std::uint64_t place = static_cast<std::uint64_t>(k) * info.slice_bytes() + static_cast<std::uint64_t>(j) * row +
+                              static_cast<std::uint64_t>(i) * sample;
+  if (place < place_) throw std::invalid_argument("sample " + std::to_string(i) + " lies behind the next to be read");
+  read_from(place, out);
+}
+
 void StreamSource::read_from(std::uint64_t place, std::span<std::byte> wanted) {
   const VolumeInfo& info = volume_.info;
   const std::uint64_t all = static_cast<std::uint64_t>(info.dims[2]) * info.slice_bytes();

@@ -34,7 +34,9 @@ class StreamSource final : public RowSource {
   const VolumeInfo& info() const override { return volume_.info; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
+  void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override;
   bool skips() const override { return volume_.samples->skips(); }
+  bool reads_parts_of_rows() const override { return skips() && volume_.gaps == nullptr && volume_.held_bytes == 0; }
   std::uint64_t held_bytes() const override { return volume_.held_bytes; }
   std::optional<SampleBytes> constant() const override;
   Gaps* gaps() override { return volume_.gaps.get(); }

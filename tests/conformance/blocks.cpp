@@ -37,7 +37,7 @@ TEST_P(Blocks, AnySizeAndPlaceGivesTheMeshOfTheSweep) {
                                       << ", " << blocks.first[2] << ", threads " << control.threads << ", schedule "
                                       << static_cast<int>(control.schedule) << ", slab " << control.slab);
     const BlockRun found = run_into_memory(GetParam(), [&](std::span<MeshSink* const> sinks) {
-      return mesh_in_blocks(opener(GetParam()), sinks, GetParam().options, blocks, control);
+      return mesh_in_blocks(GetParam().open, sinks, GetParam().options, blocks, control);
     });
     expect_same(found, expected);
     EXPECT_TRUE(folder.entries().empty());

@@ -11,13 +11,14 @@
 
 #include "block_scenes.hpp"
 #include "files.hpp"
+#include "files/file_lock.hpp"
 #include "isoweave/error.hpp"
 
 namespace isoweave::testing {
 namespace {
 
 TaskMesh mesh_of(const BlockScene& scene, const std::string& folder, std::int64_t size = 12) {
-  TaskMesh mesh{folder, opener(scene), scene.options, {}};
+  TaskMesh mesh{folder, scene.open, scene.options, {}};
   mesh.blocks.size = size;
   mesh.blocks.first = {5, -3, 2};
   return mesh;
@@ -110,6 +111,18 @@ std::string message_of(const std::function<void()>& action) {
     return error.what();
   }
   return "no error";
+}
+
+TEST(TaskFolder, ATaskThatAnotherProcessWorksOnIsLeftToIt) {
+  const files::Folder folder;
+  const TaskMesh mesh = mesh_of(noise(), folder.path(), 24);
+  {
+    const auto lock = FileLock::take(folder / "0.lock");
+    ASSERT_TRUE(lock);
+    EXPECT_EQ(do_task(mesh, 0), TaskEnd::kElsewhere);
+    EXPECT_FALSE(is_done(mesh, 0));
+  }
+  EXPECT_EQ(do_task(mesh, 0), TaskEnd::kDone);
 }
 
 TEST(TaskFolder, DamagedAndForeignFilesAreRefusedByName) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "files.hpp"
 #include "isoweave/volume.hpp"
 #include "surfaces.hpp"
 
@@ -49,6 +50,40 @@ TEST(CroppedVolume, SlicesThatAreSkippedAreSkippedInTheWhole) {
   std::vector<float> row(4);
   part->read(2, 1, std::as_writable_bytes(std::span(row)));
   EXPECT_EQ(row, (std::vector<float>{36, 37, 38, 39}));
+}
+
+// Rows of 20,000 samples, of which parts are read: from a file in either byte order, from memory, and a part of a part.
+TEST(CroppedVolume, PartsOfLongRowsAreThoseOfTheWhole) {
+  constexpr std::int64_t kLong = 20'000;
+  const files::Folder folder;
+  std::vector<std::uint16_t> samples(static_cast<std::size_t>(kLong * 3 * 4));
+  for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = static_cast<std::uint16_t>(n * 7919);
+  const std::string bytes(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
+  std::string turned = bytes;
+  for (std::size_t n = 0; n < turned.size(); n += 2) std::swap(turned[n], turned[n + 1]);
+  files::write_bytes(folder / "little.raw", bytes);
+  files::write_bytes(folder / "big.raw", turned);
+  const auto open = [&](bool big) {
+    OpenOptions options;
+    options.raw = RawLayout{{kLong, 3, 4}, SampleType::kUint16, big};
+    return open_volume(folder / (big ? "big.raw" : "little.raw"), options);
+  };
+  EXPECT_TRUE(open(false)->reads_parts_of_rows());
+  const Region region{{12'345, 1, 1}, {12'745, 3, 4}};
+  std::vector<std::uint16_t> expected;
+  for (std::int64_t k = 1; k < 4; ++k) {
+    for (std::int64_t j = 1; j < 3; ++j) {
+      const auto row = samples.begin() + (k * 3 + j) * kLong;
+      expected.insert(expected.end(), row + 12'345, row + 12'745);
+    }
+  }
+  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(open(false), region), 2), expected);
+  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(open(true), region), 3), expected);
+  auto part = crop_volume(open(true), {{12'000, 0, 1}, {kLong, 3, 4}});
+  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(std::move(part), {{345, 1, 0}, {745, 3, 3}}), 1), expected);
+  const auto info = open(false)->info();
+  auto held = volume_in_memory(info, std::as_bytes(std::span(samples)));
+  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(std::move(held), region), 2), expected);
 }
 
 TEST(CroppedVolume, ARegionOutsideIsRefused) {

@@ -143,8 +143,8 @@ class BlocksRun {
     const std::uint64_t found = control_.memory > 0 ? system::resident_bytes() : 0;
     if (found <= control_.memory) return;
     throw OverMemory(task_.volume.path + ": expected the process to stay below " + std::to_string(control_.memory) +
-                     " bytes, found " + std::to_string(found) + " with blocks of " +
-                     std::to_string(store_.grid(0).size) + " cells: choose smaller ones");
+                     " bytes, found " + std::to_string(found) + ": blocks of " + std::to_string(store_.grid(0).size) +
+                     " cells take more here");
   }
 
   void tell(SlabRecord& record) {
