@@ -58,14 +58,15 @@ struct Arguments {
   std::int64_t until = ~std::uint64_t{0} >> 1;
 };
 
-// The pieces of a volume's surface, some layers at a time.
+// The pieces of a volume's surface, some layers at a time. The layer below the first slice comes with the first piece:
+// an open surface has nothing there.
 class Pieces {
  public:
   Pieces(SliceSource& source, const Task& task, std::int64_t until, const Executor& executor)
       : field_(source, task.surface, executor, false),
         extractor_(make_extractor(task.surface.extractor, field_.info(), {field_.rule(), false}, executor)),
         window_(field_.source(), extractor_->slices_for(1).first),
-        all_(extractor_->layers_left()),
+        all_(extractor_->layers_left() - 1),
         last_(std::min(all_, until)) {}
 
   std::int64_t done() const { return all_ - extractor_->layers_left(); }
@@ -73,8 +74,8 @@ class Pieces {
 
   // Returns null where no layer is left.
   const SurfacePiece* next(std::int64_t layers) {
-    const std::int64_t count = std::min(layers, last_ - done());
-    if (count == 0) return nullptr;
+    if (done() == last_) return nullptr;
+    const std::int64_t count = std::min(layers, last_ - std::max<std::int64_t>(done(), 0)) + (done() < 0 ? 1 : 0);
     const auto [first, end] = extractor_->slices_for(count);
     window_.advance(first, end);
     extractor_->extract(window_, count, ~std::uint64_t{0}, piece_);
@@ -186,6 +187,7 @@ class Tandem {
       while (heap_.pop_group(group_)) decide_group();
       forget_final();
     }
+    if (surface_.complete() && !held_.empty()) throw std::logic_error("triangles are left undecided");
   }
 
   std::uint64_t collapses() const { return decider_.counts().collapses; }

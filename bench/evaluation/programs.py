@@ -1,7 +1,9 @@
 """The programs of a build, and the files that they write and read."""
 import json
 import pathlib
+import resource
 import subprocess
+import sys
 
 import numpy as np
 
@@ -33,7 +35,11 @@ class Programs:
         self.build, self.folder = pathlib.Path(build), pathlib.Path(folder)
 
     def run(self, name, *words):
-        done = subprocess.run([self.build / name, *map(str, words)], check=True, stdout=subprocess.PIPE, text=True)
+        # A shell starts the program: the system counts the memory of whoever starts a program as the program's own.
+        command = ["sh", "-c", '"$@"; exit $?', "sh", self.build / name, *map(str, words)]
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{name} {' '.join(map(str, words))}: expected exit code 0, found {done.returncode}")
         return done.stdout
 
     def mesh(self, volume, iso, *options, name="mesh.ply"):
@@ -46,6 +52,13 @@ class Programs:
         """The file and the counts of a surface by a method of bench_baselines; the error is in voxels."""
         out = self.folder / name
         return out, json.loads(self.run("bench_baselines", volume, iso, error, method, out, *layers))
+
+    def processor_seconds(self, *words):
+        """What `mesh` takes of processors, all threads together. Others that use the machine hardly change it."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        result = self.mesh(*words)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, *result
 
     def triangles(self, volume, iso, error, method, *layers):
         return read_triangles(self.by_method(volume, iso, error, method, *layers)[0])

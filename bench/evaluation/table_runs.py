@@ -3,14 +3,16 @@ import statistics
 
 from evaluation import published, stand_ins
 
-# How a surface is made, by names that the page has. `queue` is complete extraction and one priority queue.
+# How a surface is made. `queue` is complete extraction and one priority queue.
 CONFIGURATIONS = {
-    "12 layers, 1 thread": ("--slab", "12", "--threads", "1"),
-    "12 layers": ("--slab", "12"),
-    "automatic": (),
+    "12 layers": ("--slab", "12", "--threads", "1"),
     "queue": ("--slab", "whole", "--schedule", "queue", "--threads", "1"),
+    "automatic": (),
 }
-OTHERS = (("--slab", "1"), ("--slab", "whole"), ("--schedule", "rounds"))  # whose digests are compared as well
+# Others whose digests are compared, where the surface has no more faces than FEW. Their rounds are more, too.
+OTHERS = (("--slab", "1"), ("--slab", "whole"), ("--schedule", "rounds"))
+FEW = 2_500_000
+ROUNDS = 3
 
 
 def simplification(row):
@@ -18,51 +20,40 @@ def simplification(row):
     return ("--ratio", repr(row.ratio)) if row.left < row.faces else ("--error", "0")
 
 
-def run_rounds(programs, volume, options, rounds):
-    """By configuration: the reports of all rounds. Every other round runs backwards."""
-    reports = {name: [] for name in CONFIGURATIONS}
-    for number in range(rounds):
-        for name in list(CONFIGURATIONS)[:: 1 if number % 2 == 0 else -1]:
-            _, report = programs.mesh(volume.path, volume.iso, *CONFIGURATIONS[name], *options)
-            reports[name].append(report)
-    return reports
+def run_round(programs, volume, options):
+    """By configuration: the processor seconds and the report."""
+    found = {}
+    for name, others in CONFIGURATIONS.items():
+        seconds, _, report = programs.processor_seconds(volume.path, volume.iso, *others, *options)
+        found[name] = seconds, report
+    return found
 
 
-def ratio_of_times(reports, name, other):
-    return statistics.median(a["seconds"]["total"] / b["seconds"]["total"]
-                             for a, b in zip(reports[name], reports[other]))
-
-
-def other_digests(programs, volume, options):
-    return {programs.mesh(volume.path, volume.iso, *other, *options)[1]["digest"] for other in OTHERS}
-
-
-def measure(programs, row, volume, rounds):
-    """All of a row, and the report along the sweep."""
+def measure(programs, row, volume):
+    """All of a row, and the report along its sweep."""
     options = simplification(row)
-    reports = run_rounds(programs, volume, options, rounds)
-    last = {name: of[-1] for name, of in reports.items()}
-    one = last["12 layers, 1 thread"]
-    digests = {report["digest"] for report in last.values()} | other_digests(programs, volume, options)
+    few = row.faces <= FEW
+    rounds = [run_round(programs, volume, options) for _ in range(ROUNDS if few else 1)]
+    reports = {name: report for name, (_, report) in rounds[-1].items()}
+    for others in OTHERS if few else ():
+        reports[" ".join(others)] = programs.mesh(volume.path, volume.iso, *others, *options)[1]
+    one = reports["12 layers"]
     found = {
         "name": row.name, "source": volume.source, "iso": volume.iso, "dims": one["input"]["dims"],
         "crossed": volume.crossed, "faces": one["triangles_extracted"], "left": one["triangles"],
-        "error": one["error"], "digests": sorted(digests), "threads": last["12 layers"]["threads"],
-        "memory": {name: report["memory"]["peak_bytes"] for name, report in last.items()},
-        "simplification per extraction": statistics.median(
-            report["seconds"]["simplify"] / report["seconds"]["extract"] for report in reports["12 layers, 1 thread"]),
-        "queue per 12 layers": ratio_of_times(reports, "queue", "12 layers, 1 thread"),
-        "1 thread per all": ratio_of_times(reports, "12 layers, 1 thread", "12 layers"),
-        "12 layers per automatic": ratio_of_times(reports, "12 layers", "automatic"),
+        "error": one["error"], "digests": {name: report["digest"] for name, report in reports.items()},
+        "memory": {name: reports[name]["memory"]["peak_bytes"] for name in CONFIGURATIONS},
+        "rounds": len(rounds), "threads": reports["automatic"]["threads"],
+        "queue per 12 layers": statistics.median(of["queue"][0] / of["12 layers"][0] for of in rounds),
     }
-    return found, last["12 layers"]
+    return found, one
 
 
-def measure_all(programs, rounds, see):
+def measure_all(programs, see):
     """Measures the rows, and hands each to see(row, report of its sweep)."""
     for model in published.MODELS:
         fields = list(stand_ins.FIELDS[model](programs))
         for row in published.ROWS:
             if row.model == model:
                 volume = stand_ins.stand_in(fields, row.crossed, programs.folder / "stand-in.nrrd")
-                see(*measure(programs, row, volume, rounds))
+                see(*measure(programs, row, volume))
