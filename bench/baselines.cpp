@@ -9,8 +9,8 @@
 //   tandem:L      layer by layer with a time lag of L layers, and no rule about neighbours
 //   frozen:T      slabs of T layers, each simplified by itself; vertices on the slices between them stay where they are
 //
-// LAYERS: the sweep stops after so many layers, and the mesh is the surface as it is then. Prints JSON: counts, the
-// most triangles that are held at a time, and the digest.
+// LAYERS: the sweep stops after so many layers (for frozen, a multiple of T), and the mesh is the surface as it is
+// then. Prints JSON: counts, the most triangles that are held at a time, and the digest.
 //
 // All methods have the extractor, the quadrics, the keys and the legality of the library. They differ in which edge may
 // be decided when, and in nothing else. Tandem decides, after each layer and in the order of the keys, the edges that
@@ -21,12 +21,14 @@
 // theirs.
 //
 // Queue, tandem and frozen hold the complete surface and go by layers as a sweep would: an edge both of whose ends have
-// all their triangles has the stars that it would have in a sweep.
+// all their triangles has the stars that it would have in a sweep. Its key comes from the quadrics of both ends, also
+// where one of the ends got its last triangles after the other one had moved.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -55,7 +57,7 @@ struct Arguments {
   std::string volume, method, mesh;
   std::int64_t layers_of_method = 0;  // T or L
   MeshOptions options;
-  std::int64_t until = ~std::uint64_t{0} >> 1;
+  std::int64_t until = std::numeric_limits<std::int64_t>::max();  // layers
 };
 
 // The pieces of a volume's surface, some layers at a time. The layer below the first slice comes with the first piece:
@@ -134,9 +136,9 @@ class CompleteSurface {
   std::int64_t layers() const { return static_cast<std::int64_t>(ends_.size()); }
   bool complete() const { return complete_; }
 
-  // Of the first layers.
-  Index triangles_below(std::int64_t layer) const {
-    return layer == 0 ? 0 : ends_[static_cast<std::size_t>(layer) - 1];
+  // The number of triangles below a slice. They come first.
+  Index triangles_below(std::int64_t slice) const {
+    return slice == 0 ? 0 : ends_[static_cast<std::size_t>(slice) - 1];
   }
 
   // The slice that a vertex was extracted on, or the one below it.
@@ -289,7 +291,8 @@ class Tandem {
   std::uint64_t most_held_ = 0;
 };
 
-// Retires the edges that have an end on a slice between two slabs, and returns the most triangles of a slab.
+// Retires the edges that have an end on a slice between two slabs, and returns the most triangles of a slab. No other
+// edges of two slabs share a triangle, so one queue decides what a queue for each slab would.
 std::uint64_t freeze_fronts(CompleteSurface& surface, std::int64_t thickness) {
   const auto is_frozen = [&](Index v) {
     const std::int64_t slice = surface.slice_of(v);

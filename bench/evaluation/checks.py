@@ -3,7 +3,7 @@ import numpy as np
 
 from evaluation import method_runs, stand_ins
 from evaluation.programs import read_samples, write_volume
-from measures import read_triangles
+from measures import in_order, read_triangles
 
 SIZE = 48
 ISO = 127.5
@@ -62,6 +62,20 @@ def check_fronts(programs, volume):
                              f"found {len(found)}, others")
 
 
+def rows_of(triangles):
+    """Triangles as a set."""
+    return {row.tobytes() for row in in_order(triangles)}
+
+
+def check_held(programs, volume):
+    """The triangles that a sweep still changes once it has stopped are among those that it holds."""
+    for method in ("isoweave:1", "tandem:0", "tandem:16"):
+        path, counts = programs.by_method(volume, ISO, "1", method, STOP)
+        changed = len(rows_of(read_triangles(path)) - rows_of(programs.triangles(volume, ISO, "1", method)))
+        if not 0 < changed <= counts["most_held"]:
+            raise Unexpected(f"held by {method}: expected {changed} triangles or more, found {counts['most_held']}")
+
+
 def check_stand_in(programs):
     """A stand-in crosses as many cells as it should, and as many as it says."""
     field = stand_ins.Field(programs.formula("smooth", (SIZE, SIZE, SIZE)), "formula", 0.5, 1)
@@ -80,4 +94,5 @@ def check_all(programs):
         for error in method_runs.ERRORS:
             check_methods(programs, volume, error)
         check_fronts(programs, volume)
+        check_held(programs, volume)
     check_stand_in(programs)

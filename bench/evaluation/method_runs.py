@@ -14,7 +14,7 @@ PERIOD = 12                       # layers between fronts, for the comb and the 
 ON_ALL_AXES = ("queue", "isoweave:12", "tandem:0", "tandem:2", "tandem:8", "tandem:32", "frozen:12")
 AXES = {"z": (0, 1, 2), "x": (2, 0, 1), "y": (1, 2, 0)}  # the swept axis comes first
 # Isoweave's distance at other numbers of triangles is interpolated between these parts of the error.
-PARTS = (0.3, 0.45, 0.6, 0.75, 0.9, 1, 1.15, 1.3, 1.6)
+PARTS = (0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1, 1.15, 1.4, 1.7)
 DISTANCES = (0, 1, 2, 4, 8, 16, 32, 64)  # layers below the front
 
 
@@ -65,9 +65,11 @@ def at_equal(points, counts):
     outside the curve."""
     triangles, distances = np.log(np.array(points)).T
     number, distance = np.log(counts["triangles"]), np.log(counts["rms"])
-    inside = lambda value, among: among.min() <= value <= among.max()
-    return (float(np.exp(np.interp(number, triangles, distances))) if inside(number, triangles) else None,
-            float(np.exp(np.interp(distance, distances[::-1], triangles[::-1]))) if inside(distance, distances) else None)
+
+    def between(value, known, wanted):
+        return float(np.exp(np.interp(value, known, wanted))) if known.min() <= value <= known.max() else None
+
+    return between(number, triangles, distances), between(distance, distances[::-1], triangles[::-1])
 
 
 def fronts_in_the_middle(programs, volume, iso, error, layers):
@@ -76,13 +78,14 @@ def fronts_in_the_middle(programs, volume, iso, error, layers):
     front = layers // 2
     count = lambda method, *until: below_front(programs.triangles(volume, iso, error, method, *until), front, DISTANCES)
     methods = ("isoweave:1", "tandem:0", "tandem:8", "tandem:32")
-    return {"front": front, "queue": count("queue"), **{method: count(method, front) for method in methods}}
+    return {"queue": count("queue"), **{method: count(method, front) for method in methods}}
 
 
 def surfaces(programs):
     """Name, samples and iso-value of the surfaces that methods are compared on."""
     row = published.ROWS[2]
-    volume = stand_ins.stand_in(stand_ins.FIELDS[row.model](programs), row.crossed, programs.folder / "scan.nrrd")
+    fields = stand_ins.FIELDS[row.model](programs)
+    volume = stand_ins.stand_in(fields, row.crossed, programs.folder / "scan.nrrd")
     yield f"stand-in of {row.name}", np.array(read_samples(volume.path)), volume.iso
     programs.run("isoweave", "generate", "smooth", "--size", "96", "--type", "uint8", "-o",
                  programs.folder / "smooth.nrrd", "--quiet")

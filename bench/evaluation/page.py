@@ -43,14 +43,14 @@ def crossed(rows):
 def left(rows):
     lines = []
     for row, ours in pairs(rows):
-        memory = ours["memory"]
-        same = len(set(ours["digests"].values())) == 1
+        memory = [f"{megabytes(ours['memory'][name])} MB" for name in ("12 layers", "automatic", "queue")]
+        same = "the same" if len(set(ours["digests"].values())) == 1 else "DIFFERENT"
         lines.append((row.name, f"{row.extraction:.2f} s", f"{row.simplification:.2f} s", f"{row.left:,}",
-                      f"{row.memory:.0f} MB", f"{100 * row.ratio:.1f} %", f"{ours['left']:,}",
-                      f"{ours['error']:.4f}", *(f"{megabytes(memory[name])} MB" for name in ("12 layers", "automatic", "queue")),
-                      f"{ours['queue per 12 layers']:.2f}", f"{len(ours['digests'])}: {'the same' if same else 'DIFFERENT'}"))
+                      f"{row.memory:.0f} MB", f"{100 * row.ratio:.1f} %", f"{ours['left']:,}", f"{ours['error']:.2g}",
+                      *memory, f"{ours['queue per 12 layers']:.2f}", f"{len(ours['digests'])}: {same}"))
     return table(("surface", "paper: extraction", "simplification", "faces left", "memory", "part left",
-                  "ours: faces left", "error, voxels", "12 layers", "automatic", "queue", "queue's time", "digests"), lines)
+                  "ours: faces left", "error, voxels", "12 layers", "automatic", "queue", "queue's time", "digests"),
+                 lines)
 
 
 def decimals(number, digits):
@@ -84,7 +84,8 @@ def methods(surfaces):
         size = " x ".join(map(str, surface["dims"]))
         for error, of in surface["errors"].items():
             raw = of["axes"]["z"]["queue"]["triangles_extracted"]
-            lines += [f"{surface['name']}, {size} samples, {raw:,} triangles, error {error} voxel:", "", *methods_of(of), ""]
+            head = f"{surface['name']}, {size} samples, {raw:,} triangles, error {error} voxel:"
+            lines += [head, "", *methods_of(of), ""]
     return lines[:-1]
 
 
@@ -115,8 +116,10 @@ def middle(surfaces):
             counts = of["middle"]
             for name in counts:
                 if ":" in name:
-                    lines.append((f"{surface['name']}, {error} voxel, `{name}`", *ratios(counts[name], counts["queue"])))
-    return table(("layers below the front", *(f"{low}–{high}" for low, high in zip(bounds, bounds[1:]))), lines)
+                    of_name = ratios(counts[name], counts["queue"])
+                    lines.append((f"{surface['name']}, {error} voxel, `{name}`", *of_name))
+    head = ("layers below the front", *(f"{low}–{high}" for low, high in zip(bounds, bounds[1:])))
+    return table(head, lines)
 
 
 def pictures(counts):

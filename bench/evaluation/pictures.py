@@ -44,7 +44,7 @@ def draw_all(programs, folder):
         mesh, report = programs.by_method(volume, iso, ERROR, method)
         draw(programs, folder, name, mesh, "35,25", "420x400")
         counts[name] = report["triangles"]
-    join(folder, [method.replace(":", "-") for method in ("isoweave:12", "tandem:0", "frozen:12")], folder / "methods.png")
+    join(folder, ("isoweave-12", "tandem-0", "frozen-12"), folder / "methods.png")
     iso = write_region(programs, volume, *SWEPT)
     for method in ("isoweave:1", "tandem:0"):
         name = f"half-{method.replace(':', '-')}"

@@ -21,7 +21,8 @@ def write_volume(path, samples):
 def read_samples(path):
     """The samples of a raw NRRD file of a program of ours, by [z, y, x]."""
     with path.open("rb") as file:
-        fields = dict(line.split(": ") for line in iter(lambda: file.readline().decode().rstrip("\n"), "") if ": " in line)
+        lines = iter(lambda: file.readline().decode().rstrip("\n"), "")
+        fields = dict(line.split(": ") for line in lines if ": " in line)
         begin = file.tell()
     kind = {"double": np.float64, "float": np.float32, "uint8": np.uint8}[fields["type"]]
     sizes = [int(size) for size in fields["sizes"].split()]

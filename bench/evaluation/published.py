@@ -1,4 +1,4 @@
-"""The numbers that the paper prints: tables 2, 3 and 4, and the peak of figure 7. Its machine had a Core i7 of 3.33 GHz and a GTX 580."""
+"""The numbers that the paper prints in its tables 2, 3 and 4. Its machine had a Core i7 of 3.33 GHz and a GTX 580."""
 from typing import NamedTuple
 
 

@@ -62,7 +62,7 @@ def formula_fields(programs, dims):
 
 
 def abdomen_fields(programs, first, end):
-    """Slices of the CT of an abdomen. Its values are whole numbers, so other slices are tried where none of them fits."""
+    """Slices of the CT of an abdomen. Its values are whole numbers: where none of them fits, other slices are tried."""
     path = scan(ABDOMEN)
     if path is None:
         yield from formula_fields(programs, (512, 512, end - first))
