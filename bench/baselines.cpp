@@ -10,7 +10,7 @@
 //   frozen:T      slabs of T layers, each simplified by itself; vertices on the slices between them stay where they are
 //
 // LAYERS: the sweep stops after so many layers (for frozen, a multiple of T), and the mesh is the surface as it is
-// then. Prints JSON: counts, the most triangles that are held at a time, and the digest.
+// then. Prints JSON: counts, the triangles that a sweep holds when it stops, the most at a time, and the digest.
 //
 // All methods have the extractor, the quadrics, the keys and the legality of the library. They differ in which edge may
 // be decided when, and in nothing else. Tandem decides, after each layer and in the order of the keys, the edges that
@@ -96,6 +96,7 @@ class Pieces {
 struct Outcome {
   std::uint64_t extracted = 0;
   std::uint64_t most_held = 0;
+  std::uint64_t held = 0;  // when the sweep stops; 0 of a method that holds the complete surface, or nothing
   std::uint64_t collapses = 0;
 };
 
@@ -189,10 +190,10 @@ class Tandem {
       while (heap_.pop_group(group_)) decide_group();
       forget_final();
     }
-    if (surface_.complete() && !held_.empty()) throw std::logic_error("triangles are left undecided");
   }
 
   std::uint64_t collapses() const { return decider_.counts().collapses; }
+  std::uint64_t held() const { return held_.size(); }
   std::uint64_t most_held() const { return most_held_; }
 
  private:
@@ -321,6 +322,7 @@ Outcome simplify_complete(const Arguments& arguments, const Task& task, Pieces& 
   if (arguments.method == "tandem") {
     Tandem tandem(surface, arguments.layers_of_method, task.volume.geometry.spacing[2]);
     tandem.run();
+    outcome.held = tandem.held();
     outcome.most_held = tandem.most_held();
     outcome.collapses = tandem.collapses();
   } else {
@@ -346,6 +348,7 @@ Outcome simplify_slabs(const Arguments& arguments, const Task& task, Pieces& pie
     simplifier.decide();
     output.take(simplifier.final_source());
   }
+  outcome.held = simplifier.live_triangles();
   outcome.collapses = simplifier.counts().collapses;
   AllTriangles rest(simplifier.zone(), executor);
   output.take(rest);
@@ -367,15 +370,11 @@ nlohmann::ordered_json run(const Arguments& arguments) {
   sink->finish();
   SurfaceReport report;
   output.report(report);
-  return {{"layers", pieces.done()},
-          {"triangles_extracted", outcome.extracted},
-          {"triangles", report.triangles},
-          {"components", report.components},
-          {"euler", report.euler},
-          {"open_edges", report.open_edges},
-          {"collapses", outcome.collapses},
-          {"most_held", outcome.most_held},
-          {"digest", digest_text(report.digest)}};
+  return {{"layers", pieces.done()},        {"triangles_extracted", outcome.extracted},
+          {"triangles", report.triangles},  {"components", report.components},
+          {"euler", report.euler},          {"open_edges", report.open_edges},
+          {"collapses", outcome.collapses}, {"held", outcome.held},
+          {"most_held", outcome.most_held}, {"digest", digest_text(report.digest)}};
 }
 
 Arguments parse(int count, char** words) {
