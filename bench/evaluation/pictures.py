@@ -6,9 +6,9 @@ from evaluation.programs import write_volume
 
 ISO, ERROR = 99.5, "1"
 METHODS = ("isoweave:12", "tandem:0", "tandem:8", "frozen:12")
-REGION = (0, 20, 0), (110, 130, 72)     # of the engine, by x, y and z
+REGION = (0, 20, 0), (110, 130, 72)  # of the engine, by x, y and z
 SWEPT = (0, 20, 0), (200, 220, 128)
-STOP = 64                              # layers after which the sweep is shown
+STOP = 64  # layers after which the sweep is shown
 LOOK = ("--shading", "flat", "--wireframe", "--quiet")
 
 
