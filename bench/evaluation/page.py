@@ -122,14 +122,17 @@ def middle(surfaces):
     return table(head, lines)
 
 
-def pictures(counts):
-    return [", ".join(f"`{name}` {count:,}" for name, count in counts.items()) + " triangles."]
+def triangles_of(name):
+    def lines(pictures):
+        return [", ".join(f"`{method}` {count:,}" for method, count in pictures[name].items()) + " triangles."]
+
+    return lines
 
 
 # The blocks of the page: the part of the results that each is made of, and how.
 BLOCKS = {"volumes": ("tables", volumes), "crossed": ("tables", crossed), "left": ("tables", left),
           "methods": ("methods", methods), "beside": ("methods", beside), "middle": ("methods", middle),
-          "pictures": ("pictures", pictures)}
+          "regions": ("pictures", triangles_of("methods")), "halves": ("pictures", triangles_of("half"))}
 
 
 def rewrite(page, results):

@@ -1,15 +1,16 @@
-"""The pictures of docs/evaluation.md: one region by each method, and a sweep in the middle."""
-import numpy as np
-
+"""The pictures of docs/evaluation.md: one region by three methods, and a sweep in the middle by two."""
 from evaluation import stand_ins
 from evaluation.programs import write_volume
 
 ISO, ERROR = 99.5, "1"
-METHODS = ("isoweave:12", "tandem:0", "tandem:8", "frozen:12")
-REGION = (0, 20, 0), (110, 130, 72)  # of the engine, by x, y and z
-SWEPT = (0, 20, 0), (200, 220, 128)
-STOP = 64  # layers after which the sweep is shown
-LOOK = ("--shading", "flat", "--wireframe", "--quiet")
+LOOK = ("--view", "35,25", "--shading", "flat", "--wireframe", "--quiet")
+COLOURS = 64
+# Name, region of the engine from its first samples by x, y and z to its last, methods, layers after which the sweeps
+# stop, or none, and the size of each of the pictures beside one another.
+PICTURES = (
+    ("methods", (0, 20, 0), (110, 130, 72), ("isoweave:12", "tandem:0", "frozen:12"), (), "420x400"),
+    ("half", (0, 20, 0), (200, 220, 128), ("isoweave:1", "tandem:0"), (64,), "640x420"),
+)
 
 
 def write_region(programs, path, first, end):
@@ -23,32 +24,33 @@ def write_region(programs, path, first, end):
     return 127.5
 
 
-def draw(programs, folder, name, mesh, view, size):
-    programs.run("isoweave", "render", mesh, "-o", folder / f"{name}.png", "--view", view, "--size", size, *LOOK)
+def join(pictures, path):
+    """Pictures of one height beside one another, as one of few colours."""
+    from PIL import Image  # not needed for the rest
+
+    pictures = [Image.open(picture).convert("RGB") for picture in pictures]
+    joined = Image.new("RGB", (sum(picture.width for picture in pictures), pictures[0].height))
+    left = 0
+    for picture in pictures:
+        joined.paste(picture, (left, 0))
+        left += picture.width
+    joined.quantize(COLOURS).save(path, optimize=True)
 
 
-def join(folder, names, path):
-    """Pictures of one height beside one another, as one."""
-    import matplotlib.image  # not needed for the rest
-
-    matplotlib.image.imsave(path, np.hstack([matplotlib.image.imread(folder / f"{name}.png") for name in names]))
+def draw(programs, name, iso, method, stop, size):
+    """The picture of a method's mesh, and its triangles."""
+    path = programs.folder / f"{name}.png"
+    mesh, counts = programs.by_method(programs.folder / "region.nrrd", iso, ERROR, method, *stop)
+    programs.run("isoweave", "render", mesh, "-o", path, "--size", size, *LOOK)
+    return path, counts["triangles"]
 
 
 def draw_all(programs, folder):
-    """Writes the pictures, and returns the triangles of each."""
-    folder.mkdir(exist_ok=True)
-    volume, counts = programs.folder / "region.nrrd", {}
-    iso = write_region(programs, volume, *REGION)
-    for method in METHODS:
-        name = method.replace(":", "-")
-        mesh, report = programs.by_method(volume, iso, ERROR, method)
-        draw(programs, folder, name, mesh, "35,25", "420x400")
-        counts[name] = report["triangles"]
-    join(folder, ("isoweave-12", "tandem-0", "frozen-12"), folder / "methods.png")
-    iso = write_region(programs, volume, *SWEPT)
-    for method in ("isoweave:1", "tandem:0"):
-        name = f"half-{method.replace(':', '-')}"
-        mesh, report = programs.by_method(volume, iso, ERROR, method, STOP)
-        draw(programs, folder, name, mesh, "35,25", "640x420")
-        counts[name] = report["triangles"]
-    return counts
+    """Writes the pictures, and returns the triangles of their parts."""
+    found = {}
+    for name, first, end, methods, stop, size in PICTURES:
+        iso = write_region(programs, programs.folder / "region.nrrd", first, end)
+        parts = [draw(programs, f"{name}-{number}", iso, method, stop, size) for number, method in enumerate(methods)]
+        join([path for path, _ in parts], folder / f"{name}.png")
+        found[name] = {method: triangles for method, (_, triangles) in zip(methods, parts)}
+    return found
