@@ -1,21 +1,21 @@
 // Loads pages that isoweave has just written, from files and without a network, clicks, and compares every number with
 // the report:
-//   node page.test.mjs ISOWEAVE FOLDER
+//   node page.test.mjs ISOWEAVE FOLDER PACKAGES
 // Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
-  expectFits, expectNumbersOf, kContrasts, kDesktop, kOtherDigits, kPhone, kSmall, picture, pressed, settled, visibleText,
-  visit,
+  audit, choose, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kContrasts, kDesktop, kOtherDigits,
+  kPhone, kSmall, openAll, picture, pressed, reach, settled, slide, visibleText, visit,
 } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
   console.log('skipped: no Chromium in PATH and no CHROMIUM');
   process.exit(77);
@@ -49,9 +49,18 @@ before(async () => {
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
   writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
   run('view', 'other.json', '-o', 'other.html', '--quiet');
+  for (const space of ['ras', 'lps']) {
+    run('mesh', kVolume, '--iso', '127.5', '-o', `${space}.ply`, '--space', space, '--html', `${space}.html`, '--quiet');
+  }
   browser = await Browser.start();
 });
 after(() => browser?.close());
+
+// The middle, width and height of an element on the screen.
+const middleOf = (page, selector) => page.evaluate(`(() => {
+  const { x, y, width, height } = document.querySelector('${selector}').getBoundingClientRect();
+  return [x + width / 2, y + height / 2, width, height];
+})()`);
 
 const withPage = (name, screen, act) => visit(browser, address(name), screen, act);
 
@@ -60,13 +69,13 @@ describe('numbers', () => {
     const report = json('mesh.json');
     const count = await expectNumbersOf(page, report, 180);
     assert.equal(count('sweep.'), 5 * report.sweep.length);
-    for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 13], ['page.surfaces.', 8],
-      ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
-    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
+    for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 16], ['page.surfaces.', 8],
+      ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 26]]) assert.equal(count(part), keys, part);
+    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'Coarser 1', 'Coarser 2', 'Edges on a border (0: closed)']);
   }));
 
   const row = (page, label) => page.evaluate(`[...document.querySelectorAll('dt')]
-    .filter((e) => e.innerText === '${label}').map((e) => e.nextElementSibling.innerText).join()`);
+    .filter((e) => e.textContent === '${label}').map((e) => e.nextElementSibling.textContent).join()`);
   test('come with the extractor, and the index where there was one', async () => {
     await withPage('mesh.html', kDesktop, async (page) => {
       assert.equal(await row(page, 'Extractor'), 'cubes');
@@ -107,7 +116,7 @@ describe('numbers', () => {
     await expectNumbersOf(page, report, 20);
   }));
 
-  const differing = (page) => page.evaluate(`[...document.querySelectorAll('.differs th')].map((e) => e.innerText)`);
+  const differing = (page) => page.evaluate(`[...document.querySelectorAll('.differs th')].map((e) => e.textContent)`);
   test('that the file does not have stand out', async () => {
     await withPage('mesh.html', kDesktop, async (page) => assert.deepEqual(await differing(page), []));
     await withPage('other.html', kDesktop, async (page) => {
@@ -145,7 +154,7 @@ describe('the view', () => {
 
   test('changes with its buttons, and back', () => withPage('mesh.html', kSmall, async (page) => {
     const first = await picture(page);
-    for (const id of ['wireframe', 'smooth', 'error', 'slabs', 'compare']) {
+    for (const id of ['wireframe', 'smooth', 'error', 'section', 'compare']) {
       const was = await pressed(page, id);
       await page.click(`#${id}`);
       assert.notEqual(await pressed(page, id), was, id);
@@ -185,11 +194,7 @@ describe('the view', () => {
   }));
 
   test('shows before and after on two sides of a line', () => withPage('mesh.html', kSmall, async (page) => {
-    const move = (percent) => page.evaluate(`(() => {
-      const range = document.getElementById('split-range');
-      range.value = ${percent};
-      range.dispatchEvent(new Event('input'));
-    })()`);
+    const move = (percent) => slide(page, 'split', percent);
     const after = await picture(page);
     await page.click('label[for=surface-choice-0]');
     await settled(page);
@@ -206,14 +211,11 @@ describe('the view', () => {
   }));
 
   test('cuts the mesh where a slab ended', () => withPage('mesh.html', kSmall, async (page) => {
-    await page.click('#slabs');
+    await page.click('#section');
+    await choose(page, 'cut-axis', 3);
     const all = await picture(page);
     const { sweep } = json('mesh.json');
-    await page.evaluate(`(() => {
-      const range = document.getElementById('cut-range');
-      range.value = 3;
-      range.dispatchEvent(new Event('input'));
-    })()`);
+    await slide(page, 'cut-range', 3);
     await settled(page);
     assert.ok((await picture(page)).covered < all.covered);
     assert.equal(await page.evaluate(`document.getElementById('cut-value').textContent`), `layer ${sweep[2].layer}`);
@@ -221,6 +223,36 @@ describe('the view', () => {
     const height = await page.evaluate(`window.isoweave.ready.then(({ view, surfaces }) =>
       view.surface.material.clippingPlanes[0].constant + surfaces.middle.z)`);
     assert.ok(Math.abs(height - (sweep[2].layer - 1) * 0.75) < 1e-9, `${height}`);
+  }));
+
+  test('cuts the mesh across its axes, on either side', () => withPage('mesh.html', kSmall, async (page) => {
+    const whole = await picture(page);
+    await page.click('#section');
+    const { low, high } = json('mesh.json').page.check.box;
+    for (const axis of [0, 1, 2]) {
+      await choose(page, 'cut-axis', axis);
+      const sums = new Set([whole.sum]);
+      for (const part of [0.25, 0.5]) {
+        await slide(page, 'cut-range', 200 * part);
+        const said = await page.evaluate(`document.getElementById('cut-value').textContent`);
+        const at = low[axis] * (1 - part) + high[axis] * part;
+        assert.ok(Math.abs(numberIn(said.slice(2)) - at) < 0.005 * Math.max(1, Math.abs(at)), `${said}: ${at}`);
+        assert.equal(said[0], 'xyz'[axis]);
+        const kept = await page.evaluate(`window.isoweave.ready.then(({ view, surfaces }) => {
+          const [{ normal, constant }] = view.surface.material.clippingPlanes;
+          return [normal.toArray(), constant + surfaces.middle.toArray()[${axis}]];
+        })`);
+        assert.deepEqual(kept[0].map((value) => value || 0), [0, 1, 2].map((n) => (n === axis ? -1 : 0)), 'the lower side is kept');
+        assert.ok(Math.abs(kept[1] - at) < 1e-3 * Math.max(1, Math.abs(at)), `${kept[1]}: ${at}`);
+        sums.add((await picture(page)).sum);
+      }
+      await page.click('#cut-flip');
+      sums.add((await picture(page)).sum);
+      await page.click('#cut-flip');
+      assert.equal(sums.size, 4);
+    }
+    await page.click('#section');
+    assert.equal((await picture(page)).sum, whole.sum);
   }));
 
   test('obeys keys', () => withPage('mesh.html', kSmall, async (page) => {
@@ -232,18 +264,183 @@ describe('the view', () => {
       await page.press('0');
       assert.equal((await picture(page)).sum, first.sum, `${key} and reset`);
     }
-    for (const [key, id] of [['w', 'wireframe'], ['s', 'smooth'], ['e', 'error'], ['p', 'slabs'], ['c', 'compare']]) {
+    for (const [key, id] of [['w', 'wireframe'], ['s', 'smooth'], ['e', 'error'], ['x', 'section'], ['c', 'compare'], ['m', 'measure']]) {
       const was = await pressed(page, id);
       await page.press(key);
       assert.notEqual(await pressed(page, id), was, key);
     }
     const chosen = () => page.evaluate(`document.querySelector('[name=surface]:checked').value`);
-    await page.press('b');
-    assert.equal(await chosen(), '0');
-    await page.press('b');
-    assert.equal(await chosen(), '1');
-    await page.press('4');
-    assert.equal(await chosen(), '3');
+    for (const key of ['1', '2', '4']) {
+      await page.press(key);
+      assert.equal(await chosen(), String(Number(key) - 1));
+    }
+  }));
+
+  test('fills its frame, from wherever it is seen', () => withPage('mesh.html', kSmall, async (page) => {
+    const views = await page.evaluate(`[...document.getElementById('views').options].map(({ text }) => text)`);
+    assert.deepEqual(views, ['View', 'Front', 'Back', 'Left', 'Right', 'Top', 'Bottom']);
+    for (const value of ['', '0', '1', '2', '3', '4', '5']) {
+      if (value !== '') await choose(page, 'views', value);
+      const [width, height] = await reach(page);
+      assert.ok(width <= 0.92 && height <= 0.92 && Math.max(width, height) > 0.86, `${views[value]}: ${width} ${height}`);
+    }
+    const seen = await page.evaluate(`window.isoweave.ready.then(({ view: { camera, controls } }) =>
+      camera.position.clone().sub(controls.target).normalize().toArray())`);
+    assert.ok(seen[2] < -0.999, 'from the bottom in the end');
+    await page.press('0');
+    assert.equal(await page.evaluate(`document.getElementById('views').value`), '');
+  }));
+
+  test('scrolls under the wheel and a finger, and zooms by the wheel once it was clicked', () =>
+    withPage('mesh.html', { ...kPhone, width: 720 }, async (page) => {
+      const scrolled = () => page.evaluate('scrollY');
+      const distance = () => page.evaluate(`window.isoweave.ready.then(({ view }) => view.camera.position.distanceTo(view.controls.target))`);
+      const first = await distance();
+      const [x, y] = await middleOf(page, '#view');
+      const wheel = () => page.send('Input.dispatchMouseEvent', { type: 'mouseWheel', x, y, deltaX: 0, deltaY: 120 });
+      await wheel();
+      await settled(page);
+      assert.ok(await scrolled() > 0);
+      assert.equal(await distance(), first);
+      await page.evaluate('scrollTo(0, 0)');
+      await page.send('Input.synthesizeScrollGesture', { x, y, yDistance: -200, gestureSourceType: 'touch' });
+      assert.ok(await scrolled() > 100);
+      await page.evaluate(`scrollTo(0, 0); document.getElementById('view').focus({ preventScroll: true })`);
+      await wheel();
+      await settled(page);
+      assert.equal(await scrolled(), 0);
+      assert.ok(await distance() > first);
+    }));
+
+  test('has a line between before and after that can be dragged', () => withPage('mesh.html', kSmall, async (page) => {
+    await page.click('#compare');
+    await settled(page);
+    await page.evaluate('scrollTo(0, 0)');
+    const camera = () => page.evaluate(`window.isoweave.ready.then(({ view }) => view.camera.position.toArray())`);
+    const was = await camera();
+    const both = await picture(page);
+    const [x, y, width] = await middleOf(page, '#view');
+    for (const [type, to] of [['mousePressed', x], ['mouseMoved', x - width / 8], ['mouseMoved', x - width / 4], ['mouseReleased', x - width / 4]]) {
+      await page.send('Input.dispatchMouseEvent', { type, x: to, y, button: 'left', buttons: 1, clickCount: 1 });
+    }
+    const split = await page.evaluate(`window.isoweave.ready.then(({ view }) => view.split)`);
+    assert.ok(Math.abs(split - 0.25) < 0.02, `${split}`);
+    assert.deepEqual(await camera(), was, 'and the view is not turned');
+    assert.notEqual((await picture(page)).sum, both.sum);
+    await page.press('ArrowRight');
+    assert.ok(await page.evaluate(`window.isoweave.ready.then(({ view }) => view.split)`) > split);
+  }));
+
+  // The first triangle that a ray hits, by the formula of Moeller and Trumbore.
+  const kHit = `((view, geometry, x, y) => {
+    const position = geometry.attributes.position.array;
+    const index = geometry.index.array;
+    const minus = (a, b) => a.map((value, n) => value - b[n]);
+    const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    const along = (z) => view.camera.position.clone().set(x, y, z).unproject(view.camera).toArray();
+    const from = along(-1);
+    const ray = minus(along(1), from);
+    let nearest = Infinity;
+    for (let t = 0; t < index.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map((n) => [0, 1, 2].map((axis) => position[3 * index[t + n] + axis]));
+      const [ab, ac, p] = [minus(b, a), minus(c, a), minus(from, a)];
+      const side = cross(ray, ac);
+      const area = dot(ab, side);
+      const [u, q] = [dot(p, side) / area, cross(p, ab)];
+      const [v, at] = [dot(ray, q) / area, dot(ac, q) / area];
+      if (u >= 0 && v >= 0 && u + v <= 1 && at > 0) nearest = Math.min(nearest, at);
+    }
+    return from.map((value, axis) => value + nearest * ray[axis]);
+  })`;
+
+  test('measures between two points', () => withPage('mesh.html', kSmall, async (page) => {
+    const said = () => visibleText(page, 'measured');
+    const plain = await picture(page);
+    await page.click('#measure');
+    assert.match(await said(), /^Click two points/);
+    await page.evaluate('scrollTo(0, 0)');
+    const [x, y, width, height] = await middleOf(page, '#view');
+    const places = [[-0.2, 0.1], [0.15, -0.25]];
+    for (const [right, up] of places) {
+      for (const type of ['mousePressed', 'mouseReleased']) {
+        await page.send('Input.dispatchMouseEvent', { type, x: x + (right * width) / 2, y: y - (up * height) / 2, button: 'left', clickCount: 1 });
+      }
+    }
+    const [a, b] = await page.evaluate(`window.isoweave.ready.then(({ view }) => ${JSON.stringify(places)}.map(([x, y]) =>
+      ${kHit}(view, view.surface.geometry, x, y)))`);
+    const expected = Math.hypot(...a.map((value, axis) => value - b[axis]));
+    const length = numberIn(await said());
+    assert.ok(Math.abs(length - expected) < 0.02 * expected && length > 1, `${length} is ${expected}`);
+    assert.match(await said(), / mm apart$/);
+    assert.notEqual((await picture(page)).sum, plain.sum, 'the line is drawn');
+    await page.evaluate(`document.getElementById('view').focus()`);
+    await page.press('Enter');
+    assert.match(await said(), /second point/, 'a third one begins anew');
+    await page.press('m');
+    assert.equal(await said(), '');
+    assert.equal((await picture(page)).sum, plain.sum);
+  }));
+
+  test('says how long a piece of the picture is', () => withPage('mesh.html', kSmall, async (page) => {
+    for (const key of ['', '+', '+', '+', '-', '-', '-', '-', '-']) {
+      if (key) await page.press(key);
+      await settled(page);
+      const [text, pixels, drawn] = await page.evaluate(`window.isoweave.ready.then(({ view: { camera, controls, canvas } }) => {
+        const bar = document.querySelector('.scale');
+        const length = parseFloat(bar.textContent);
+        const right = controls.target.clone().setFromMatrixColumn(camera.matrixWorld, 0);
+        const end = controls.target.clone().addScaledVector(right, length).project(camera);
+        return [bar.textContent, bar.getBoundingClientRect().width, (end.x * canvas.clientWidth) / 2];
+      })`);
+      assert.match(text, /^(0\.)?0*[125]0* mm$/);
+      assert.ok(Math.abs(pixels - drawn) < 1, `${text}: ${pixels} and ${drawn}`);
+    }
+  }));
+
+  test('says where a patient’s sides are', async () => {
+    for (const [name, ends] of [['ras.html', ['L', 'R']], ['lps.html', ['R', 'L']]]) {
+      await withPage(name, kSmall, async (page) => {
+        const views = await page.evaluate(`[...document.getElementById('views').options].map(({ text }) => text)`);
+        assert.deepEqual(views.slice(1), ['Front (A)', 'Back (P)', 'Left side (L)', 'Right side (R)', 'Top (S)', 'Bottom (I)']);
+        await choose(page, 'views', 0);
+        await settled(page);
+        // Seen from the front, a patient's right is on the left.
+        const at = await page.evaluate(`Object.fromEntries([...document.querySelectorAll('.axes text')].map((e) =>
+          [e.textContent, [Math.round(e.getAttribute('x')), Math.round(e.getAttribute('y')), Number(e.getAttribute('opacity'))]]))`);
+        assert.deepEqual([at.R, at.L, at.S, at.I].map(([x, y]) => [x, y].map((value) => value || 0)), [[-36, 0], [36, 0], [0, -36], [0, 36]]);
+        assert.ok(at.A[2] === 1 && at.P[2] < 1, 'what points away is faint');
+        const [towards, letters] = await page.evaluate(`window.isoweave.ready.then(({ view: { camera, controls } }) =>
+          [camera.position.clone().sub(controls.target).normalize().toArray(), [...document.querySelectorAll('text.axis-0')].map((e) => e.textContent)])`);
+        assert.deepEqual(letters, ends, 'from low to high x');
+        assert.ok(Math.abs(towards[1] - (name === 'ras.html' ? 1 : -1)) < 0.01);
+      });
+    }
+  });
+
+  test('gives its picture away', () => withPage('mesh.html', kSmall, async (page) => {
+    const downloads = join(folder, 'downloads');
+    await browser.send('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: downloads });
+    const [width, height] = await page.evaluate(`[view.clientWidth, view.clientHeight]`);
+    const before = await picture(page);
+    await page.click('#picture');
+    const path = join(downloads, 'mesh.ply.png');
+    for (let tries = 0; tries < 500 && !existsSync(path); ++tries) await settled(page);
+    const png = readFileSync(path);
+    assert.equal(png.subarray(1, 4).toString(), 'PNG');
+    assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [2 * width, 2 * height]);
+    assert.equal((await picture(page)).sum, before.sum);
+  }));
+
+  test('takes the full screen', () => withPage('mesh.html', kSmall, async (page) => {
+    await page.click('#full');
+    await settled(page);
+    assert.equal(await page.evaluate('document.fullscreenElement?.id'), 'stage');
+    assert.equal(await pressed(page, 'full'), 'true');
+    await page.click('#full');
+    await settled(page);
+    assert.equal(await page.evaluate('document.fullscreenElement'), null);
+    assert.equal(await pressed(page, 'full'), 'false');
   }));
 
   test('says that a stand-in is one', () => withPage('large.html', kSmall, async (page) => {
@@ -296,8 +493,41 @@ describe('looks', () => {
     });
   }
 
+  for (const name of ['mesh.html', 'mesh.ply.html', 'empty.html', 'large.html', 'levels.html']) {
+    for (const [device, screen] of [['desktop', kDesktop], ['phone', kPhone]]) {
+      for (const dark of [false, true]) {
+        test(`${name} on a ${device}, ${dark ? 'dark' : 'light'}, violates no rule of accessibility`, () =>
+          withPage(name, { ...screen, dark }, async (page) => {
+            await audit(page, packages);
+            await openAll(page);
+            await page.evaluate(`['error', 'compare', 'section', 'measure'].map((id) => document.getElementById(id))
+              .filter((button) => button.offsetHeight > 0).forEach((button) => button.click())`);
+            await settled(page);
+            await audit(page, packages);
+          }));
+      }
+    }
+  }
+
+  for (const [device, screen] of [['desktop', { width: 1280, height: 800 }], ['phone', kPhone]]) {
+    test(`mesh and controls are on the first screen of a ${device}`, () => withPage('mesh.html', screen, expectOnFirstScreen));
+  }
+
+  test('the keys that are named are those of the controls', async () => {
+    for (const name of ['mesh.html', 'mesh.ply.html', 'levels.html']) await withPage(name, kDesktop, expectKeysOfControls);
+  });
+
+  test('the histogram comes first, and the sweep is folded away', () => withPage('mesh.html', kDesktop, async (page) => {
+    const shown = await page.evaluate(`[...document.querySelectorAll('.plots .card')].map(({ id, offsetHeight }) => [id, offsetHeight > 0])`);
+    assert.deepEqual(shown, [['plot-error', true], ['plot-triangles', false], ['plot-memory', false]]);
+    await page.click('#experts > summary');
+    await settled(page);
+    const wide = await page.evaluate(`[...document.querySelectorAll('#sweep-plots .u-over')].map((e) => e.clientWidth > 100)`);
+    assert.deepEqual(wide, [true, true]);
+  }));
+
   test('every control has a name and is reached by Tab', () => withPage('mesh.html', kDesktop, async (page) => {
-    const kName = `((e) => e.getAttribute('aria-label') || e.innerText || e.labels?.[0]?.innerText || '')`;
+    const kName = `((e) => e.getAttribute('aria-label') || e.textContent || e.labels?.[0]?.textContent || '')`;
     const unnamed = await page.evaluate(`[...document.querySelectorAll('button, input, canvas[tabindex], summary')]
       .filter((e) => !${kName}(e).trim()).map((e) => e.id)`);
     assert.deepEqual(unnamed, []);
@@ -314,8 +544,8 @@ describe('looks', () => {
       assert.ok(outline, `${id} shows that it has the focus`);
       reached.push(id);
     }
-    assert.deepEqual(reached, ['a', 'theme', 'view', 'surface-choice-1', 'wireframe', 'smooth', 'error', 'slabs', 'compare', 'reset',
-      'summary', 'summary', 'summary']);
+    assert.deepEqual(reached, ['a', 'theme', 'surface-choice-1', 'compare', 'error', 'wireframe', 'smooth', 'section', 'measure',
+      'views', 'reset', 'picture', 'full', 'view', 'summary', 'summary']);
   }));
 
   test('screenshots', async () => {
@@ -325,7 +555,7 @@ describe('looks', () => {
           assert.equal(await pressed(page, 'theme'), String(dark));
           const name = (more) => join(folder, `${device}-${dark ? 'dark' : 'light'}${more}.png`);
           await page.screenshot(name(''));
-          for (const id of ['error', 'wireframe', 'slabs']) await page.click(`#${id}`);
+          for (const id of ['error', 'wireframe', 'section', 'compare']) await page.click(`#${id}`);
           await settled(page);
           await page.screenshot(name('-error'), false);
         });
