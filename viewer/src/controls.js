@@ -15,13 +15,13 @@ export function resultIndex() {
   return report.page.surfaces.findIndex(({ name }) => name === 'mesh' || name === 'stand-in');
 }
 
-export const isBefore = (index) => report.page.surfaces[index]?.name.startsWith('full') ?? false;
+const hasBefore = () => report.page.surfaces[0].name === 'full';
 
 // A mesh of no run is nobody's result.
 export function surfaceNames() {
   let level = 0;
   const result = report.digest === undefined ? 'Mesh' : 'Result';
-  const names = { full: 'Before', 'full-stand-in': 'Before', mesh: result, 'stand-in': 'Stand-in' };
+  const names = { full: 'Before', mesh: result, 'stand-in': 'Stand-in' };
   return report.page.surfaces.map((surface) =>
     (surface.level === undefined ? names[surface.name] ?? `Coarser ${(level += 1)}` : `LOD ${surface.level}`));
 }
@@ -77,8 +77,8 @@ function addErrors(view) {
 
 // The surface before simplification beside what is chosen, each on its side of a line.
 function addSplit(view, startSplit) {
-  byId('compare').hidden = !isBefore(0);
-  if (!isBefore(0)) return;
+  byId('compare').hidden = !hasBefore();
+  if (!hasBefore()) return;
   const range = byId('split');
   const move = () => {
     view.setSplit(range.hidden ? null : range.value / 100);

@@ -41,7 +41,7 @@ function errorOptions() {
 }
 
 // The numbers of a plot, for those who cannot see it. Filled when it is opened: sweeps have thousands of slabs.
-export function numberTable(columns, rowCount, cells) {
+export function numberTable(title, columns, rowCount, cells) {
   const details = element('details', {}, element('summary', {}, 'Numbers'));
   details.addEventListener('toggle', () => {
     if (!details.open || details.querySelector('table')) return;
@@ -49,7 +49,7 @@ export function numberTable(columns, rowCount, cells) {
     const rows = Array.from({ length: rowCount }, (_, row) =>
       element('tr', {}, ...cells(row).map((cell) => element('td', {}, cell))));
     const table = element('table', {}, element('thead', {}, head), element('tbody', {}, ...rows));
-    details.append(element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Numbers of the plot' }, table));
+    details.append(element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Numbers: ${title}` }, table));
   });
   return details;
 }
@@ -67,19 +67,19 @@ function addSweepPlots() {
   addPlot('sweep-plots', 'plot-triangles', 'Triangles along the sweep',
     'Final, live and undecided triangles after each slab, on a logarithmic scale', () => triangleOptions(few()),
     [layers, ...['final_triangles', 'live_triangles', 'undecided_triangles'].map((key) => positive(column(key)))],
-    numberTable(['Layers', 'Final', 'Live', 'Undecided'], layers.length, cells([['layer', 'count'],
+    numberTable('triangles along the sweep', ['Layers', 'Final', 'Live', 'Undecided'], layers.length, cells([['layer', 'count'],
       ['final_triangles', 'count'], ['live_triangles', 'count'], ['undecided_triangles', 'count']])));
   addPlot('sweep-plots', 'plot-memory', 'Memory along the sweep',
     'Bytes that slab and undecided zone hold after each slab', () => memoryOptions(few()),
     [layers, column('bytes')],
-    numberTable(['Layers', 'Bytes'], layers.length, cells([['layer', 'count'], ['bytes', 'bytes']])));
+    numberTable('memory along the sweep', ['Layers', 'Bytes'], layers.length, cells([['layer', 'count'], ['bytes', 'bytes']])));
 }
 
 function addErrorPlot() {
   addPlot('plots', 'plot-error', 'How far the mesh is from the surface before simplification',
     'How many vertices of the mesh lie how far from the surface before, on a logarithmic scale', errorOptions,
     [bins().map(({ from }) => from), positive(bins().map(({ vertices }) => vertices))],
-    numberTable(['From', 'To', 'Vertices'], bins().length, (row) => [shown(`page.distance.bins.${row}.from`, 'length'),
+    numberTable('distances', ['From', 'To', 'Vertices'], bins().length, (row) => [shown(`page.distance.bins.${row}.from`, 'length'),
       shown(`page.distance.bins.${row}.to`, 'length'), shown(`page.distance.bins.${row}.vertices`, 'count')]));
 }
 

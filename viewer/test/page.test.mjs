@@ -12,7 +12,7 @@ import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
   audit, choose, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kContrasts, kDesktop, kOtherDigits,
-  kPhone, kSmall, openAll, picture, pressed, reach, settled, slide, visibleText, visit,
+  kPhone, kSmall, openAll, picture, pressed, reach, settled, slide, until, visibleText, visit,
 } from './pages.mjs';
 
 const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
@@ -49,8 +49,12 @@ before(async () => {
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
   writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
   run('view', 'other.json', '-o', 'other.html', '--quiet');
+  run('generate', 'gyroid', '--size', '24', '--type', 'uint8', '-o', 'patient.nrrd', '--quiet');
+  const patient = readFileSync(join(folder, 'patient.nrrd'), 'latin1')
+    .replace('space dimension: 3', 'space: left-posterior-superior');
+  writeFileSync(join(folder, 'patient.nrrd'), patient, 'latin1');
   for (const space of ['ras', 'lps']) {
-    run('mesh', kVolume, '--iso', '127.5', '-o', `${space}.ply`, '--space', space, '--html', `${space}.html`, '--quiet');
+    run('mesh', 'patient.nrrd', '--iso', '127.5', '-o', `${space}.ply`, '--space', space, '--html', `${space}.html`, '--quiet');
   }
   browser = await Browser.start();
 });
@@ -293,23 +297,22 @@ describe('the view', () => {
 
   test('scrolls under the wheel and a finger, and zooms by the wheel once it was clicked', () =>
     withPage('mesh.html', { ...kPhone, width: 720 }, async (page) => {
-      const scrolled = () => page.evaluate('scrollY');
       const distance = () => page.evaluate(`window.isoweave.ready.then(({ view }) => view.camera.position.distanceTo(view.controls.target))`);
       const first = await distance();
       const [x, y] = await middleOf(page, '#view');
       const wheel = () => page.send('Input.dispatchMouseEvent', { type: 'mouseWheel', x, y, deltaX: 0, deltaY: 120 });
       await wheel();
-      await settled(page);
-      assert.ok(await scrolled() > 0);
+      await until(page, 'scrollY > 0');
       assert.equal(await distance(), first);
-      await page.evaluate('scrollTo(0, 0)');
-      await page.send('Input.synthesizeScrollGesture', { x, y, yDistance: -200, gestureSourceType: 'touch' });
-      assert.ok(await scrolled() > 100);
       await page.evaluate(`scrollTo(0, 0); document.getElementById('view').focus({ preventScroll: true })`);
       await wheel();
-      await settled(page);
-      assert.equal(await scrolled(), 0);
-      assert.ok(await distance() > first);
+      await until(page, `window.isoweave.ready.then(({ view }) => view.camera.position.distanceTo(view.controls.target) > ${first})`);
+      assert.equal(await page.evaluate('scrollY'), 0);
+      const touch = (type, ...touchPoints) => page.send('Input.dispatchTouchEvent', { type, touchPoints });
+      await touch('touchStart', { x, y });
+      for (let step = 1; step <= 10; ++step) await touch('touchMove', { x, y: y - 20 * step });
+      await touch('touchEnd');
+      await until(page, 'scrollY > 0');
     }));
 
   test('has a line between before and after that can be dragged', () => withPage('mesh.html', kSmall, async (page) => {
@@ -518,7 +521,7 @@ describe('looks', () => {
   });
 
   test('the histogram comes first, and the sweep is folded away', () => withPage('mesh.html', kDesktop, async (page) => {
-    const shown = await page.evaluate(`[...document.querySelectorAll('.plots .card')].map(({ id, offsetHeight }) => [id, offsetHeight > 0])`);
+    const shown = await page.evaluate(`[...document.querySelectorAll('.plots .card')].map((e) => [e.id, e.checkVisibility()])`);
     assert.deepEqual(shown, [['plot-error', true], ['plot-triangles', false], ['plot-memory', false]]);
     await page.click('#experts > summary');
     await settled(page);

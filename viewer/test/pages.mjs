@@ -154,6 +154,15 @@ export async function expectOnFirstScreen(page) {
 export const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
 export const settled = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
 
+// Waits for what comes in its own time.
+export async function until(page, condition) {
+  for (let tries = 0; tries < 200; ++tries) {
+    if (await page.evaluate(condition)) return;
+    await settled(page);
+  }
+  assert.fail(`never: ${condition}`);
+}
+
 // The ratio that the Web Content Accessibility Guidelines ask for.
 export const kContrasts = `(() => {
   const style = getComputedStyle(document.documentElement);

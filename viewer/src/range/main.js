@@ -108,7 +108,7 @@ function startChart() {
   });
   startTheme(() => chart.draw());
   startChoice(chart);
-  byId('table').append(numberTable(['Iso-value', 'Triangles, about'], isos.length,
+  byId('table').append(numberTable('triangles by iso-value', ['Iso-value', 'Triangles, about'], isos.length,
     (n) => [formatted(isos[n], 'number'), formatted(triangles[n], 'count')]));
   return chart;
 }
