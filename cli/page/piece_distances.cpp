@@ -11,7 +11,7 @@ namespace isoweave::cli {
 namespace {
 
 constexpr std::size_t kPieceTriangles = 500'000;
-constexpr double kReach = 0.02;  // of the first pass, in parts of the diagonal of a mesh's box
+constexpr double kReach = 0.002;  // of the first pass, in parts of the diagonal of a mesh's box
 
 struct Bounds {
   Point low{}, high{};
