@@ -67,7 +67,7 @@ class Measure {
     this.line.geometry = this.dots.geometry;
     this.dots.visible = this.points.length > 0;
     this.line.visible = this.points.length === 2;
-    const asks = ['Click two points, or press Enter at the cross', 'And the second point'];
+    const asks = ['Click two points of the surface', 'And the second point'];
     byId('measured').textContent = asks[this.points.length] ?? `${formatted(this.distance(), 'length', unit)} apart`;
     this.view.draw();
   }

@@ -10,7 +10,7 @@ import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
-import { audit, expectKeysOfControls, expectOnFirstScreen, openAll, reach } from './pages.mjs';
+import { audit, expectKeysOfControls, expectOnFirstScreen, openAll, reach, settled } from './pages.mjs';
 
 const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
@@ -205,6 +205,7 @@ describe('a sweep', () => {
 describe('the view', () => {
   test('changes with its buttons and keys, and back', () => withWatched(kSlow, kSmall, async (page) => {
     await until(page, kComplete);
+    await settled(page); // the text of the end makes the frame smaller
     const first = await picture(page);
     for (const [id, key] of [['show-final', 'f'], ['edges', 'w'], ['front', 'p']]) {
       await page.click(`#${id}`);
@@ -265,6 +266,7 @@ describe('looks', () => {
       test(`on a ${device}, ${dark ? 'dark' : 'light'}, it violates no rule of accessibility and comes first`, () =>
         withWatched(kSlow, { ...screen, dark }, async (page) => {
           await until(page, kComplete);
+          await settled(page);
           await expectOnFirstScreen(page);
           await expectKeysOfControls(page);
           const [width, height] = await reach(page);
