@@ -31,7 +31,7 @@ function errorOptions() {
       x: { time: false, range: () => [0, report.page.distance.max || 1] },
       y: { distr: 3, range: (_, low, high) => [0.5, high * 1.6] },
     },
-    axes: [nameAxis(`distance${unit ? ` (${unit})` : ''}`, (value) => formatted(value, 'bare')), logAxis()],
+    axes: [nameAxis(`distance (${unit})`, (value) => formatted(value, 'bare')), logAxis()],
     series: [
       { label: 'From', value: (_, value) => (value === null ? '–' : formatted(value, 'length', unit)) },
       series('Vertices', 'muted', 'count', { paths: bars, points: { show: false }, fill: errorFill, width: 0.5 }),
