@@ -98,6 +98,7 @@ class FullSurface {
   std::vector<std::vector<float>> distances_of(const std::vector<const TriangleMesh*>& meshes) const {
     if (contents_.full_pass) return piece_distances(meshes, contents_.full_pass, threads_);
     std::vector<std::vector<float>> distances;
+    distances.reserve(meshes.size());
     for (const TriangleMesh* mesh : meshes) distances.push_back(vertex_distances(*mesh, *contents_.full, threads_));
     return distances;
   }

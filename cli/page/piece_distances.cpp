@@ -48,10 +48,10 @@ double diagonal_of(const TriangleMesh& mesh) {
 // The vertices of a mesh, with their distances from what has come.
 class Seeker {
  public:
-  explicit Seeker(const TriangleMesh& mesh)
-      : mesh_(&mesh),
-        reach_(kReach * diagonal_of(mesh)),
-        distances_(mesh.vertices.size(), std::numeric_limits<float>::infinity()) {}
+  explicit Seeker(const TriangleMesh* mesh)
+      : mesh_(mesh),
+        reach_(kReach * diagonal_of(*mesh)),
+        distances_(mesh->vertices.size(), std::numeric_limits<float>::infinity()) {}
 
   void see(const TriangleMesh& piece, const Bounds& bounds, int threads) {
     near_.clear();
@@ -130,8 +130,7 @@ class PieceSink final : public MeshSink {
 
 std::vector<std::vector<float>> piece_distances(const std::vector<const TriangleMesh*>& meshes,
                                                 const SurfacePass& surface, int threads) {
-  std::vector<Seeker> seekers;
-  for (const TriangleMesh* mesh : meshes) seekers.emplace_back(*mesh);
+  std::vector<Seeker> seekers(meshes.begin(), meshes.end());
   const auto pass = [&] {
     PieceSink sink(seekers, meshes.front()->offset, threads);
     surface(sink);
@@ -142,6 +141,7 @@ std::vector<std::vector<float>> piece_distances(const std::vector<const Triangle
     pass();
   }
   std::vector<std::vector<float>> distances;
+  distances.reserve(seekers.size());
   for (Seeker& seeker : seekers) distances.push_back(seeker.take());
   return distances;
 }
