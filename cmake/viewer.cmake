@@ -7,11 +7,16 @@ set(ISOWEAVE_VIEWER_SOURCES ${PROJECT_SOURCE_DIR}/viewer)
 set(ISOWEAVE_VIEWER_BUILD ${PROJECT_BINARY_DIR}/viewer)
 
 # isoweave_get_viewer_packages(PROBLEM): npm's packages into the build folder, as package-lock.json has them; again only
-# when that changes.
+# when that changes. Those that only tests need are left out where there are none.
 function(isoweave_get_viewer_packages problem)
   set(${problem} "" PARENT_SCOPE)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ISOWEAVE_VIEWER_SOURCES}/package-lock.json)
   file(SHA256 ${ISOWEAVE_VIEWER_SOURCES}/package-lock.json wanted)
+  set(kinds --include=dev)
+  if(NOT ISOWEAVE_TESTS)
+    set(kinds --omit=dev)
+  endif()
+  string(APPEND wanted " ${kinds}")
   set(stamp ${ISOWEAVE_VIEWER_BUILD}/packages)
   if(EXISTS ${stamp})
     file(READ ${stamp} present)
@@ -22,7 +27,7 @@ function(isoweave_get_viewer_packages problem)
   message(STATUS "Getting the viewer's packages")
   file(COPY ${ISOWEAVE_VIEWER_SOURCES}/package.json ${ISOWEAVE_VIEWER_SOURCES}/package-lock.json
        DESTINATION ${ISOWEAVE_VIEWER_BUILD})
-  execute_process(COMMAND ${ISOWEAVE_NPM} ci --ignore-scripts --no-audit --no-fund
+  execute_process(COMMAND ${ISOWEAVE_NPM} ci ${kinds} --ignore-scripts --no-audit --no-fund
                   WORKING_DIRECTORY ${ISOWEAVE_VIEWER_BUILD}
                   RESULT_VARIABLE failed OUTPUT_VARIABLE log ERROR_VARIABLE log)
   if(failed)

@@ -30,9 +30,15 @@ Json bins_json(const PageErrors& errors) {
 }
 
 Json errors_json(const PageErrors& errors) {
-  Json json = {{"vertices", errors.vertices}, {"mean", errors.mean},       {"rms", errors.rms},
-               {"max", errors.max},           {"bins", bins_json(errors)}, {"samples", errors.samples}};
-  json["sampled"] = Json::parse(distances_json(errors.sampled));
+  Json json = {{"vertices", errors.vertices},
+               {"mean", errors.mean},
+               {"rms", errors.rms},
+               {"max", errors.max},
+               {"bins", bins_json(errors)}};
+  if (errors.sampled) {
+    json["samples"] = errors.samples;
+    json["sampled"] = Json::parse(distances_json(*errors.sampled));
+  }
   return json;
 }
 
@@ -69,6 +75,12 @@ Json notes_json(const PageSurfaces& page, bool differs, const std::string& full_
   }
   if (page.lacks_finer) {
     notes.push_back("Levels of detail with more triangles than a page shows (--page-triangles) are left out.");
+  }
+  if (page.full_triangles > 0) {
+    notes.push_back(
+        fmt::format("The surface before simplification has {} triangles. What is drawn of it is a stand-in of {}; the "
+                    "distances are those to the surface itself.",
+                    grouped(page.full_triangles), grouped(page.surfaces.front().mesh.triangles.size())));
   }
   if (!full_note.empty()) notes.push_back(full_note);
   if (differs) {
@@ -116,10 +128,12 @@ PageSurfaces describe_isos(Json& report, std::vector<TriangleMesh> isos, std::ui
 
 }  // namespace
 
-std::uint64_t page_memory(std::uint64_t triangles) {
+std::uint64_t page_memory(std::uint64_t triangles, std::uint64_t triangles_before) {
   constexpr std::uint64_t kBytesPerTriangle = 220;
-  constexpr std::uint64_t kElse = 200'000'000;  // the full surface, what it is measured with, the text
-  return triangles * kBytesPerTriangle + kElse;
+  constexpr std::uint64_t kElse = 200'000'000;          // the full surface, what it is measured with, the text
+  constexpr std::uint64_t kBytesPerTriangleBefore = 6;  // of one that is not held: a vertex for two triangles
+  const std::uint64_t pieces = triangles_before > kMostFullTriangles ? triangles_before * kBytesPerTriangleBefore : 0;
+  return triangles * kBytesPerTriangle + pieces + kElse;
 }
 
 void write_page(OutputFile& file, const PageOptions& page, Json& report, PageContents contents,

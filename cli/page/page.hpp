@@ -13,11 +13,13 @@
 #include "isoweave/pipeline.hpp"
 #include "options/cli_app.hpp"
 #include "options/output_mesh.hpp"
+#include "page/piece_distances.hpp"
 #include "report/report.hpp"
 
 namespace isoweave::cli {
 
-// A page holds the surface before simplification as well, where that has no more triangles than this.
+// A page holds the surface before simplification as well, as it is where that has no more triangles than this, and else
+// a stand-in of so many.
 inline constexpr std::uint64_t kMostFullTriangles = 1'000'000;
 
 struct PageOptions {
@@ -38,19 +40,18 @@ void check_page(const PageOptions& page, std::string_view wanted);
 // Refuses likewise, and refuses a mesh that cannot be read again once it is written.
 void check_page(const PageOptions& page, const OutputOptions& output);
 
-// The memory, about, that making a page from a mesh of so many triangles takes.
-std::uint64_t page_memory(std::uint64_t triangles);
+// The memory, about, that making a page takes, from a mesh and a surface before simplification of so many triangles.
+std::uint64_t page_memory(std::uint64_t triangles, std::uint64_t triangles_before);
 
 struct PageContents {
   TriangleMesh mesh;
-  std::optional<TriangleMesh> full{};  // before simplification
-  std::string full_note{};             // why that is not there
+  std::optional<TriangleMesh> full{};  // before simplification; or what stands in for it
+  std::uint64_t full_triangles = 0;    // of the surface that `full` stands in for; 0: it is that surface
+  SurfacePass full_pass{};             // where `full` stands in for another surface: that one
+  std::string full_note{};             // why it is not there
   std::vector<TriangleMesh> finer{};   // levels of detail before `mesh`, finest first
   std::vector<TriangleMesh> isos{};    // in place of `mesh`: those of the report's `isos`, in their order
 };
-
-// The note about a surface that is left out, as it has more than kMostFullTriangles.
-std::string too_full_note(std::uint64_t triangles);
 
 // Adds the contents of the page beside the report to it, as "page", and completes the file.
 void write_page(OutputFile& file, const PageOptions& page, Json& report, PageContents contents,

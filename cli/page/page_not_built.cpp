@@ -6,7 +6,7 @@
 
 namespace isoweave::cli {
 
-std::uint64_t page_memory(std::uint64_t) { return 0; }
+std::uint64_t page_memory(std::uint64_t, std::uint64_t) { return 0; }
 
 void write_page(OutputFile&, const PageOptions&, Json&, PageContents, const RunControl&) {
   throw std::logic_error("a page in a build without the viewer");

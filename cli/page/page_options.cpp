@@ -51,12 +51,4 @@ void check_page(const PageOptions& page, const OutputOptions& output) {
   wrong_value("--html", "a mesh file that isoweave can read again", found);
 }
 
-std::string too_full_note(std::uint64_t triangles) {
-  return fmt::format(
-      "The surface had {} triangles before simplification, more than the {} that a page holds beside the mesh: there "
-      "is "
-      "no before and after, and no error to show.",
-      grouped(triangles), grouped(kMostFullTriangles));
-}
-
 }  // namespace isoweave::cli

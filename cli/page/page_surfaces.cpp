@@ -50,19 +50,15 @@ PageErrors errors_of(const std::vector<float>& distances) {
   return errors;
 }
 
-PageErrors measured_errors(const PageSurface& surface, const TriangleMesh& full, int threads) {
-  PageErrors errors = errors_of(surface.distances);
+MeshDistance sampled_distance(const TriangleMesh& mesh, const TriangleMesh& full, int threads) {
   DistanceOptions options;
-  options.samples = errors.samples = kSamples;
+  options.samples = kSamples;
   options.threads = threads;
-  errors.sampled = compare_meshes(surface.mesh, full, options);
-  return errors;
+  return compare_meshes(mesh, full, options);
 }
 
-// The mesh, or its stand-in, which has no distances yet.
-PageSurface shown_mesh(PageSurface surface, std::uint64_t most_triangles, const RunControl& control) {
-  if (surface.mesh.triangles.size() <= most_triangles) return surface;
-  return {"stand-in", simplified(surface.mesh, most_triangles, control), {}, {}, {}, true};
+PageSurface stand_in(const TriangleMesh& mesh, std::uint64_t most_triangles, const RunControl& control) {
+  return {"stand-in", simplified(mesh, most_triangles, control), {}, {}, {}, true};
 }
 
 void add_coarser(std::vector<PageSurface>& surfaces, const RunControl& control) {
@@ -94,33 +90,75 @@ void move_to_one_offset(TriangleMesh& a, TriangleMesh& b) {
   move_to_offset(b, offset);
 }
 
+// Measures meshes, which have one offset, from the surface before simplification.
+class FullSurface {
+ public:
+  FullSurface(const PageContents& contents, int threads) : contents_(contents), threads_(threads) {}
+
+  std::vector<std::vector<float>> distances_of(const std::vector<const TriangleMesh*>& meshes) const {
+    if (contents_.full_pass) return piece_distances(meshes, contents_.full_pass, threads_);
+    std::vector<std::vector<float>> distances;
+    distances.reserve(meshes.size());
+    for (const TriangleMesh* mesh : meshes) distances.push_back(vertex_distances(*mesh, *contents_.full, threads_));
+    return distances;
+  }
+
+  // Between the surfaces only where the full one is held.
+  PageErrors errors_of_mesh(const TriangleMesh& mesh, const std::vector<float>& distances) const {
+    PageErrors errors = errors_of(distances);
+    if (contents_.full_pass) return errors;
+    errors.samples = kSamples;
+    errors.sampled = sampled_distance(mesh, *contents_.full, threads_);
+    return errors;
+  }
+
+ private:
+  const PageContents& contents_;
+  int threads_;
+};
+
+// Gives the surfaces their distances from the full one. `whole`: the mesh where a surface stands in for it, or none.
+void measure(PageSurfaces& page, const TriangleMesh& whole, const FullSurface& full) {
+  std::vector<const TriangleMesh*> meshes;
+  for (const PageSurface& shown : page.surfaces) meshes.push_back(&shown.mesh);
+  if (!whole.triangles.empty()) meshes.push_back(&whole);
+  std::vector<std::vector<float>> distances = full.distances_of(meshes);
+  const auto mesh = whole.triangles.empty()
+                        ? std::ranges::find(page.surfaces, "mesh", &PageSurface::name) - page.surfaces.begin()
+                        : std::ssize(meshes) - 1;
+  const auto n = static_cast<std::size_t>(mesh);
+  page.errors = full.errors_of_mesh(*meshes[n], distances[n]);
+  for (std::size_t s = 0; s < page.surfaces.size(); ++s) page.surfaces[s].distances = std::move(distances[s]);
+}
+
 }  // namespace
 
 PageSurfaces page_surfaces(PageContents contents, std::uint64_t most_triangles, const RunControl& control) {
   PageSurfaces page;
-  PageSurface surface{"mesh", std::move(contents.mesh)};
+  if (contents.mesh.triangles.empty()) return page;
+  contents.mesh.normals = {};
   std::optional<TriangleMesh>& full = contents.full;
-  if (surface.mesh.triangles.empty()) return page;
-  surface.mesh.normals = {};
-  if (full) move_to_one_offset(surface.mesh, *full);
+  if (full) move_to_one_offset(contents.mesh, *full);
   const bool comparable = full && !full->triangles.empty();
-  if (comparable) {
-    surface.distances = vertex_distances(surface.mesh, *full, control.threads);
-    page.errors = measured_errors(surface, *full, control.threads);
-  }
   const std::size_t finer = contents.finer.size();
-  for (TriangleMesh& level : contents.finer) move_to_offset(level, surface.mesh.offset);
+  for (TriangleMesh& level : contents.finer) move_to_offset(level, contents.mesh.offset);
   page.surfaces = shown_levels(std::move(contents.finer), most_triangles);
   page.lacks_finer = page.surfaces.size() < finer;
-  page.surfaces.push_back(shown_mesh(std::move(surface), most_triangles, control));
+  TriangleMesh whole;
+  if (contents.mesh.triangles.size() > most_triangles) whole = std::move(contents.mesh);
+  page.surfaces.push_back(whole.triangles.empty() ? PageSurface{"mesh", std::move(contents.mesh)}
+                                                  : stand_in(whole, most_triangles, control));
   if (finer > 0) {
     page.surfaces.back().level = finer;
   } else {
     add_coarser(page.surfaces, control);
   }
   if (comparable) {
-    for (PageSurface& shown : page.surfaces) {
-      if (shown.distances.empty()) shown.distances = vertex_distances(shown.mesh, *full, control.threads);
+    measure(page, whole, FullSurface(contents, control.threads));
+    page.full_triangles = contents.full_triangles;
+    if (full->triangles.size() > kMostFullTriangles) {
+      page.full_triangles = full->triangles.size();
+      full = simplified(*full, kMostFullTriangles, control);
     }
     page.surfaces.insert(page.surfaces.begin(), PageSurface{"full", std::move(*full)});
   }
@@ -137,7 +175,8 @@ PageSurfaces iso_surfaces(std::vector<TriangleMesh> isos, std::uint64_t most_tri
     isos[n].normals = {};
     move_to_offset(isos[n], isos.front().offset);
     const auto most = static_cast<std::uint64_t>(share * static_cast<double>(isos[n].triangles.size()));
-    PageSurface shown = shown_mesh({"iso", std::move(isos[n])}, std::max<std::uint64_t>(most, 1), control);
+    PageSurface shown{"iso", std::move(isos[n])};
+    if (shown.mesh.triangles.size() > most) shown = stand_in(shown.mesh, std::max<std::uint64_t>(most, 1), control);
     shown.name = "iso";
     shown.iso = n;
     page.surfaces.push_back(std::move(shown));

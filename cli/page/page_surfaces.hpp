@@ -26,9 +26,9 @@ struct PageSurface {
 // Distances of a mesh from the full surface.
 struct PageErrors {
   std::uint64_t vertices = 0;
-  double mean = 0, rms = 0, max = 0;  // at the vertices of the mesh
-  std::vector<std::uint64_t> counts;  // of vertices, in bins of equal width from 0 to max
-  MeshDistance sampled;               // between the surfaces, both ways
+  double mean = 0, rms = 0, max = 0;      // at the vertices of the mesh
+  std::vector<std::uint64_t> counts;      // of vertices, in bins of equal width from 0 to max
+  std::optional<MeshDistance> sampled{};  // between the surfaces, both ways; where the full one is held
   std::uint64_t samples = 0;
 };
 
@@ -36,6 +36,7 @@ struct PageSurfaces {
   std::vector<PageSurface> surfaces;  // in the order above; none for a mesh without triangles
   std::optional<PageErrors> errors;   // where there is a full surface
   bool lacks_finer = false;           // some levels of detail have more triangles than a page shows
+  std::uint64_t full_triangles = 0;   // of the surface that "full" stands in for, or 0
 };
 
 // Makes the surfaces of a page. A mesh of more triangles is replaced by a stand-in of about so many. Coarser levels are

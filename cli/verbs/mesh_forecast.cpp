@@ -26,7 +26,25 @@ std::uint64_t triangles_of_levels(const MeshArguments& arguments, const MeshOpti
   return last.triangles + options.levels.size() * forecast.triangles;
 }
 
+// Adds what making the page takes after the run: the page, and before that the surface that stands in for a large one.
+void add_page_memory(Forecast& forecast, std::uint64_t triangles, const MeshArguments& arguments,
+                     const MeshOptions& options, const RunControl& control) {
+  add_memory_after(forecast, page_memory(triangles, forecast.triangles_extracted));
+  if (forecast.triangles_extracted <= kMostFullTriangles) return;
+  const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
+  const Forecast stand_in = forecast_mesh(*volume, stand_in_options(options, volume->info()), control);
+  add_memory_after(forecast, stand_in.least_bytes);
+}
+
 }  // namespace
+
+MeshOptions stand_in_options(const MeshOptions& options, const VolumeInfo& info) {
+  MeshOptions stand_in = full_surface(options);
+  stand_in.space = options.space;
+  stand_in.triangles = kMostFullTriangles;
+  stand_in.error = Length::units(most_shape_error(info));
+  return stand_in;
+}
 
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
   return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
@@ -56,16 +74,17 @@ CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptio
   const std::uint64_t files = output_memory(arguments.output, triangles / 2, triangles, file);
   add_memory_during(forecast, files + watch_memory(arguments.watch));
   const std::uint64_t of_run = forecast.least_bytes;
-  if (arguments.page.given()) add_memory_after(forecast, page_memory(triangles));
+  if (arguments.page.given()) add_page_memory(forecast, triangles, arguments, options, control);
   const bool page_decides = forecast.least_bytes > of_run;
   require_memory(forecast, control.memory, arguments.input.path, page_decides ? kPageOption : "");
   return {forecast, files};
 }
 
-void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles) {
+void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles,
+                       std::uint64_t triangles_before) {
   if (!arguments.page.given()) return;
   Forecast of_page;
-  add_memory_after(of_page, page_memory(triangles));
+  add_memory_after(of_page, page_memory(triangles, triangles_before));
   require_memory(of_page, cap, arguments.input.path, kPageOption);
 }
 

@@ -28,8 +28,13 @@ struct CheckedForecast {
 CheckedForecast checked_forecast(const MeshArguments& arguments, const MeshOptions& options,
                                  const MeshFileOptions& file, const RunControl& control);
 
-// Throws OverMemory where a page for so many triangles does not fit into the cap.
-void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles);
+// The options of the run that makes what stands in for the surface before simplification where a page cannot hold it.
+MeshOptions stand_in_options(const MeshOptions& options, const VolumeInfo& info);
+
+// Throws OverMemory where a page for so many triangles, of a surface that had so many before, does not fit into the
+// cap.
+void check_page_memory(const MeshArguments& arguments, std::uint64_t cap, std::uint64_t triangles,
+                       std::uint64_t triangles_before);
 
 // Checks the file of the finest level, or of all levels in one; refuses counts that its format cannot hold. `last`: the
 // forecast of the coarsest level.

@@ -63,25 +63,43 @@ Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArg
   return json;
 }
 
-// The contents of the page: the mesh as it is in the file, and the surface before simplification, from a second pass
+// A pass over the volume that makes its surface.
+void make_surface(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
+                  MeshSink& sink) {
+  const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
+  mesh_volume(*volume, sink, options, control);
+}
+
+// Adds the surface before simplification. One that is too large for a page is handed over in pieces, and a simplified
+// one stands in for it.
+void add_full_surface(PageContents& contents, const MeshArguments& arguments, const MeshOptions& options,
+                      std::uint64_t triangles, const RunControl& control) {
+  MeshOptions full = full_surface(options);
+  full.space = options.space;
+  const VolumeInfo info = open_input(arguments.input)->info();
+  const bool too_large = triangles > kMostFullTriangles;
+  if (too_large) {
+    contents.full_triangles = triangles;
+    contents.full_pass = [=, &arguments](MeshSink& sink) { make_surface(arguments, full, control, sink); };
+  }
+  MeshInMemory surface(mesh_offset(info, options.space));
+  make_surface(arguments, too_large ? stand_in_options(options, info) : full, control, surface);
+  contents.full = surface.copy();
+}
+
+// The contents of the page: the mesh as it is in the file, and the surface before simplification, from further passes
 // over the volume.
 PageContents page_contents(const MeshArguments& arguments, const MeshOptions& options, const MeshReport& report,
                            const RunControl& control) {
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
-  PageContents contents{read_mesh(outputs.back().path)};
-  contents.finer = read_finer(outputs);
+  PageContents contents;
   if (report.collapses == 0) {
     contents.full_note = "Nothing was simplified: there is no before and after, and no error to show.";
-  } else if (report.triangles_extracted - report.triangles_dropped > kMostFullTriangles) {
-    contents.full_note = too_full_note(report.triangles_extracted - report.triangles_dropped);
   } else {
-    MeshOptions full = full_surface(options);
-    full.space = options.space;
-    const std::unique_ptr<SliceSource> volume = open_input(arguments.input);
-    MeshInMemory surface(mesh_offset(volume->info(), options.space));
-    mesh_volume(*volume, surface, full, control);
-    contents.full = surface.copy();
+    add_full_surface(contents, arguments, options, report.triangles_extracted - report.triangles_dropped, control);
   }
+  contents.mesh = read_mesh(outputs.back().path);
+  contents.finer = read_finer(outputs);
   return contents;
 }
 
@@ -417,8 +435,10 @@ class MeshJob {
     evidence.write(std::move(json), control_, [&](const RunControl& control) {
       std::uint64_t triangles = report.triangles;
       for (const SurfaceReport& level : report.levels) triangles += level.triangles;
-      check_page_memory(arguments_, control_.memory, triangles);
-      return page_contents(arguments_, options_, report, control);
+      check_page_memory(arguments_, control_.memory, triangles, report.triangles_extracted);
+      RunControl capped = control;
+      capped.memory = control_.memory;
+      return page_contents(arguments_, options_, report, capped);
     });
   }
 

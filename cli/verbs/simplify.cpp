@@ -125,11 +125,7 @@ void add_seams(const SimplifyArguments& arguments, const TriangleMesh& mesh, Mes
 PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMesh full) {
   PageContents contents{read_mesh(outputs.back().path)};
   contents.finer = read_finer(outputs);
-  if (full.triangles.size() <= kMostFullTriangles) {
-    contents.full = std::move(full);
-  } else {
-    contents.full_note = too_full_note(full.triangles.size());
-  }
+  contents.full = std::move(full);
   return contents;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -222,16 +223,66 @@ TEST(CliPage, LargeMeshesGetAStandInAndANote) {
   EXPECT_NE(report["page"]["notes"].dump().find("stand-in"), std::string::npos) << report["page"]["notes"];
 }
 
-TEST(CliPage, ASurfaceTooLargeToCompareWithIsNoted) {
+// The numbers that a PLY file has for its vertices, x y z quality in binary, of `vertices` vertices.
+std::vector<double> qualities_of(const std::string& ply, std::size_t vertices) {
+  const std::string end = "end_header\n";
+  const char* data = ply.data() + ply.find(end) + end.size();
+  std::vector<double> qualities(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    float quality = 0;
+    std::memcpy(&quality, data + 16 * v + 12, sizeof(quality));
+    qualities[v] = quality;
+  }
+  return qualities;
+}
+
+// Distances are those to the complete surface, which the page's run has in pieces only.
+TEST(CliPage, ASurfaceTooLargeForAPageIsComparedWithAsItIs) {
   const files::Folder folder;
-  expect_done(folder, mesh({"--html", "out.html", "--report", "out.json", "--page-triangles", "20000"},
-                           "generate:gyroid:160x160x160:uint8"));
+  const std::string volume = "generate:gyroid:160x160x160:uint8";
+  expect_done(folder, mesh({"--html", "out.html", "--report", "out.json", "--page-triangles", "20000"}, volume));
   const Json report = report_of(folder, "out.json");
   ASSERT_GT(report["triangles_extracted"], 1'000'000);
-  EXPECT_EQ(report["page"]["surfaces"][0]["name"], "stand-in");
-  EXPECT_EQ(report["page"]["distance"], nullptr);
-  EXPECT_NE(report["page"]["notes"].dump().find("more than the 1,000,000"), std::string::npos)
-      << report["page"]["notes"];
+  const Json& page = report["page"];
+  EXPECT_EQ(page["surfaces"][0]["name"], "full");
+  EXPECT_EQ(page["surfaces"][0]["triangles"], 1'000'000);
+  EXPECT_EQ(page["surfaces"][1]["name"], "stand-in");
+  EXPECT_NE(page["notes"].dump().find("to the surface itself"), std::string::npos) << page["notes"];
+
+  expect_done(folder, {"mesh", volume, "--iso", "127.5", "--error", "0", "-o", "full.ply", "--quiet"});
+  expect_done(folder, {"compare", "out.ply", "full.ply", "--distances", "distances.ply"});
+  const std::vector<double> distances = qualities_of(files::read_bytes(folder / "distances.ply"), report["vertices"]);
+  double sum = 0;
+  for (const double distance : distances) sum += distance;
+  EXPECT_DOUBLE_EQ(page["distance"]["max"], *std::ranges::max_element(distances));
+  EXPECT_DOUBLE_EQ(page["distance"]["mean"], sum / static_cast<double>(distances.size()));
+  EXPECT_FALSE(page["distance"].contains("sampled"));
+
+  // Those who hold the surface say the same of it, and sample it as well.
+  expect_done(folder,
+              {"view", "out.json", "--before", "full.ply", "--page-triangles", "20000", "-o", "view.html", "--quiet"});
+  const Json held = json_in(files::read_bytes(folder / "view.html"), "report")["page"];
+  EXPECT_EQ(held["distance"]["bins"], page["distance"]["bins"]);
+  EXPECT_LE(held["surfaces"][0]["triangles"], 1'000'000);
+  EXPECT_GT(held["distance"]["sampled"]["both"]["mean"], 0);
+  EXPECT_EQ(held["notes"], page["notes"]);
+}
+
+// Vertices that are far from the surface before are measured as well.
+TEST(CliPage, DistancesBeyondThoseOfSimplificationAreThoseToTheSurface) {
+  const files::Folder folder;
+  const std::string volume = "generate:smooth:160x160x160:uint8";
+  expect_done(
+      folder,
+      mesh({"--html", "out.html", "--report", "out.json", "--error", "20vox", "--page-triangles", "20000"}, volume));
+  const Json report = report_of(folder, "out.json");
+  ASSERT_GT(report["triangles_extracted"], 1'000'000);
+  expect_done(folder, {"mesh", volume, "--iso", "127.5", "--error", "0", "-o", "full.ply", "--quiet"});
+  expect_done(folder, {"compare", "out.ply", "full.ply", "--distances", "distances.ply"});
+  const std::vector<double> distances = qualities_of(files::read_bytes(folder / "distances.ply"), report["vertices"]);
+  const double most = *std::ranges::max_element(distances);
+  EXPECT_GT(most, 0.02 * std::sqrt(3.0) * 160) << "there is no such vertex";
+  EXPECT_DOUBLE_EQ(report["page"]["distance"]["max"], most);
 }
 
 TEST(CliPage, NoiseIsShownAsCoarselyAsItCanBe) {

@@ -1,20 +1,29 @@
 // Buttons, sliders and keys of the view.
-import { addOrbitKeys, byId, pressedKey, toggle } from './buttons.js';
-import { report } from './data.js';
+import { byId, startKeys, toggle } from './buttons.js';
+import { report, space, unit } from './data.js';
 import { element, shown } from './element.js';
 import { drawLegend } from './colours.js';
-import { slabCount } from './slabs.js';
+import { startMarks } from './marks.js';
+import { startMeasure } from './measure.js';
+import { startSection } from './section.js';
+import { addViews } from './views.js';
+
+const kDigits = 9; // keys for surfaces
 
 // The surface of the mesh itself, or of what stands in for it; -1 where there is none.
 export function resultIndex() {
   return report.page.surfaces.findIndex(({ name }) => name === 'mesh' || name === 'stand-in');
 }
 
+const hasBefore = () => report.page.surfaces[0].name === 'full';
+
+// A mesh of no run is nobody's result.
 export function surfaceNames() {
   let level = 0;
-  const names = { full: 'Before', mesh: 'Result', 'stand-in': 'Stand-in' };
+  const result = report.digest === undefined ? 'Mesh' : 'Result';
+  const names = { full: 'Before', mesh: result, 'stand-in': 'Stand-in' };
   return report.page.surfaces.map((surface) =>
-    (surface.level === undefined ? names[surface.name] ?? `LOD ${(level += 1)}` : `LOD ${surface.level}`));
+    (surface.level === undefined ? names[surface.name] ?? `Coarser ${(level += 1)}` : `LOD ${surface.level}`));
 }
 
 // The name of a surface in the list of them, or its iso-value with its colour.
@@ -37,6 +46,7 @@ function addSurfaces(choose, several) {
   report.page.surfaces.forEach((_, index) => {
     const input = element('input', {
       type: several ? 'checkbox' : 'radio', name: 'surface', id: `surface-choice-${index}`, value: index,
+      'aria-keyshortcuts': index < kDigits && String(index + 1),
     });
     input.addEventListener('change', () => choose(index, input.checked));
     box.append(input, element('label', { for: input.id }, element('b', {}, surfaceTitle(index)),
@@ -47,7 +57,7 @@ function addSurfaces(choose, several) {
 export function markSurface(index) {
   byId(`surface-choice-${index}`).checked = true;
   byId('drawn').textContent = '';
-  byId('split-line').lastChild.textContent = surfaceNames()[index].toLowerCase();
+  byId('split-labels').lastChild.textContent = surfaceNames()[index].toLowerCase();
   byId('drawn').append(`${surfaceNames()[index]}: `, shown(`page.surfaces.${index}.triangles`, 'count'), ' triangles');
 }
 
@@ -56,7 +66,7 @@ function addErrors(view) {
   byId('error').hidden = !distance;
   if (!distance) return;
   drawLegend(byId('legend-bar'));
-  byId('legend-title').append('Distance to the full surface');
+  byId('legend-title').append('Distance to the surface before');
   byId('legend-low').append('0');
   byId('legend-high').append(shown('page.distance.max', 'length'));
   toggle('error', (on) => {
@@ -65,71 +75,59 @@ function addErrors(view) {
   });
 }
 
-function addSlabs(view, middle) {
-  byId('slabs').hidden = slabCount === 0;
-  if (slabCount === 0) return;
-  view.makePlanes(middle);
-  const range = byId('cut-range');
-  range.max = slabCount;
-  const cut = () => {
-    const slab = Number(range.value) - 1;
-    const all = slab === slabCount - 1 || byId('cut').hidden;
-    view.cut(all ? null : slab, middle);
-    byId('cut-value').replaceChildren('layer ', shown(`sweep.${slab}.layer`, 'count'));
-  };
-  range.value = slabCount;
-  range.addEventListener('input', cut);
-  toggle('slabs', (on) => {
-    view.setPlanes(on);
-    byId('cut').hidden = !on;
-    cut();
-  });
-  cut();
-}
-
 // The surface before simplification beside what is chosen, each on its side of a line.
 function addSplit(view, startSplit) {
-  const possible = report.page.surfaces[0].name === 'full';
-  byId('compare').hidden = !possible;
-  if (!possible) return;
-  const range = byId('split-range');
+  byId('compare').hidden = !hasBefore();
+  if (!hasBefore()) return;
+  const range = byId('split');
   const move = () => {
-    const shown = !byId('split').hidden;
-    view.setSplit(shown ? range.value / 100 : null);
-    byId('split-line').hidden = !shown;
-    byId('split-line').style.left = `${range.value}%`;
+    view.setSplit(range.hidden ? null : range.value / 100);
+    byId('split-labels').hidden = range.hidden;
+    byId('split-labels').style.left = `${range.value}%`;
     range.setAttribute('aria-valuetext', `${range.value} percent of the width`);
   };
   range.addEventListener('input', move);
   toggle('compare', async (on) => {
-    byId('split').hidden = !on;
+    range.hidden = !on;
     if (on) await startSplit();
     move();
   });
 }
 
-function addKeys(view, choose, current, several) {
-  const presses = { w: 'wireframe', s: 'smooth', e: 'error', p: 'slabs', c: 'compare', 0: 'reset' };
-  addOrbitKeys(view, byId('view'));
-  document.addEventListener('keydown', (event) => {
-    const key = pressedKey(event);
-    if (presses[key] && !byId(presses[key]).hidden) byId(presses[key]).click();
-    else if (key === 'b' && report.page.surfaces[0].name === 'full') choose(current() === 0 ? resultIndex() : 0);
-    else if (!/^[1-9]$/.test(key) || Number(key) > report.page.surfaces.length) return;
-    else if (several) byId(`surface-choice-${Number(key) - 1}`).click();
-    else choose(Number(key) - 1);
+function addPicture(view) {
+  byId('picture').addEventListener('click', async () => {
+    const link = element('a', { download: `${byId('title').textContent}.png` });
+    link.href = URL.createObjectURL(await view.picture());
+    link.click();
+    URL.revokeObjectURL(link.href);
   });
 }
 
-// `choose` shows a surface by its number, `current` tells which one is shown, `startSplit` brings in the one before.
-// `several`: surfaces are shown together, and `choose` is told whether one of them is on.
-export function startControls(view, middle, { several = false, choose, current, startSplit }) {
+function addFullScreen() {
+  const button = byId('full');
+  button.hidden = !document.fullscreenEnabled;
+  button.addEventListener('click', () => {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else byId('stage').requestFullscreen();
+  });
+  document.addEventListener('fullscreenchange', () => {
+    button.setAttribute('aria-pressed', String(document.fullscreenElement !== null));
+  });
+}
+
+// `choose` shows a surface by its number, `startSplit` brings in the one before. `several`: surfaces are shown
+// together, and `choose` is told whether one of them is on.
+export function startControls(view, middle, { several = false, choose, startSplit }) {
   addSurfaces(choose, several);
   toggle('wireframe', (on) => view.setWireframe(on));
   toggle('smooth', (on) => view.setSmooth(on));
-  byId('reset').addEventListener('click', () => view.reset());
   addErrors(view);
-  addSlabs(view, middle);
   addSplit(view, startSplit);
-  addKeys(view, choose, current, several);
+  addViews(view, space);
+  addPicture(view);
+  addFullScreen();
+  startSection(view, middle);
+  startMeasure(view);
+  startMarks(view, byId('marks'), space, unit);
+  startKeys(view);
 }

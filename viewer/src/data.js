@@ -12,5 +12,8 @@ export function valueAt(key) {
   return key.split('.').reduce((value, part) => value?.[part], report);
 }
 
-// The unit of lengths, or nothing where neither the volume nor the mesh says.
-export const unit = valueAt('input.unit') || valueAt('page.check.unit') || '';
+// The unit of lengths. Where neither the volume nor the mesh says, it is millimetres.
+export const unit = valueAt('input.unit') || valueAt('page.check.unit') || 'mm';
+
+// "RAS", "LPS" or "INDEX", or nothing.
+export const space = (report?.space || valueAt('input.space'))?.toUpperCase();

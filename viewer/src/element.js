@@ -11,10 +11,16 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
-// A key, or the quotient of two: "triangles / triangles_extracted".
+// A key, or the quotient or difference of two: "triangles / triangles_extracted".
 function evaluated(key) {
-  const [above, below] = key.split(' / ').map(valueAt);
-  return below === undefined ? above : above / below;
+  const [first, sign, second] = key.split(' ');
+  if (sign === undefined) return valueAt(first);
+  return sign === '/' ? valueAt(first) / valueAt(second) : valueAt(first) - valueAt(second);
+}
+
+// Text that is broken behind the slashes of paths rather than within names.
+function broken(text) {
+  return text.split(/(?<=\/)/).flatMap((part, n) => (n > 0 ? [element('wbr'), part] : [part]));
 }
 
 // What of the report `key` names, for people to read and exactly in data-value. Nothing where there is no such value.
@@ -29,7 +35,7 @@ export function shown(key, format = 'text') {
     'data-format': format,
     title: number ? String(value) : undefined,
     class: number ? 'number' : format === 'code' ? 'code' : undefined,
-  }, formatted(value, number || typeof value === 'boolean' ? format : 'text', unit));
+  }, ...broken(formatted(value, number || typeof value === 'boolean' ? format : 'text', unit)));
 }
 
 function list(key, values, format) {

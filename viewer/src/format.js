@@ -25,7 +25,9 @@ const formats = {
   count: (value) => minus(grouped.format(value)),
   number: (value) => significant(value, 7),
   bare: (value) => significant(value, 4),
-  length: (value, unit) => `${significant(value, 4)}${unit ? ` ${unit}` : ''}`,
+  length: (value, unit) => `${significant(value, 4)} ${unit}`,
+  area: (value, unit) => `${significant(value, 5)} ${unit}²`,
+  volume: (value, unit) => `${significant(value, 5)} ${unit}³`,
   seconds: (value) => (value < 0.1 ? `${significant(value * 1000, 3)} ms` : `${significant(value, 4)} s`),
   bytes: (value) => scaled(value, 1000, ['B', 'kB', 'MB', 'GB', 'TB']),
   percent: (value) => `${significant(value * 100, 3)} %`,
@@ -43,3 +45,5 @@ export function short(value) {
   const [base, suffix] = size >= 1e9 ? [1e9, ' G'] : size >= 1e6 ? [1e6, ' M'] : size >= 1e4 ? [1e3, ' k'] : [1, ''];
   return significant(value / base, 3) + suffix;
 }
+
+export const fileName = (path) => String(path ?? '').split('/').pop();

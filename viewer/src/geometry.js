@@ -59,5 +59,6 @@ export function geometryOf(surface, middle, largestDistance) {
   geometry.setIndex(new BufferAttribute(surface.indices, 1));
   geometry.computeVertexNormals();
   geometry.computeBoundingSphere();
+  geometry.computeBoundingBox();
   return geometry;
 }

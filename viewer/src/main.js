@@ -32,7 +32,6 @@ class Surfaces {
     this.keep(this.shown, first);
     startControls(this.view, this.middle, {
       choose: (index) => this.choose(index),
-      current: () => this.shown,
       startSplit: async () => this.view.setBefore(await this.geometry(0)),
     });
     await this.choose(this.shown);

@@ -32,11 +32,13 @@ const decades = {
   filter: (_, ticks) => ticks.map((tick) => (Number.isInteger(Math.log10(tick)) ? tick : null)),
 };
 export const logAxis = () => axis(short, { size: 58, ...decades, grid: { stroke: colour('line'), width: 1, ...decades } });
-export const nameAxis = (label, values) => axis(values, { label, labelSize: 20, labelFont: '12px system-ui, sans-serif' });
+export const nameAxis = (label, values) => axis(values, { label, size: 28, labelSize: 20, labelFont: '12px system-ui, sans-serif' });
 
 // Nothing has no logarithm.
 export const positive = (values) => values.map((value) => (value > 0 ? value : null));
 
+// The legend names the lines; the numbers are in the table.
+const kNames = { live: false };
 const layerSeries = { label: 'Layers', value: (_, value) => (value === null ? '–' : formatted(value, 'count')) };
 
 // Triangles along the sweep: final, live, undecided.
@@ -50,6 +52,7 @@ export function triangleOptions(points, xScale = { time: false }) {
       series('Live', 'plot-live', 'count', { points }),
       series('Undecided', 'plot-undecided', 'count', { points, dash: [5, 4] }),
     ],
+    legend: kNames,
   };
 }
 
@@ -60,5 +63,6 @@ export function memoryOptions(points, xScale = { time: false }) {
     axes: [nameAxis('layers swept', short), axis((value) => formatted(value, 'bytes'), { size: 66 })],
     series: [layerSeries,
       series('Held by slab and zone', 'plot-memory', 'bytes', { points, fill: faint('plot-memory') })],
+    legend: kNames,
   };
 }

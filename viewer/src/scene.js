@@ -1,13 +1,16 @@
 // The mesh in three dimensions.
 import {
   BufferGeometry, DoubleSide, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial,
+  MeshStandardMaterial, Raycaster, Vector2,
 } from 'three';
-import { report, valueAt } from './data.js';
-import { cutAfter, drawnSlabs, slabCorners } from './slabs.js';
-import { firstDirection, Stage } from './stage.js';
+import { space } from './data.js';
+import { firstDirection } from './directions.js';
+import { drawnSlabs, slabCorners } from './slabs.js';
+import { Stage } from './stage.js';
 
 const kPlain = 0xe2ddd0;
+const kLooked = 20000; // vertices of a surface that a view is fitted to, about
+const kPicture = 2; // a picture has so many of its pixels along one of the page, at least
 
 const plainMaterial = (more = {}) => new MeshStandardMaterial({
   color: kPlain, roughness: 0.62, metalness: 0, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
@@ -29,6 +32,7 @@ export class View extends Stage {
     this.split = null; // part of the width, or none
     this.planes = new Group();
     this.planes.visible = false;
+    this.planesOfCut = [];
     this.scene.add(this.surface, this.edges, this.before, this.beforeEdges, this.planes);
   }
 
@@ -69,16 +73,26 @@ export class View extends Stage {
     this.draw();
   }
 
-  // The sphere around all that may be shown.
-  sphere() {
-    const spheres = (this.parts.length > 0 ? this.parts.map(({ surface }) => surface) : [this.surface])
-      .map(({ geometry }) => geometry.boundingSphere);
-    return spheres.slice(1).reduce((all, sphere) => all.union(sphere), spheres[0].clone());
+  geometries() {
+    return (this.parts.length > 0 ? this.parts.map(({ surface }) => surface) : [this.surface]).map(({ geometry }) => geometry);
+  }
+
+  // The box around all that may be shown.
+  box() {
+    const boxes = this.geometries().map(({ boundingBox }) => boundingBox);
+    return boxes.slice(1).reduce((all, box) => all.union(box), boxes[0].clone());
+  }
+
+  lookFrom(direction) {
+    const points = this.geometries().flatMap(({ attributes: { position: { array } } }) => {
+      const step = 3 * Math.ceil(array.length / 3 / kLooked);
+      return Array.from({ length: Math.ceil(array.length / step) }, (_, n) => [...array.subarray(n * step, n * step + 3)]).flat();
+    });
+    this.lookAt(points, direction);
   }
 
   reset() {
-    const { radius, center } = this.sphere();
-    this.lookAt(center, radius, firstDirection(report.space || valueAt('input.space')?.toUpperCase()));
+    this.lookFrom(firstDirection(space));
   }
 
   setWireframe(on) {
@@ -127,12 +141,33 @@ export class View extends Stage {
     this.draw();
   }
 
-  // Shows what had been swept after a slab; all of it for null.
-  cut(slab, middle) {
-    const planes = slab === null ? [] : [cutAfter(slab, middle)];
-    for (const material of this.materials()) material.clippingPlanes = planes;
-    this.edges.material.clippingPlanes = planes;
+  // Shows what lies in front of a plane; all of it for null.
+  cut(plane) {
+    this.planesOfCut = plane === null ? [] : [plane];
+    for (const material of [...this.materials(), this.edges.material]) material.clippingPlanes = this.planesOfCut;
     this.draw();
+  }
+
+  // The point of the surface that is seen at a place of the canvas, from -1 to 1 along both axes; undefined beside it.
+  pointAt(x, y) {
+    const left = this.split !== null && (x + 1) / 2 < this.split;
+    const single = left ? this.before : this.surface;
+    const shown = this.parts.length > 0 ? this.parts.filter(({ on }) => on).map(({ surface }) => surface) : [single];
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(x, y), this.camera);
+    return ray.intersectObjects(shown, false)
+      .find(({ point }) => this.planesOfCut.every((plane) => plane.distanceToPoint(point) >= 0))?.point;
+  }
+
+  // A PNG of what is seen, with nothing behind it.
+  async picture() {
+    const ratio = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(Math.max(ratio, kPicture));
+    this.render();
+    const blob = await new Promise((done) => { this.canvas.toBlob(done, 'image/png'); });
+    this.renderer.setPixelRatio(ratio);
+    this.drawNow();
+    return blob;
   }
 
   render() {

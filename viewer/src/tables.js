@@ -2,39 +2,51 @@
 import { isoTitle, surfaceTitle } from './controls.js';
 import { report, unit, valueAt } from './data.js';
 import { element, shown } from './element.js';
+import { fileName } from './format.js';
 
-const kInput = [
-  ['File', 'input.path'], ['Part', 'input.part'], ['Format', 'input.format'], ['Samples', 'input.dims', 'count'],
-  ['Type', 'input.type'], ['Spacing', 'input.spacing', 'number'], ['Unit', 'input.unit'],
-  ['Origin', 'input.origin', 'number'], ['Direction', 'input.direction', 'number'], ['Space', 'input.space'],
-  ['Slope', 'input.slope', 'number'], ['Intercept', 'input.intercept', 'number'], ['Smallest value', 'input.min', 'number'],
-  ['Largest value', 'input.max', 'number'], ['NaN samples', 'input.nan', 'count'],
-  ['Triangles', 'input.triangles', 'count'], ['Vertices', 'input.vertices', 'count'], ['Before', 'before'],
+// The mesh and the scan, for everybody.
+const kMesh = [
+  ['File', 'output'], ['Triangles', 'page.check.triangles', 'count'], ['Vertices', 'page.check.vertices', 'count'],
+  ['Triangles before simplification', 'triangles_extracted', 'count'], ['Area', 'page.check.area', 'area'],
+  ['Volume inside', 'page.check.volume', 'volume'], ['Separate parts', 'page.check.components', 'count'],
+  ['Edges on a border (0: closed)', 'page.check.open_edges', 'count'],
+  ['Edges of more than two triangles', 'page.check.nonmanifold_edges', 'count'], ['Axes', 'space'], ['Before', 'before'],
 ];
+const kScan = [
+  ['File', 'input.path'], ['Part', 'input.part'], ['Format', 'input.format'], ['Samples', 'input.dims', 'count'],
+  ['Spacing', 'input.spacing', 'number'], ['Unit', 'input.unit'], ['Type', 'input.type'],
+  ['Smallest value', 'input.min', 'number'], ['Largest value', 'input.max', 'number'], ['Values that are no number', 'input.nan', 'count'],
+  ['Surface at the value', 'iso', 'number'], ['Inside', 'inside'], ['Closed at the border', 'closed', 'flag'],
+  ['Triangles', 'input.triangles', 'count'], ['Vertices', 'input.vertices', 'count'],
+];
+
+// The run, for those who ask how.
 const kOptions = [
-  ['Iso-value', 'iso', 'number'], ['Inside', 'inside'], ['Closed at the border', 'closed', 'flag'],
-  ['Extractor', 'extractor'], ['Error', 'error', 'length'], ['Triangles asked for', 'target.triangles', 'count'], ['Quality', 'quality'],
-  ['Schedule', 'schedule'], ['Threads', 'threads', 'count'], ['Layers per slab (0: as it fits)', 'slab', 'count'],
-  ['Back end', 'backend'], ['Index', 'index.path', 'text', () => valueAt('input.dims') && 'none'],
+  ['Error that was allowed', 'error', 'length'], ['Triangles asked for', 'target.triangles', 'count'],
+  ['Extractor', 'extractor'], ['Quality', 'quality'], ['Order of decisions', 'schedule'], ['Threads', 'threads', 'count'],
+  ...(valueAt('slab') > 0 ? [['Layers per slab', 'slab', 'count']] : []), ['Computed by', 'backend'],
+  ['Index', 'index.path', 'text', () => valueAt('input.dims') && 'none'],
   ['Chunks left out by the index', 'index.chunks_left_out', 'count'], ['Bytes left out', 'index.bytes_left_out', 'bytes'],
-  ['Coordinates', 'space'], ['Mesh file', 'output'],
+  ['Origin of the scan', 'input.origin', 'number'], ['Directions of its axes', 'input.direction', 'number'],
+  ['Slope of its values', 'input.slope', 'number'], ['Intercept of its values', 'input.intercept', 'number'],
 ];
 const kCounts = [
-  ['Cells crossed', 'cells_crossed', 'count'], ['Triangles extracted', 'triangles_extracted', 'count'],
-  ['Vertices extracted', 'vertices_extracted', 'count'], ['Collapses', 'collapses', 'count'],
-  ['Postponed', 'postponed', 'count'], ['Keyed anew', 'rekeyed', 'count'], ['Rounds', 'rounds', 'count'],
-  ['Locked vertices', 'locked_vertices', 'count'], ['Triangles', 'triangles', 'count'], ['Vertices', 'vertices', 'count'],
+  ['Cells that the surface crosses', 'cells_crossed', 'count'], ['Triangles extracted', 'triangles_extracted', 'count'],
+  ['Vertices extracted', 'vertices_extracted', 'count'], ['Edges collapsed', 'collapses', 'count'],
+  ['Put off, as not allowed yet', 'postponed', 'count'], ['Put off, as their cost had grown', 'rekeyed', 'count'],
+  ['Steps of decisions', 'rounds', 'count'], ['Vertices that had to stay', 'locked_vertices', 'count'],
 ];
 const kTimes = [
   ['Reading', 'seconds.read', 'seconds'], ['Extraction', 'seconds.extract', 'seconds'],
   ['Simplification', 'seconds.simplify', 'seconds'], ['Writing', 'seconds.write', 'seconds'],
-  ['In all', 'seconds.total', 'seconds'], ['Predicted', 'forecast.seconds', 'seconds'],
+  ['Total, as these overlap', 'seconds.total', 'seconds'], ['Total, as forecast', 'forecast.seconds', 'seconds'],
 ];
 const kMemory = [
-  ['Peak of the process', 'memory.peak_bytes', 'bytes'], ['Predicted', 'memory.predicted_bytes', 'bytes'],
-  ['Least that would do', 'forecast.least_bytes', 'bytes'], ['Mesh file, predicted', 'forecast.output_bytes', 'bytes'],
-  ['Triangles, predicted', 'forecast.triangles', 'count'],
-  ['Extracted, predicted', 'forecast.triangles_extracted', 'count'],
+  ['Most that the run took', 'memory.peak_bytes', 'bytes'], ['As forecast', 'memory.predicted_bytes', 'bytes'],
+  ['Smallest cap that it could keep', 'forecast.least_bytes', 'bytes'],
+  ['Size of the mesh file, as forecast', 'forecast.output_bytes', 'bytes'],
+  ['Triangles, as forecast', 'forecast.triangles', 'count'],
+  ['Triangles extracted, as forecast', 'forecast.triangles_extracted', 'count'],
 ];
 const kChecks = [
   ['Triangles', 'triangles', 'count'], ['Vertices', 'vertices', 'count'], ['Open edges', 'open_edges', 'count'],
@@ -60,29 +72,6 @@ export function listCard(title, rows) {
   return card(title, table);
 }
 
-const kParts = ['read', 'extract', 'simplify', 'write'];
-
-// The parts of the time as one bar. They overlap in the run, so they are parts of their sum.
-function timeBar() {
-  const parts = kParts.map((name) => [name, valueAt(`seconds.${name}`) ?? 0]);
-  const sum = parts.reduce((total, [, seconds]) => total + seconds, 0);
-  if (!(sum > 0)) return undefined;
-  const bar = element('div', { class: 'bar', 'aria-hidden': 'true' });
-  for (const [name, seconds] of parts) {
-    const part = element('i', { class: `part-${name}` });
-    part.style.flexGrow = seconds / sum;
-    bar.append(part);
-  }
-  return bar;
-}
-
-function timeCard() {
-  const made = listCard('Time', kTimes);
-  const bar = timeBar();
-  if (made && bar) made.querySelector('h2').after(bar);
-  return made;
-}
-
 // What the run counted beside what the file holds.
 function checkCard() {
   const run = (key) => (report.digest === undefined ? undefined : valueAt(key));
@@ -98,7 +87,7 @@ function checkCard() {
   }
   const head = element('thead', {}, element('tr', {}, element('th', { scope: 'col' }, 'Check'),
     element('th', { scope: 'col' }, 'Run'), element('th', { scope: 'col' }, 'File read back')));
-  return card('Checks', element('table', {}, head, body));
+  return card('Checks of the run and of its file', element('table', {}, head, body));
 }
 
 // The checks of each iso-value's file. Those that the run counted otherwise stand out.
@@ -120,17 +109,20 @@ function isoCard() {
 }
 
 function distanceCard() {
-  if (!report.page.distance) return undefined;
+  const { distance } = report.page;
+  if (!distance) return undefined;
   const kinds = [['mean', 'Mean'], ['rms', 'RMS'], ['max', 'Largest']];
-  const ways = [['a_to_b', 'To the full surface'], ['b_to_a', 'From the full surface'], ['both', 'Both ways']];
-  const rows = [['page.distance', 'At vertices'], ...ways.map(([key, label]) => [`page.distance.sampled.${key}`, label])];
-  const head = element('tr', {}, element('th', { scope: 'col' }, unit ? `In ${unit}` : ''),
+  const ways = [['a_to_b', 'Mesh to before'], ['b_to_a', 'Before to mesh'], ['both', 'Both ways']];
+  const rows = [['page.distance', 'At vertices'],
+    ...(distance.sampled ? ways : []).map(([key, label]) => [`page.distance.sampled.${key}`, label])];
+  const head = element('tr', {}, element('th', { scope: 'col' }, `In ${unit}`),
     ...kinds.map(([, label]) => element('th', { scope: 'col' }, label)));
   const body = rows.map(([key, label]) => element('tr', {}, element('th', { scope: 'row' }, label),
     ...kinds.map(([kind]) => element('td', {}, shown(`${key}.${kind}`, 'bare')))));
-  const note = element('p', { class: 'small' }, 'At the ', shown('page.distance.vertices', 'count'),
-    ' vertices of the mesh, and at ', shown('page.distance.samples', 'count'), ' points spread over each surface by area.');
-  return card('Distance to the full surface',
+  const points = distance.sampled ? [', and at ', shown('page.distance.samples', 'count'), ' points spread over each surface by area'] : [];
+  const note = element('p', { class: 'small' }, 'At the ', shown('page.distance.vertices', 'count'), ' vertices of the mesh',
+    ...points, '. RMS is the typical distance: the root of the mean square.');
+  return card('Distance to the surface before simplification',
     element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)), note);
 }
 
@@ -149,13 +141,16 @@ function noteCard(title, key) {
   return card(title, element('ul', {}, ...lines.map((_, index) => element('li', {}, shown(`${key}.${index}`)))));
 }
 
+function addCards(id, ...cards) {
+  document.getElementById(id).append(...cards.filter(Boolean));
+}
+
 export function fillCards() {
-  const cards = [
-    listCard('Input', kInput), listCard('Options', kOptions), listCard('Counts', kCounts), timeCard(),
-    listCard('Memory', kMemory), report.isos ? isoCard() : checkCard(), distanceCard(), surfaceCard(),
-    noteCard('Notes on the input', 'input.notes'), noteCard('Warnings', 'warnings'), noteCard('Notes on the output', 'notes'),
-  ];
-  document.getElementById('numbers').append(...cards.filter(Boolean));
+  addCards('cards', listCard('The mesh', kMesh), listCard(valueAt('input.dims') ? 'The scan' : 'The mesh before', kScan),
+    distanceCard(), report.isos ? isoCard() : undefined, surfaceCard(), noteCard('Notes on the input', 'input.notes'),
+    noteCard('Warnings', 'warnings'), noteCard('Notes on the output', 'notes'));
+  addCards('expert-cards', listCard('Settings', kOptions), listCard('Counts', kCounts), listCard('Time', kTimes),
+    listCard('Memory', kMemory), report.isos ? undefined : checkCard());
 }
 
 export function tile(label, value, ...more) {
@@ -170,9 +165,21 @@ function stateText(check) {
 }
 
 function stateTile(check) {
-  const parts = check.components === 1 ? ' component, Euler ' : ' components, Euler ';
-  return tile('Surface', element('span', {}, stateText(check)), shown('page.check.components', 'count'), parts,
-    shown('page.check.euler', 'count'));
+  return tile('Surface', element('span', {}, stateText(check)), shown('page.check.components', 'count'),
+    check.components === 1 ? ' part' : ' parts');
+}
+
+// Width, depth and height of the mesh.
+function sizeTile() {
+  const sides = [0, 1, 2].flatMap((axis) => [...(axis > 0 ? [' × '] : []),
+    shown(`page.check.box.high.${axis} - page.check.box.low.${axis}`, 'bare')]);
+  return tile('Size', element('span', {}, ...sides, ` ${unit}`), 'along x, y and z');
+}
+
+function errorTile() {
+  if (!report.page.distance) return tile('Error that was allowed', shown('error', 'length'), 'typical, not largest');
+  return tile('Distance to the surface before', shown('page.distance.rms', 'length'), 'typical (RMS); largest ',
+    shown('page.distance.max', 'length'));
 }
 
 function isoTile() {
@@ -183,21 +190,15 @@ function isoTile() {
 const share = () => [shown('triangles / triangles_extracted', 'percent'), ' of ', shown('triangles_extracted', 'count')];
 
 export function fillTiles() {
-  const { check, distance } = report.page;
+  const { check } = report.page;
   const vertices = check ? [shown('page.check.vertices', 'count'), ' vertices'] : [];
-  const counts = report.triangles_extracted > 0 ? share() : vertices;
-  const digest = () => tile('Digest', shown('page.check.digest', 'code'), ...(report.digest === undefined ? []
-    : [report.digest === check.digest ? 'the run’s, and the file’s' : 'of the file: the run’s is another']));
+  const memory = valueAt('memory.peak_bytes') ? [shown('memory.peak_bytes', 'bytes'), ' of memory'] : [];
   const tiles = [
-    tile('Triangles', shown(check ? 'page.check.triangles' : 'triangles', 'count'), ...counts),
+    tile('Triangles', shown(check ? 'page.check.triangles' : 'triangles', 'count'), ...(report.triangles_extracted > 0 ? share() : vertices)),
+    check?.triangles > 0 && sizeTile(),
     check ? stateTile(check) : isoTile(),
-    tile('Error', shown('error', 'length'), ...(distance
-      ? ['largest found ', shown('page.distance.max', 'length')] : [])),
-    tile('Time', shown('seconds.total', 'seconds'), ...(report.threads
-      ? ['on ', shown('threads', 'count'), report.threads === 1 ? ' thread' : ' threads'] : [])),
-    tile('Peak memory', shown('memory.peak_bytes', 'bytes'), ...(valueAt('memory.predicted_bytes')
-      ? ['predicted ', shown('memory.predicted_bytes', 'bytes')] : [])),
-    check ? digest() : tile('Digest', shown('digest', 'code'), 'of all surfaces'),
+    errorTile(),
+    tile('Time', shown('seconds.total', 'seconds'), ...memory),
   ];
   document.getElementById('tiles').append(...tiles.filter(Boolean));
 }
@@ -207,8 +208,6 @@ export function fillNotes() {
   list.append(...report.page.notes.map((_, index) => element('li', {}, shown(`page.notes.${index}`))));
   list.hidden = report.page.notes.length === 0;
 }
-
-export const fileName = (path) => String(path ?? '').split('/').pop();
 
 export function fillHeading() {
   const title = fileName(report.output) || (report.isos && fileName(valueAt('input.path'))) || 'isoweave';

@@ -121,6 +121,8 @@ class Page {
     await this.send('Page.navigate', { url });
     await this.loaded;
     await this.evaluate('window.isoweave?.ready.then(() => undefined)');
+    // What the page has filled in has its size then.
+    await this.evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');
   }
 
   async evaluate(expression) {

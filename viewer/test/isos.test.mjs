@@ -1,5 +1,5 @@
 // Loads the page of several iso-values, as page.test.mjs does the page of one:
-//   node isos.test.mjs ISOWEAVE FOLDER
+//   node isos.test.mjs ISOWEAVE FOLDER PACKAGES
 // Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -9,10 +9,11 @@ import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { Browser, findChromium } from './browser.mjs';
 import {
-  expectFits, expectNumbersOf, kDesktop, kOtherDigits, kPhone, kSmall, picture, settled, visibleText, visit,
+  audit, choose, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kDesktop, kOtherDigits, kPhone,
+  kSmall, openAll, picture, reach, settled, slide, visibleText, visit,
 } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
   console.log('skipped: no Chromium in PATH and no CHROMIUM');
   process.exit(77);
@@ -47,7 +48,7 @@ describe('the page of several iso-values', () => {
     assert.equal(count('page.isos.'), 3 * 13);
     assert.equal(count('isos.'), 3 * 3);
     assert.equal(count('page.surfaces.'), 3 * 2);
-    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))], ['Layers per slab (0: as it fits)']);
+    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))], []);
     for (const [iso, value] of kIsos.entries()) {
       const check = JSON.parse(run('check', `a_iso${value}.ply`, '--json'));
       assert.equal(report.page.isos[iso].digest, check.digest);
@@ -88,7 +89,7 @@ describe('the page of several iso-values', () => {
 
   test('draws as the page of one surface does', () => withPage('isos.html', kSmall, async (page) => {
     const first = await picture(page);
-    for (const id of ['wireframe', 'smooth', 'slabs']) {
+    for (const id of ['wireframe', 'smooth', 'section']) {
       await page.click(`#${id}`);
       await settled(page);
       assert.notEqual((await picture(page)).sum, first.sum, id);
@@ -97,13 +98,10 @@ describe('the page of several iso-values', () => {
       assert.equal((await picture(page)).sum, first.sum, `${id} and back`);
     }
     for (const id of ['error', 'compare']) assert.equal(await visibleText(page, id), '', id);
-    await page.click('#slabs');
+    await page.click('#section');
+    await choose(page, 'cut-axis', 3);
     const all = await picture(page);
-    await page.evaluate(`(() => {
-      const range = document.getElementById('cut-range');
-      range.value = 1;
-      range.dispatchEvent(new Event('input'));
-    })()`);
+    await slide(page, 'cut-range', 1);
     await settled(page);
     const whole = json('isos.json').sweep.length === 1;
     assert.equal((await picture(page)).covered < all.covered, !whole);
@@ -118,6 +116,23 @@ describe('the page of several iso-values', () => {
     assert.match(await visibleText(page, 'notes'), /stand-in/);
     assert.equal(await visibleText(page, 'drawn'), `Iso-values ${kIsos[1]}`);
   }));
+
+  test('fills its frame, on the first screen', () => withPage('isos.html', kPhone, async (page) => {
+    await expectOnFirstScreen(page);
+    const [width, height] = await reach(page);
+    assert.ok(width <= 0.92 && height <= 0.92 && Math.max(width, height) > 0.86, `${width} ${height}`);
+    await expectKeysOfControls(page);
+  }));
+
+  for (const [device, screen] of [['desktop', kDesktop], ['phone', kPhone]]) {
+    for (const dark of [false, true]) {
+      test(`violates no rule of accessibility: ${device}, ${dark ? 'dark' : 'light'}`, () =>
+        withPage('isos.html', { ...screen, dark }, async (page) => {
+          await openAll(page);
+          await audit(page, packages);
+        }));
+    }
+  }
 
   for (const width of [390, 320, 768, 1320]) {
     test(`fits ${width} pixels`, () => withPage('isos.html', { ...kPhone, width }, (page) => expectFits(page, width, 'isos')));

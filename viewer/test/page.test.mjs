@@ -1,6 +1,6 @@
 // Loads pages that isoweave has just written, from files and without a network, clicks, and compares every number with
 // the report:
-//   node page.test.mjs ISOWEAVE FOLDER
+//   node page.test.mjs ISOWEAVE FOLDER PACKAGES
 // Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -11,11 +11,11 @@ import { pathToFileURL } from 'node:url';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
-  expectFits, expectNumbersOf, kContrasts, kDesktop, kOtherDigits, kPhone, kSmall, picture, pressed, settled, visibleText,
-  visit,
+  audit, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kContrasts, kDesktop, kOtherDigits, kPhone,
+  openAll, pressed, settled, visibleText, visit,
 } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
   console.log('skipped: no Chromium in PATH and no CHROMIUM');
   process.exit(77);
@@ -60,13 +60,13 @@ describe('numbers', () => {
     const report = json('mesh.json');
     const count = await expectNumbersOf(page, report, 180);
     assert.equal(count('sweep.'), 5 * report.sweep.length);
-    for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 13], ['page.surfaces.', 8],
-      ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 27]]) assert.equal(count(part), keys, part);
-    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'LOD 1', 'LOD 2', 'Layers per slab (0: as it fits)']);
+    for (const [part, keys] of [['seconds.', 5], ['memory.', 2], ['forecast.', 5], ['page.check.', 16], ['page.surfaces.', 8],
+      ['page.distance.', 14 + 3 * report.page.distance.bins.length], ['input.', 26]]) assert.equal(count(part), keys, part);
+    assert.deepEqual([...new Set(await page.evaluate(kOtherDigits))].sort(), ['0', 'Coarser 1', 'Coarser 2', 'Edges on a border (0: closed)']);
   }));
 
   const row = (page, label) => page.evaluate(`[...document.querySelectorAll('dt')]
-    .filter((e) => e.innerText === '${label}').map((e) => e.nextElementSibling.innerText).join()`);
+    .filter((e) => e.textContent === '${label}').map((e) => e.nextElementSibling.textContent).join()`);
   test('come with the extractor, and the index where there was one', async () => {
     await withPage('mesh.html', kDesktop, async (page) => {
       assert.equal(await row(page, 'Extractor'), 'cubes');
@@ -107,7 +107,7 @@ describe('numbers', () => {
     await expectNumbersOf(page, report, 20);
   }));
 
-  const differing = (page) => page.evaluate(`[...document.querySelectorAll('.differs th')].map((e) => e.innerText)`);
+  const differing = (page) => page.evaluate(`[...document.querySelectorAll('.differs th')].map((e) => e.textContent)`);
   test('that the file does not have stand out', async () => {
     await withPage('mesh.html', kDesktop, async (page) => assert.deepEqual(await differing(page), []));
     await withPage('other.html', kDesktop, async (page) => {
@@ -122,153 +122,6 @@ describe('numbers', () => {
     assert.deepEqual(made.check, report.page.check);
     await expectNumbersOf(page, { ...report, page: made }, 100);
   }));
-});
-
-describe('the view', () => {
-  test('shows the mesh', () => withPage('mesh.html', kSmall, async (page) => {
-    const { covered, colours } = await picture(page);
-    assert.ok(covered > 0.08 && covered < 0.9, `${covered} of the canvas is drawn on`);
-    assert.ok(colours > 300, `${colours} colours`);
-  }));
-
-  test('has the triangles that the page says', () => withPage('mesh.html', kSmall, async (page) => {
-    const { surfaces } = json('mesh.json').page;
-    assert.deepEqual(surfaces.map(({ name }) => name), ['full', 'mesh', 'level', 'level']);
-    for (const [index, { triangles }] of surfaces.entries()) {
-      const drawn = await page.evaluate(`window.isoweave.ready.then(async ({ view, surfaces }) => {
-        await surfaces.choose(${index});
-        return view.surface.geometry.index.count / 3;
-      })`);
-      assert.equal(drawn, triangles);
-    }
-  }));
-
-  test('changes with its buttons, and back', () => withPage('mesh.html', kSmall, async (page) => {
-    const first = await picture(page);
-    for (const id of ['wireframe', 'smooth', 'error', 'slabs', 'compare']) {
-      const was = await pressed(page, id);
-      await page.click(`#${id}`);
-      assert.notEqual(await pressed(page, id), was, id);
-      await settled(page);
-      assert.notEqual((await picture(page)).sum, first.sum, id);
-      await page.click(`#${id}`);
-      assert.equal(await pressed(page, id), was, id);
-      await settled(page);
-      assert.equal((await picture(page)).sum, first.sum, `${id} and back`);
-    }
-  }));
-
-  test('names the levels of the run', () => withPage('levels.html', kSmall, async (page) => {
-    const names = await page.evaluate(`[...document.querySelectorAll('#surfaces label b')].map((e) => e.innerText)`);
-    assert.deepEqual(names, ['Before', 'LOD 0', 'LOD 1', 'LOD 2']);
-    assert.equal(await page.evaluate(`document.querySelector('#surfaces input:checked').value`), '3');
-    const { levels, triangles } = json('levels.json');
-    for (const [index, count] of [...levels.map((level) => level.triangles), triangles].entries()) {
-      const drawn = await page.evaluate(`window.isoweave.ready.then(async ({ view, surfaces }) => {
-        await surfaces.choose(${index + 1});
-        return view.surface.geometry.index.count / 3;
-      })`);
-      assert.equal(drawn, count);
-    }
-  }));
-
-  test('switches surfaces', () => withPage('mesh.html', kSmall, async (page) => {
-    const sums = new Set();
-    for (const index of [0, 1, 2, 3]) {
-      await page.click(`label[for=surface-choice-${index}]`);
-      await settled(page);
-      sums.add((await picture(page)).sum);
-      const said = await page.evaluate(`document.getElementById('drawn').textContent`);
-      assert.equal(numberIn(said.split(':')[1]), json('mesh.json').page.surfaces[index].triangles);
-    }
-    assert.equal(sums.size, 4);
-  }));
-
-  test('shows before and after on two sides of a line', () => withPage('mesh.html', kSmall, async (page) => {
-    const move = (percent) => page.evaluate(`(() => {
-      const range = document.getElementById('split-range');
-      range.value = ${percent};
-      range.dispatchEvent(new Event('input'));
-    })()`);
-    const after = await picture(page);
-    await page.click('label[for=surface-choice-0]');
-    await settled(page);
-    const first = await picture(page);
-    await page.click('label[for=surface-choice-1]');
-    await page.click('#compare');
-    await settled(page);
-    const both = await picture(page);
-    assert.ok(both.sum !== after.sum && both.sum !== first.sum);
-    await move(100);
-    assert.equal((await picture(page)).sum, first.sum, 'all of it before');
-    await move(0);
-    assert.equal((await picture(page)).sum, after.sum, 'all of it after');
-  }));
-
-  test('cuts the mesh where a slab ended', () => withPage('mesh.html', kSmall, async (page) => {
-    await page.click('#slabs');
-    const all = await picture(page);
-    const { sweep } = json('mesh.json');
-    await page.evaluate(`(() => {
-      const range = document.getElementById('cut-range');
-      range.value = 3;
-      range.dispatchEvent(new Event('input'));
-    })()`);
-    await settled(page);
-    assert.ok((await picture(page)).covered < all.covered);
-    assert.equal(await page.evaluate(`document.getElementById('cut-value').textContent`), `layer ${sweep[2].layer}`);
-    // The cut is in the plane of the slab's last slice, in the coordinates of the mesh.
-    const height = await page.evaluate(`window.isoweave.ready.then(({ view, surfaces }) =>
-      view.surface.material.clippingPlanes[0].constant + surfaces.middle.z)`);
-    assert.ok(Math.abs(height - (sweep[2].layer - 1) * 0.75) < 1e-9, `${height}`);
-  }));
-
-  test('obeys keys', () => withPage('mesh.html', kSmall, async (page) => {
-    await page.evaluate(`document.getElementById('view').focus()`);
-    const first = await picture(page);
-    for (const key of ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']) {
-      await page.press(key);
-      assert.notEqual((await picture(page)).sum, first.sum, key);
-      await page.press('0');
-      assert.equal((await picture(page)).sum, first.sum, `${key} and reset`);
-    }
-    for (const [key, id] of [['w', 'wireframe'], ['s', 'smooth'], ['e', 'error'], ['p', 'slabs'], ['c', 'compare']]) {
-      const was = await pressed(page, id);
-      await page.press(key);
-      assert.notEqual(await pressed(page, id), was, key);
-    }
-    const chosen = () => page.evaluate(`document.querySelector('[name=surface]:checked').value`);
-    await page.press('b');
-    assert.equal(await chosen(), '0');
-    await page.press('b');
-    assert.equal(await chosen(), '1');
-    await page.press('4');
-    assert.equal(await chosen(), '3');
-  }));
-
-  test('says that a stand-in is one', () => withPage('large.html', kSmall, async (page) => {
-    const { page: { surfaces, notes, check }, triangles } = json('large.json');
-    assert.deepEqual(surfaces.map(({ name }) => name).slice(0, 2), ['full', 'stand-in']);
-    assert.ok(surfaces[1].triangles <= 3000 && check.triangles === triangles && triangles > 3000);
-    assert.match(notes[0], /stand-in/);
-    assert.ok((await visibleText(page, 'notes')).includes(notes[0]));
-    assert.match(await visibleText(page, 'drawn'), /^Stand-in: /);
-  }));
-
-  test('says that an empty mesh is empty', () => withPage('empty.html', kSmall, async (page) => {
-    assert.match(await visibleText(page, 'view-message'), /no triangles/);
-  }));
-
-  test('says that a browser cannot draw it', async () => {
-    const blind = await Browser.start(['--disable-3d-apis']);
-    try {
-      const page = await blind.open(address('mesh.html'), kSmall);
-      assert.match(await visibleText(page, 'view-message'), /no WebGL/);
-      await expectNumbersOf(page, json('mesh.json'), 150);
-    } finally {
-      await blind.close();
-    }
-  });
 });
 
 describe('looks', () => {
@@ -296,8 +149,41 @@ describe('looks', () => {
     });
   }
 
+  for (const name of ['mesh.html', 'mesh.ply.html', 'empty.html', 'large.html', 'levels.html']) {
+    for (const [device, screen] of [['desktop', kDesktop], ['phone', kPhone]]) {
+      for (const dark of [false, true]) {
+        test(`${name} on a ${device}, ${dark ? 'dark' : 'light'}, violates no rule of accessibility`, () =>
+          withPage(name, { ...screen, dark }, async (page) => {
+            await audit(page, packages);
+            await openAll(page);
+            await page.evaluate(`['error', 'compare', 'section', 'measure'].map((id) => document.getElementById(id))
+              .filter((button) => button.offsetHeight > 0).forEach((button) => button.click())`);
+            await settled(page);
+            await audit(page, packages);
+          }));
+      }
+    }
+  }
+
+  for (const [device, screen] of [['desktop', { width: 1280, height: 800 }], ['phone', kPhone]]) {
+    test(`mesh and controls are on the first screen of a ${device}`, () => withPage('mesh.html', screen, expectOnFirstScreen));
+  }
+
+  test('the keys that are named are those of the controls', async () => {
+    for (const name of ['mesh.html', 'mesh.ply.html', 'levels.html']) await withPage(name, kDesktop, expectKeysOfControls);
+  });
+
+  test('the histogram comes first, and the sweep is folded away', () => withPage('mesh.html', kDesktop, async (page) => {
+    const shown = await page.evaluate(`[...document.querySelectorAll('.plots .card')].map((e) => [e.id, e.checkVisibility()])`);
+    assert.deepEqual(shown, [['plot-error', true], ['plot-triangles', false], ['plot-memory', false]]);
+    await page.click('#experts > summary');
+    await settled(page);
+    const wide = await page.evaluate(`[...document.querySelectorAll('#sweep-plots .u-over')].map((e) => e.clientWidth > 100)`);
+    assert.deepEqual(wide, [true, true]);
+  }));
+
   test('every control has a name and is reached by Tab', () => withPage('mesh.html', kDesktop, async (page) => {
-    const kName = `((e) => e.getAttribute('aria-label') || e.innerText || e.labels?.[0]?.innerText || '')`;
+    const kName = `((e) => e.getAttribute('aria-label') || e.textContent || e.labels?.[0]?.textContent || '')`;
     const unnamed = await page.evaluate(`[...document.querySelectorAll('button, input, canvas[tabindex], summary')]
       .filter((e) => !${kName}(e).trim()).map((e) => e.id)`);
     assert.deepEqual(unnamed, []);
@@ -314,8 +200,8 @@ describe('looks', () => {
       assert.ok(outline, `${id} shows that it has the focus`);
       reached.push(id);
     }
-    assert.deepEqual(reached, ['a', 'theme', 'view', 'surface-choice-1', 'wireframe', 'smooth', 'error', 'slabs', 'compare', 'reset',
-      'summary', 'summary', 'summary']);
+    assert.deepEqual(reached, ['a', 'theme', 'surface-choice-1', 'compare', 'error', 'wireframe', 'smooth', 'section', 'measure',
+      'views', 'reset', 'picture', 'full', 'view', 'summary', 'summary']);
   }));
 
   test('screenshots', async () => {
@@ -325,7 +211,7 @@ describe('looks', () => {
           assert.equal(await pressed(page, 'theme'), String(dark));
           const name = (more) => join(folder, `${device}-${dark ? 'dark' : 'light'}${more}.png`);
           await page.screenshot(name(''));
-          for (const id of ['error', 'wireframe', 'slabs']) await page.click(`#${id}`);
+          for (const id of ['error', 'wireframe', 'section', 'compare']) await page.click(`#${id}`);
           await settled(page);
           await page.screenshot(name('-error'), false);
         });

@@ -1,5 +1,7 @@
 // Functions that the tests of several pages share: loading, comparing every number with the report, looking at pictures.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { numberIn } from './numbers.mjs';
 
 export const kDesktop = { width: 1320, height: 900 };
@@ -21,17 +23,21 @@ export async function visit(browser, address, screen, act) {
 const valueAt = (report, key) => key.split('.').reduce((value, part) => value?.[part], report);
 
 function expected(report, key) {
-  const [above, below] = key.split(' / ').map((part) => valueAt(report, part));
-  return below === undefined ? above : above / below;
+  const [first, sign, second] = key.split(' ');
+  const [a, b] = [first, second ?? ''].map((part) => valueAt(report, part));
+  return { undefined: () => a, '/': () => a / b, '-': () => a - b }[sign]();
 }
 
 // All elements that show a value of the report: what they say exactly, and what is to be read.
 const kShown = `[...document.querySelectorAll('[data-key]')].map((shown) =>
   [shown.dataset.key, shown.dataset.value, shown.textContent, shown.dataset.format])`;
 
+// Opens what is folded.
+export const openAll = (page) => page.evaluate(`document.querySelectorAll('details').forEach((details) => { details.open = true; });
+  new Promise((resolve) => setTimeout(resolve, 50))`);
+
 export async function expectNumbersOf(page, report, atLeast) {
-  await page.evaluate(`document.querySelectorAll('details').forEach((details) => { details.open = true; });
-    new Promise((resolve) => setTimeout(resolve, 50))`);
+  await openAll(page);
   const shown = await page.evaluate(kShown);
   assert.ok(shown.length >= atLeast, `${shown.length} values`);
   for (const [key, exact, text, format] of shown) {
@@ -47,13 +53,14 @@ export async function expectNumbersOf(page, report, atLeast) {
   return (prefix) => [...shownKeys].filter((key) => key.startsWith(prefix)).length;
 }
 
-// Every number that is to be read on the page is one of the report's: digits outside of such elements are names.
+// Every number that is to be read on the page is one of the report's: digits outside of such elements are names. The
+// state of the view is none of them.
 export const kOtherDigits = `(() => {
   const walker = document.createTreeWalker(document.querySelector('main'), NodeFilter.SHOW_TEXT);
   const found = [];
   while (walker.nextNode()) {
     const { parentElement: parent, textContent: text } = walker.currentNode;
-    if (/[0-9]/.test(text) && !parent.closest('[data-key], kbd, script, .u-legend')) found.push(text.trim());
+    if (/[0-9]/.test(text) && !parent.closest('[data-key], kbd, script, output, .marks, .keys, .u-legend')) found.push(text.trim());
   }
   return found;
 })()`;
@@ -81,8 +88,80 @@ export const picture = (page) => page.evaluate(`window.isoweave.ready.then(({ vi
   return { sum, covered: covered / words.length, colours: new Set(words).size };
 })`);
 
+// The part of the canvas that what is drawn reaches over: in width and in height.
+export const reach = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
+  view.drawNow();
+  const copy = document.createElement('canvas');
+  const { width, height } = view.canvas;
+  [copy.width, copy.height] = [width, height];
+  const context = copy.getContext('2d');
+  context.drawImage(view.canvas, 0, 0);
+  const words = new Uint32Array(context.getImageData(0, 0, width, height).data.buffer);
+  const [x, y] = [[Infinity, -Infinity], [Infinity, -Infinity]];
+  for (let at = 0; at < words.length; ++at) {
+    if (words[at] === 0) continue;
+    for (const [range, place] of [[x, at % width], [y, Math.floor(at / width)]]) {
+      range[0] = Math.min(range[0], place);
+      range[1] = Math.max(range[1], place + 1);
+    }
+  }
+  return [(x[1] - x[0]) / width, (y[1] - y[0]) / height];
+})`);
+
+// Moves a slider.
+export const slide = (page, id, value) => page.evaluate(`(() => {
+  const range = document.getElementById('${id}');
+  range.value = ${value};
+  range.dispatchEvent(new Event('input'));
+})()`);
+
+// Takes a choice of a list.
+export const choose = (page, id, value) => page.evaluate(`(() => {
+  const choice = document.getElementById('${id}');
+  choice.value = '${value}';
+  choice.dispatchEvent(new Event('change'));
+})()`);
+
+// Nothing on the page is a violation of a rule of axe-core, which lies in this folder of packages.
+export async function audit(page, packages) {
+  await page.evaluate(readFileSync(join(packages, 'axe-core/axe.min.js'), 'utf8'));
+  const found = await page.evaluate(`axe.run(document).then(({ violations }) => violations.map(({ id, nodes }) =>
+    id + ': ' + nodes.map(({ html, failureSummary }) => html.slice(0, 120) + ' ' + failureSummary).join(' | ')))`);
+  assert.deepEqual(found, []);
+}
+
+// The keys that the page names are those of the controls that are to be seen, and tooltips end with them.
+export async function expectKeysOfControls(page) {
+  const [said, there, bare] = await page.evaluate(`(() => {
+    const seen = [...document.querySelectorAll('[aria-keyshortcuts]')].filter((e) => (e.labels?.[0] ?? e).offsetHeight > 0);
+    const key = (e) => e.getAttribute('aria-keyshortcuts');
+    return [[...document.querySelectorAll('#keys kbd')].map((e) => e.textContent).slice(6), seen.map(key),
+      seen.filter((e) => e.localName === 'button' && !e.title.endsWith('(' + key(e) + ')')).map((e) => e.id)];
+  })()`);
+  assert.deepEqual(said, there);
+  assert.deepEqual(bare, []);
+}
+
+// Frame and controls lie on the first screen, and the page goes on below.
+export async function expectOnFirstScreen(page) {
+  const [below, height, inner] = await page.evaluate(`[[...document.querySelectorAll('.stage, .frame, .controls > *, .controls button')]
+    .filter((e) => e.offsetHeight > 0 && e.getBoundingClientRect().bottom > innerHeight).map((e) => e.outerHTML.slice(0, 60)),
+    document.documentElement.scrollHeight, innerHeight]`);
+  assert.deepEqual(below, []);
+  assert.ok(height > inner);
+}
+
 export const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
 export const settled = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
+
+// Waits for what comes in its own time.
+export async function until(page, condition) {
+  for (let tries = 0; tries < 200; ++tries) {
+    if (await page.evaluate(condition)) return;
+    await settled(page);
+  }
+  assert.fail(`never: ${condition}`);
+}
 
 // The ratio that the Web Content Accessibility Guidelines ask for.
 export const kContrasts = `(() => {
@@ -102,6 +181,7 @@ export const kContrasts = `(() => {
 
 // Nothing sticks out of the screen and of its card.
 export async function expectFits(page, width, name) {
+  await openAll(page);
   assert.equal(await page.evaluate('document.documentElement.scrollWidth'), width, name);
   const wide = await page.evaluate(`[...document.querySelectorAll('main *, header *')].filter((e) =>
     !e.closest('.scroll, .u-wrap') && e.getBoundingClientRect().right > ${width} + 0.5).map((e) => e.outerHTML.slice(0, 80))`);

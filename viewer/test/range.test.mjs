@@ -1,5 +1,5 @@
 // Loads the page of info --isos:
-//   node range.test.mjs ISOWEAVE FOLDER
+//   node range.test.mjs ISOWEAVE FOLDER PACKAGES
 // Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -10,10 +10,10 @@ import { pathToFileURL } from 'node:url';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
-  expectFits, expectNumbersOf, kContrasts, kDesktop, kPhone, kSmall, pressed, settled, visibleText, visit,
+  audit, expectFits, expectNumbersOf, kContrasts, kDesktop, kPhone, kSmall, openAll, pressed, settled, visibleText, visit,
 } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
   console.log('skipped: no Chromium in PATH and no CHROMIUM');
   process.exit(77);
@@ -119,6 +119,18 @@ describe('the page of info --isos', () => {
         assert.equal(await pressed(page, 'theme'), String(!dark));
         await page.evaluate('localStorage.clear()');
       }));
+  }
+
+  for (const name of ['range.html', 'none.html']) {
+    for (const [device, screen] of [['desktop', kDesktop], ['phone', kPhone]]) {
+      for (const dark of [false, true]) {
+        test(`${name} violates no rule of accessibility: ${device}, ${dark ? 'dark' : 'light'}`, () =>
+          withPage(name, { ...screen, dark }, async (page) => {
+            await openAll(page);
+            await audit(page, packages);
+          }));
+      }
+    }
   }
 
   for (const width of [390, 320, 768, 1320]) {

@@ -1,6 +1,6 @@
 // Loads the page that isoweave serves while it runs, sees the surface grow, and compares what the page says in the end
 // with the report:
-//   node watch.test.mjs ISOWEAVE FOLDER
+//   node watch.test.mjs ISOWEAVE FOLDER PACKAGES
 // Screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -10,8 +10,9 @@ import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { Browser, findChromium } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
+import { audit, expectKeysOfControls, expectOnFirstScreen, openAll, reach, settled } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
+const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
 if (findChromium() === undefined) {
   console.log('skipped: no Chromium in PATH and no CHROMIUM');
   process.exit(77);
@@ -204,6 +205,7 @@ describe('a sweep', () => {
 describe('the view', () => {
   test('changes with its buttons and keys, and back', () => withWatched(kSlow, kSmall, async (page) => {
     await until(page, kComplete);
+    await settled(page); // the text of the end makes the frame smaller
     const first = await picture(page);
     for (const [id, key] of [['show-final', 'f'], ['edges', 'w'], ['front', 'p']]) {
       await page.click(`#${id}`);
@@ -245,7 +247,7 @@ describe('looks', () => {
       assert.ok(name.trim() && outline, `${id} has a name and shows that it has the focus`);
       reached.push(id);
     }
-    assert.deepEqual(reached, ['a', 'theme', 'view', 'show-final', 'show-undecided', 'edges', 'front', 'reset', 'summary', 'summary']);
+    assert.deepEqual(reached, ['a', 'theme', 'show-final', 'show-undecided', 'front', 'edges', 'views', 'reset', 'view', 'summary', 'summary']);
   }));
 
   test('numbers of the plots can be read', () => withWatched(kSlow, kDesktop, async (page, run) => {
@@ -258,6 +260,22 @@ describe('looks', () => {
     assert.deepEqual(rows.map((row) => row.map(numberIn)), run.report().sweep.map((slab) =>
       [slab.layer, slab.final_triangles, slab.live_triangles, slab.undecided_triangles]));
   }));
+
+  for (const [device, screen] of [['desktop', { width: 1280, height: 800 }], ['phone', kPhone]]) {
+    for (const dark of [false, true]) {
+      test(`on a ${device}, ${dark ? 'dark' : 'light'}, it violates no rule of accessibility and comes first`, () =>
+        withWatched(kSlow, { ...screen, dark }, async (page) => {
+          await until(page, kComplete);
+          await settled(page);
+          await expectOnFirstScreen(page);
+          await expectKeysOfControls(page);
+          const [width, height] = await reach(page);
+          assert.ok(width <= 0.92 && height <= 0.92 && Math.max(width, height) > 0.86, `${width} ${height}`);
+          await openAll(page);
+          await audit(page, packages);
+        }));
+    }
+  }
 
   for (const width of [320, 390, 768, 1320]) {
     test(`nothing sticks out of ${width} pixels`, () => withWatched(kSlow, { ...kPhone, width }, async (page) => {

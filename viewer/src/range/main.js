@@ -3,10 +3,10 @@ import uPlot from 'uplot';
 import { byId, toggle } from '../buttons.js';
 import { report, valueAt } from '../data.js';
 import { element, shown } from '../element.js';
-import { formatted, short } from '../format.js';
+import { fileName, formatted, short } from '../format.js';
 import { axis, faint, logAxis, nameAxis, positive, series } from '../plot_style.js';
 import { numberTable } from '../plots.js';
-import { fileName, listCard, tile } from '../tables.js';
+import { listCard, tile } from '../tables.js';
 import { startTheme } from '../theme.js';
 
 const kHeight = 320;
@@ -35,7 +35,7 @@ function suggested() {
 function drawSuggested(plot) {
   const { ctx: context, bbox } = plot;
   context.save();
-  context.strokeStyle = faint('plot-error', 'bb');
+  context.strokeStyle = faint('muted', 'bb');
   context.lineWidth = devicePixelRatio;
   context.setLineDash([4 * devicePixelRatio, 4 * devicePixelRatio]);
   for (const value of suggested()) {
@@ -108,7 +108,7 @@ function startChart() {
   });
   startTheme(() => chart.draw());
   startChoice(chart);
-  byId('table').append(numberTable(['Iso-value', 'Triangles, about'], isos.length,
+  byId('table').append(numberTable('triangles by iso-value', ['Iso-value', 'Triangles, about'], isos.length,
     (n) => [formatted(isos[n], 'number'), formatted(triangles[n], 'count')]));
   return chart;
 }

@@ -1,10 +1,12 @@
 // Shows a sweep while it runs: asks isoweave what has come, until the run is complete or nobody answers.
-import { addOrbitKeys, byId, pressedKey, toggle } from '../buttons.js';
+import { byId, startKeys, toggle } from '../buttons.js';
 import { element } from '../element.js';
-import { formatted } from '../format.js';
+import { fileName, formatted } from '../format.js';
+import { startMarks } from '../marks.js';
 import { startTheme } from '../theme.js';
 import { ask, run } from './news.js';
 import { drawPlots, growPlots, plotData, startPlots } from './plots.js';
+import { addViews } from '../views.js';
 import { WatchView } from './view.js';
 
 const kPause = 150; // ms between two questions
@@ -19,10 +21,10 @@ const sleep = (ms) => new Promise((resolve) => { setTimeout(resolve, ms); });
 
 function fillHeading() {
   const [x, y, z] = run.dims.map(count);
-  byId('title').textContent = run.input;
-  byId('subtitle').textContent = `${x} × ${y} × ${z} samples at ${formatted(run.iso, 'number')}, into ${run.output}`;
+  byId('title').textContent = fileName(run.input);
+  byId('subtitle').textContent = `${x} × ${y} × ${z} samples at ${formatted(run.iso, 'number')}, into ${fileName(run.output)}`;
   byId('version').textContent = `isoweave ${run.version}`;
-  document.title = `${run.input} – isoweave`;
+  document.title = `${fileName(run.input)} – isoweave`;
 }
 
 // A number for people, and exactly.
@@ -65,7 +67,7 @@ function sayState(news) {
   }
 }
 
-const width = (cell) => formatted(cell, 'length', run.unit);
+const width = (cell) => formatted(cell, 'length', run.unit || 'mm');
 
 // What is drawn is not all there is.
 function notesOf({ final, undecided, numbers }) {
@@ -149,13 +151,9 @@ function startView() {
   toggle('show-undecided', (on) => show(view.undecided, on));
   toggle('front', (on) => view.setFront(on));
   toggle('edges', (on) => view.setEdges(on));
-  byId('reset').addEventListener('click', () => view.reset());
-  addOrbitKeys(view, byId('view'));
-  const presses = { f: 'show-final', u: 'show-undecided', w: 'edges', p: 'front', 0: 'reset' };
-  document.addEventListener('keydown', (event) => {
-    const id = presses[pressedKey(event)];
-    if (id) byId(id).click();
-  });
+  addViews(view, run.space);
+  startMarks(view, byId('marks'), run.space, run.unit || 'mm');
+  startKeys(view);
 }
 
 function show(object, on) {

@@ -13,8 +13,8 @@ const all = () => ({ time: false, range: () => [0, layers] });
 const points = { show: false };
 
 // For those who cannot see the plot. As it was when it was opened: it would move away from under its reader.
-function numberTable(columns) {
-  const box = element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Numbers of the plot' });
+function numberTable(title, columns) {
+  const box = element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': `Numbers: ${title}` });
   const details = element('details', {}, element('summary', {}, 'Numbers'), box);
   details.addEventListener('toggle', () => {
     if (!details.open) return;
@@ -31,7 +31,7 @@ const dataOf = (columns) => columns.map((key) => (key === 'layer' || key === 'by
 function addPlot(id, title, say, options, columns) {
   const host = element('div', { class: 'plot', role: 'img', 'aria-label': say });
   document.getElementById('plots').append(element('article', { class: 'card', id }, element('h2', {}, title), host,
-    numberTable(columns)));
+    numberTable(title, columns)));
   plots.push({
     host, columns, make: () => new uPlot({ ...options(), width: host.clientWidth, height: kHeight }, dataOf(columns), host),
   });

@@ -2,7 +2,8 @@
 import {
   BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial, Vector3,
 } from 'three';
-import { firstDirection, Stage } from '../stage.js';
+import { firstDirection } from '../directions.js';
+import { Stage } from '../stage.js';
 import { run } from './news.js';
 import { Soup } from './soup.js';
 
@@ -57,19 +58,23 @@ export class WatchView extends Stage {
     return new LineSegments(new BufferGeometry().setFromPoints(points), this.boxLine);
   }
 
+  // All of the volume.
+  lookFrom(direction) {
+    const corners = [...this.cornersOf(0), ...this.cornersOf(run.slices.count - 1)];
+    this.lookAt(corners.flatMap((corner) => corner.sub(this.middle).toArray()), direction);
+  }
+
   reset() {
-    const radius = Math.max(...[...this.cornersOf(0), ...this.cornersOf(run.slices.count - 1)]
-      .map((corner) => corner.distanceTo(this.middle)));
-    this.lookAt(new Vector3(), radius || 1, firstDirection(run.space));
+    this.lookFrom(firstDirection(run.space));
   }
 
   // As the style has them, in which light and dark differ.
   setColours() {
     const style = getComputedStyle(document.documentElement);
     const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-    this.final.material.color.set(colour('final'));
-    this.undecided.material.color.set(colour('undecided'));
-    for (const material of [this.frontLine, this.frontFill, this.boxLine]) material.color.set(colour('front'));
+    this.final.material.color.set(colour('drawn-final'));
+    this.undecided.material.color.set(colour('drawn-undecided'));
+    for (const material of [this.frontLine, this.frontFill, this.boxLine]) material.color.set(colour('ink'));
     this.draw();
   }
 
