@@ -63,7 +63,7 @@ TEST(CliBlocks, TakeOverWhereSlabsDoNotFit) {
   const files::Folder folder;
   const std::string size = "2400x2400x12";
   ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", size, "--type", "uint16", "-o", "a.raw"}).code, 0);
-  const Words mesh{"mesh", "a.raw", "--raw", size + ":uint16", "--iso", "32768", "-o", "a.ply", "--threads", "1"};
+  const Words mesh{"mesh", "a.raw", "--raw", size + ":uint16", "--iso", "127.5", "-o", "a.ply", "--threads", "1"};
   expect_failed(run(folder.path(), with(mesh, {"--memory", "80M", "--blocks", "off"})), 5, "expected --memory");
   const Result blocks = run(folder.path(), with(mesh, {"--memory", "80M"}));
   EXPECT_EQ(blocks.code, 0) << blocks.err;
