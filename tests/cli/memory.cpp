@@ -163,6 +163,20 @@ TEST(CliMemory, TheCapThatIsNamedDoesForAnyVolumeAndOptions) {
   }
 }
 
+// The test takes 400 MB itself, and starts the program.
+TEST(CliMemory, ThePeakOfTheReportIsNotThatOfTheProcessThatStartedIt) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  const std::vector<char> large(400'000'000, 1);
+  ASSERT_EQ(large[large.size() / 2], 1);
+  ASSERT_EQ(run(folder.path(),
+                {"mesh", "generate:sphere:24x24x24", "-o", "out.ply", "--iso", "0", "--report", "out.json", "--quiet"})
+                .code,
+            0);
+  const auto report = nlohmann::json::parse(files::read_bytes(folder / "out.json"));
+  EXPECT_LT(report.at("memory").at("peak_bytes"), 200'000'000);
+}
+
 // Slices of 256 MB, of which none is held.
 TEST(CliMemory, SlicesThatAreLargerThanTheCapAreRefusedAndNotHeld) {
   if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
