@@ -13,8 +13,6 @@
 #include "meshes.hpp"
 #include "pipeline/checkpoint.hpp"
 #include "pvm_helpers.hpp"
-#include "saved_runs.hpp"
-#include "task_meshes.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/volume_index.hpp"
 #include "vti_helpers.hpp"
@@ -448,22 +446,6 @@ void put_indices(Seeds& seeds) {
   const std::size_t head = lengths + std::string("isoweave index 1").size() + index->identity().size();
   seeds.put("index", '\0' + content);
   seeds.put("index", '\1' + content.substr(head));
-}
-
-void put_state_bodies(Seeds& seeds) {
-  for (std::size_t run = 0; run < fuzz::kSavedRuns; ++run) {
-    const TempFolder folder;
-    seeds.put("state_body", static_cast<char>(run) + fuzz::save_run(run, folder / "").body);
-  }
-}
-
-void put_task_bodies(Seeds& seeds) {
-  for (std::size_t number = 0; number < fuzz::kTaskMeshes; ++number) {
-    const TempFolder folder;
-    const fuzz::TaskFiles files = fuzz::first_stage(number, folder / "");
-    seeds.put("task_body", static_cast<char>(number) + files.rest[0].substr(files.beginning));
-    seeds.put("task_body", static_cast<char>(number + fuzz::kTaskMeshes) + files.final[0].substr(files.beginning));
-  }
 }
 
 }  // namespace

@@ -31,6 +31,10 @@ class Seeds {
 // Zarr 2 and 3, OME-Zarr, N5.
 void put_arrays(Seeds& seeds);
 
+// States of runs, and the files of tasks, behind their beginnings.
+void put_state_bodies(Seeds& seeds);
+void put_task_bodies(Seeds& seeds);
+
 // Meshes of other programs in VTP, legacy VTK, 3MF and GLB; volumes in VTR and NPZ.
 void put_packages(Seeds& seeds);
 
