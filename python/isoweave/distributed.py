@@ -90,11 +90,9 @@ def _work_on_all(client: Any, folder: str, threads: int) -> None:
 def _plan(options: Sequence[str], folder: str, scratch: str) -> None:
     """Plans the mesh in a folder, or compares the plan that is there."""
     plan = pathlib.Path(folder, "plan.json")
-    if not plan.exists():
-        _run("plan", *options, f"--output={folder}", "--quiet")
-        return
-    _run("plan", *options, f"--output={scratch}/plan", "--quiet")
-    if pathlib.Path(scratch, "plan", "plan.json").read_bytes() != plan.read_bytes():
+    made = os.path.join(scratch, "plan") if plan.exists() else folder
+    _run("plan", *options, f"--output={made}", "--quiet")
+    if pathlib.Path(made, "plan.json").read_bytes() != plan.read_bytes():
         raise c.BadInput(f"{plan}: expected the plan of the same mesh, found that of another")
 
 

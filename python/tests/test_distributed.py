@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import signal
@@ -33,7 +34,7 @@ def client() -> Iterator[Any]:
 def noise(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A volume with a surface everywhere, in a file: a task takes some tenths of a second."""
     path = tmp_path_factory.mktemp("noise") / "noise.npy"
-    np.save(path, np.random.default_rng(7).random((84, 80, 76), dtype=np.float32))
+    np.save(path, np.random.default_rng(7).random((60, 56, 52), dtype=np.float32))
     return str(path)
 
 
@@ -46,16 +47,16 @@ def wait_for(found: Callable[[], Any], seconds: float = 60) -> Any:
     raise AssertionError("waited in vain")
 
 
-def programs(folder: pathlib.Path) -> list[Any]:
-    """The processes that work on tasks in a folder, or in one below it."""
-    found = []
+def programs(folder: pathlib.Path) -> dict[Any, str]:
+    """The processes that work on tasks in a folder, or in one below it, and the numbers of their tasks."""
+    found = {}
     for process in psutil.process_iter():
         try:
             words = process.cmdline()
         except psutil.Error:
             continue
-        if words[1:2] == ["work"] and words[2].startswith(str(folder)):
-            found.append(process)
+        if len(words) > 3 and words[1] == "work" and words[2].startswith(str(folder)):
+            found[process] = words[3].removeprefix("--task=")
     return found
 
 
@@ -90,7 +91,7 @@ class Beside:
 def test_the_mesh_is_that_of_one_process(client: Any, folder: pathlib.Path, volume: np.ndarray, wanted: str) -> None:
     path = folder / "v.npy"
     np.save(path, volume)
-    report = cluster_mesh(path, 100, blocks=16, spacing=SPACING, origin=ORIGIN, out=folder / "m.ply")
+    report = cluster_mesh(path, 100, blocks=30, spacing=SPACING, origin=ORIGIN, out=folder / "m.ply")
     assert isinstance(report, isoweave.Report) and report.digest == wanted == isoweave.check(folder / "m.ply").digest
     assert sorted(os.listdir(folder)) == ["m.ply", "v.npy"]
 
@@ -121,47 +122,53 @@ def test_a_worker_that_is_killed(client: Any, folder: pathlib.Path, noise: str) 
     tasks = folder / "tasks"
 
     def suspended() -> Any:
-        """A program that holds still while it has the lock of its task."""
-        for program in programs(tasks):
-            program.suspend()
-            task = program.cmdline()[3].removeprefix("--task=")
-            if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
-                return program
-            program.resume()
+        """A program that holds still while it has the lock of its task, and the task."""
+        for program, task in programs(tasks).items():
+            with contextlib.suppress(psutil.NoSuchProcess):
+                program.suspend()
+                if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
+                    return program, task
+                program.resume()
         return None
 
     def kill() -> None:
-        program = wait_for(suspended)
-        task = program.cmdline()[3]
-        assert program.ppid() in workers.values()
-        os.kill(program.ppid(), signal.SIGKILL)
-        again = wait_for(lambda: [each for each in programs(tasks) if each != program and task in each.cmdline()])
-        time.sleep(0.5)
-        assert again[0].is_running() and not (tasks / f"{task.removeprefix('--task=')}.rest").exists()
-        program.kill()
+        program, task = wait_for(suspended)
+        try:
+            assert program.ppid() in workers.values()
+            os.kill(program.ppid(), signal.SIGKILL)
+            again = wait_for(lambda: [each for each, other in programs(tasks).items() if each != program and other == task])
+            time.sleep(0.5)
+            assert again[0].is_running() and not (tasks / f"{task}.rest").exists()
+        finally:
+            program.kill()
 
     with Beside(kill):
-        report = cluster_mesh(noise, 0.5, blocks=48, client=client, folder=tasks, out=folder / "m.ply")
+        report = cluster_mesh(noise, 0.5, blocks=40, client=client, folder=tasks, out=folder / "m.ply")
     assert set(client.run(os.getpid).values()) != set(workers.values())
     assert report.digest == isoweave.mesh(noise, 0.5, out=folder / "alone.ply").digest
     assert (tasks / "plan.json").exists()  # a folder that was named stays
     with pytest.raises(isoweave.BadInput, match="plan.json: expected the plan of the same mesh"):
-        cluster_mesh(noise, 0.4, blocks=48, folder=tasks, out=folder / "m.ply")
+        cluster_mesh(noise, 0.4, blocks=40, folder=tasks, out=folder / "m.ply")
     # A call that goes on has nothing left to do but to collect.
     before = {path: path.stat().st_mtime_ns for path in tasks.glob("*.rest")}
-    again = cluster_mesh(noise, 0.5, blocks=48, folder=tasks, out=folder / "again.ply")
+    again = cluster_mesh(noise, 0.5, blocks=40, folder=tasks, out=folder / "again.ply")
     assert again.digest == report.digest and before == {path: path.stat().st_mtime_ns for path in tasks.glob("*.rest")}
 
 
 def test_control_c_stops_the_workers_and_leaves_no_file(client: Any, folder: pathlib.Path, noise: str) -> None:
     def interrupt() -> None:
-        wait_for(lambda: programs(folder))
+        wait_for(lambda: list(folder.glob("*/0.lock")))
         os.kill(os.getpid(), signal.SIGINT)
 
     with Beside(interrupt), pytest.raises(KeyboardInterrupt):
-        cluster_mesh(noise, 0.5, blocks=48, client=client, out=folder / "m.ply")
+        cluster_mesh(noise, 0.5, client=client, out=folder / "m.ply")
     assert list(folder.iterdir()) == []
-    wait_for(lambda: not programs(folder), 10)
+    wait_for(lambda: not programs(folder))
+    # In a folder that stays: the only task was stopped, as it is not done, and nothing of it is left.
+    with Beside(interrupt), pytest.raises(KeyboardInterrupt):
+        cluster_mesh(noise, 0.5, client=client, folder=folder / "tasks", out=folder / "m.ply")
+    wait_for(lambda: not programs(folder))
+    assert sorted(os.listdir(folder / "tasks")) == ["Makefile", "plan.json", "slurm.sh"]
     assert client.submit(os.getpid).result() in client.run(os.getpid).values()  # the workers are free
 
 
