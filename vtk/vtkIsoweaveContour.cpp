@@ -201,5 +201,8 @@ int vtkIsoweaveContour::RequestData(vtkInformation*, vtkInformationVector** inpu
   } catch (const std::exception& error) {
     vtkErrorMacro(<< error.what());
     return 0;
+  } catch (...) {  // from an observer of the program
+    vtkErrorMacro("expected an observer without exceptions, found one of a kind of its own");
+    return 0;
   }
 }

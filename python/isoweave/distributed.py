@@ -9,18 +9,17 @@ import json
 import os
 import pathlib
 import shutil
-import subprocess
 import tempfile
 from contextlib import contextmanager
 from time import sleep
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Sequence, Union, overload
+from typing import TYPE_CHECKING, Any, Iterator, Sequence, Union, overload
 
 import numpy as np
 
 from . import _library as c
-from .__main__ import PROGRAM
 from ._options import Length, length
 from ._outputs import level_reports
+from ._program import run
 from ._report import Report
 from ._volume import Roi, ranges_of
 
@@ -37,28 +36,6 @@ if TYPE_CHECKING:
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-def _run(*arguments: str, wanted: Callable[[], bool] = lambda: True) -> bytes:
-    """Runs the command line, and returns its output. An exception such as Ctrl-C ends it, and so does not being wanted."""
-    with subprocess.Popen([str(PROGRAM), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        try:
-            while True:
-                try:
-                    output, line = process.communicate(timeout=0.2)
-                    break
-                except subprocess.TimeoutExpired:
-                    if not wanted():
-                        raise c.Stopped(f"isoweave {arguments[0]}: stopped") from None
-        except BaseException:
-            process.terminate()  # by the signal upon which the program leaves no file
-            process.communicate()
-            raise
-    if process.returncode < 0:
-        raise RuntimeError(f"isoweave {arguments[0]}: ended by signal {-process.returncode}")
-    if process.returncode > 0:
-        raise c.error_of(process.returncode, line.decode(errors="replace").strip().removeprefix("isoweave: "))
-    return output
-
-
 def _work_on(task: int, folder: str, threads: int) -> None:
     """Works on a task, in a worker of Dask, for as long as the client wants it."""
     worker = distributed.get_worker()
@@ -69,13 +46,13 @@ def _work_on(task: int, folder: str, threads: int) -> None:
         return known is not None and known.state == "executing"
 
     # The program of a worker that was killed may still be at work on this task.
-    _run("work", folder, f"--task={task}", "--wait", f"--threads={threads or 'all'}", "--quiet", wanted=wanted)
+    run("work", folder, f"--task={task}", "--wait", f"--threads={threads or 'all'}", "--quiet", wanted=wanted)
 
 
 def _work_on_all(client: Any, folder: str, threads: int) -> None:
     """Works on all tasks. The ones of a stage take what the ones of the stage before have left."""
     first = 0
-    for stage in json.loads(_run("status", folder, "--json"))["stages"]:
+    for stage in json.loads(run("status", folder, "--json"))["stages"]:
         end = first + stage["tasks"]
         tasks = client.map(_work_on, range(first, end), folder=folder, threads=threads, pure=False)
         try:
@@ -91,14 +68,14 @@ def _plan(options: Sequence[str], folder: str, scratch: str) -> None:
     """Plans the mesh in a folder, or compares the plan that is there."""
     plan = pathlib.Path(folder, "plan.json")
     made = os.path.join(scratch, "plan") if plan.exists() else folder
-    _run("plan", *options, f"--output={made}", "--quiet")
+    run("plan", *options, f"--output={made}", "--quiet")
     if pathlib.Path(made, "plan.json").read_bytes() != plan.read_bytes():
         raise c.BadInput(f"{plan}: expected the plan of the same mesh, found that of another")
 
 
 def _collect(folder: str, out: str, compress: bool, scratch: str) -> Report:
     report = pathlib.Path(scratch, "report.json")
-    _run("collect", folder, f"--output={out}", f"--report={report}", "--quiet", *["--compress"] * compress)
+    run("collect", folder, f"--output={out}", f"--report={report}", "--quiet", *["--compress"] * compress)
     return Report(json.loads(report.read_bytes()))
 
 
@@ -157,8 +134,7 @@ def mesh(
 ) -> Any:
     """The mesh of :func:`isoweave.mesh`, bit for bit, by the workers of a Dask cluster.
 
-    Workers need this package, and see the volume and the folder under the same paths as the client. A task is done
-    again where its worker is killed.
+    Workers need this package, and see the volume and the folder under the same paths as the client.
 
     Args:
         volume: a path. Streams that are packed as a whole, such as ``.nii.gz``, are refused.
@@ -195,6 +171,9 @@ def mesh(
     path = os.path.abspath(out)
     with tempfile.TemporaryDirectory() as scratch, _task_folder(folder, path) as tasks:
         _plan(options, tasks, scratch)
-        _work_on_all(client, tasks, threads)
-        reports = level_reports(_collect(tasks, path, compress, scratch), len(lods))
-    return reports if lods else reports[0]
+        try:
+            report = _collect(tasks, path, compress, scratch)  # a wrong `out` is refused before any task is done
+        except c.BadInput:
+            _work_on_all(client, tasks, threads)
+            report = _collect(tasks, path, compress, scratch)
+    return level_reports(report, len(lods)) if lods else report

@@ -188,6 +188,9 @@ def test_errors(client: Any, folder: pathlib.Path, noise: str) -> None:
             cluster_mesh(**{"volume": noise, "level": 0.5, "out": out, "blocks": 24, "client": client, **wrong})
         assert "\n" not in str(raised.value) and not str(raised.value).startswith("isoweave: ")
     assert list(folder.iterdir()) == []
+    with pytest.raises(isoweave.CannotWrite, match="m.xyz"):
+        cluster_mesh(noise, 0.5, out=folder / "m.xyz", blocks=40, client=client, folder=folder / "tasks")
+    assert sorted(os.listdir(folder / "tasks")) == ["Makefile", "plan.json", "slurm.sh"]  # said before the work
 
 
 def test_errors_of_workers_come_out_as_they_were(client: Any, folder: pathlib.Path, volume: np.ndarray) -> None:
