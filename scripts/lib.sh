@@ -51,7 +51,7 @@ test_packages=(ccache libgtest-dev libgdcm-dev clang clang-tidy clang-format lib
   clang-19 libc++-19-dev libc++abi-19-dev g++-aarch64-linux-gnu qemu-user
   python3-numpy python3-nibabel python3-pydicom python3-tifffile python3-pil python3-vtk9 teem-apps
   python3-h5py python3-numcodecs python3-zarr draco chromium abigail-tools python3-venv
-  paraview libopenmpi3 libpython3.11 xvfb lintian man-db mricron-data)
+  paraview libvtk9-dev libopenmpi3 libpython3.11 xvfb lintian man-db mricron-data)
 
 # What the page for the browser is built with. Where there is a node that is not Debian's, Debian's npm conflicts with it.
 viewer_packages=()

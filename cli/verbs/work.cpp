@@ -32,12 +32,22 @@ constexpr std::chrono::milliseconds kPause{200};
 
 struct WorkArguments {
   std::string folder, task, threads = "all";
-  bool quiet = false;
+  bool quiet = false, wait = false;
 };
 
+// Works on one task; on one that another process works on, once that process has ended.
+TaskEnd work_or_wait(const TaskMesh& mesh, std::uint64_t task, const RunControl& control) {
+  while (true) {
+    const TaskEnd end = do_task(mesh, task, control);
+    if (end != TaskEnd::kElsewhere) return end;
+    if (control.stop->load()) throw Interrupted("interrupted while another process works on the task");
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 // Works on one task, and says what stands in its way.
-void work_on(const PlannedMesh& plan, const TaskList& tasks, std::uint64_t task, const RunControl& control) {
-  switch (do_task(plan.mesh, task, control)) {
+void work_on(const PlannedMesh& plan, const TaskList& tasks, std::uint64_t task, const RunControl& control, bool wait) {
+  switch (wait ? work_or_wait(plan.mesh, task, control) : do_task(plan.mesh, task, control)) {
     case TaskEnd::kTooEarly:
       throw BadInput(fmt::format("{}: task {} takes what stage {} leaves: expected all tasks of that stage to be done",
                                  plan.mesh.folder, task, tasks.stage_of(task) - 1));
@@ -95,7 +105,7 @@ void run_work(const WorkArguments& arguments) {
   if (!task || *task >= tasks.count()) {
     wrong_value("--task", fmt::format("a number below {}", tasks.count()), arguments.task);
   }
-  work_on(plan, tasks, *task, control);
+  work_on(plan, tasks, *task, control, arguments.wait);
 }
 
 void run_status(const std::string& folder, bool json) {
@@ -117,7 +127,9 @@ void add_work_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("work", "Work on the tasks of isoweave plan, beside other processes");
   const auto arguments = std::make_shared<WorkArguments>();
   verb->add_option("FOLDER", arguments->folder, "Folder of isoweave plan")->required();
-  verb->add_option("--task", arguments->task, "Work on this task alone, by its number from 0");
+  CLI::Option* task = verb->add_option("--task", arguments->task, "Work on this task alone, by its number from 0");
+  verb->add_flag("--wait", arguments->wait, "Where another process works on that task, wait until it ends")
+      ->needs(task);
   verb->add_option("--threads", arguments->threads, "Number of threads, or all")->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "Print errors alone");
   verb->footer(kExamples);

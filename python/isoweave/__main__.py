@@ -8,20 +8,20 @@ import subprocess
 import sys
 from typing import NoReturn, Sequence
 
-_PROGRAM = pathlib.Path(__file__).resolve().parent / "bin" / "isoweave"
+PROGRAM = pathlib.Path(__file__).resolve().parent / "bin" / "isoweave"
 
 
 def run_program(arguments: Sequence[str]) -> subprocess.CompletedProcess[bytes]:
     """Runs the command line, with its output kept."""
-    return subprocess.run([str(_PROGRAM), *arguments], capture_output=True, check=False)
+    return subprocess.run([str(PROGRAM), *arguments], capture_output=True, check=False)
 
 
 def main() -> NoReturn:
     """Becomes the command line."""
     try:
-        os.execv(_PROGRAM, ["isoweave", *sys.argv[1:]])
+        os.execv(PROGRAM, ["isoweave", *sys.argv[1:]])
     except OSError as error:
-        sys.exit(f"isoweave: {_PROGRAM}: {error.strerror}")
+        sys.exit(f"isoweave: {PROGRAM}: {error.strerror}")
 
 
 if __name__ == "__main__":

@@ -271,6 +271,11 @@ _ERRORS: dict[int, type[Exception]] = {
 }
 
 
+def error_of(status: int, message: str) -> Exception:
+    """The exception for a status of the C interface, or for an exit code of the command line, which are the same."""
+    return _ERRORS.get(status, RuntimeError)(message)
+
+
 def call(name: str, *arguments: Any) -> Any:
     """Makes a call, and returns its report as Python objects; None where it has none."""
     result = Result()
@@ -281,7 +286,7 @@ def call(name: str, *arguments: Any) -> Any:
     finally:
         library.iw_result_clear(ctypes.byref(result))
     if status != 0:
-        raise _ERRORS.get(status, RuntimeError)(message)
+        raise error_of(status, message)
     return json.loads(report)
 
 

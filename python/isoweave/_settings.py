@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Literal, TypedDict
+from typing import Any, Literal, TypedDict
 
 import numpy.typing as npt
 
@@ -60,3 +60,30 @@ class MeshSettings(StopSettings, OpenSettings, total=False):
     checkpoint: str | os.PathLike[str] | None
     resume: bool
     every: float | str
+
+
+class PlanSettings(TypedDict, total=False):
+    client: Any
+    folder: str | os.PathLike[str] | None
+    blocks: int
+    threads: int
+    error: Length | None
+    quality: Quality
+    specks: Literal["keep", "drop"]
+    inside: Literal["above", "below"]
+    closed: bool
+    smooth: int
+    extractor: Literal["cubes", "trilinear", "tetrahedra"]
+    normals: Literal[None, "gradient", "quadric"]
+    space: Literal[None, "lps", "ras", "index"]
+    spacing: Triple | float | None
+    origin: Triple | None
+    raw: str | None
+    dataset: str | None
+    series: str | None
+    channel: int | None
+    time: int | None
+    external: bool
+    roi: Roi | None
+    step: int | None
+    compress: bool

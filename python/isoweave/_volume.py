@@ -36,6 +36,17 @@ def _optional(number: int | None) -> Any:
 Roi = Iterable["slice | tuple[int | None, int | None]"]
 
 
+def ranges_of(roi: Roi) -> list[slice]:
+    """A region as three slices along z, y, x, without steps."""
+    try:
+        ranges = [part if isinstance(part, slice) else slice(*part) for part in roi]
+    except TypeError:
+        raise ValueError(f"roi: expected three ranges along z, y, x, found {roi!r}") from None
+    if len(ranges) != 3 or any(part.step not in (None, 1) for part in ranges):
+        raise ValueError(f"roi: expected three ranges along z, y, x, found {ranges}")
+    return ranges
+
+
 class Volume:
     """A regular grid of samples, read slice by slice by every run anew: never as a whole.
 
@@ -142,13 +153,7 @@ class Volume:
         (15, 10, 36)
         """
         first, end = [], []
-        try:
-            ranges = [part if isinstance(part, slice) else slice(*part) for part in roi]
-        except TypeError:
-            raise ValueError(f"roi: expected three ranges along z, y, x, found {roi!r}") from None
-        if len(ranges) != 3 or any(part.step not in (None, 1) for part in ranges):
-            raise ValueError(f"roi: expected three ranges along z, y, x, found {ranges}")
-        for part, size in zip(reversed(ranges), reversed(self.shape)):
+        for part, size in zip(reversed(ranges_of(roi)), reversed(self.shape)):
             begin, stop, _ = part.indices(size)
             first.append(begin)
             end.append(stop)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from typing_extensions import assert_type
 
 import isoweave
+import isoweave.distributed
 from isoweave import Mesh, Report
 
 
@@ -29,3 +30,6 @@ def calls(volume: npt.NDArray[Any], path: pathlib.Path, sink: isoweave.Sink) -> 
     assert_type(isoweave.labels(volume, out=lambda label, mesh: str(label)), "Mapping[int, str]")
     isoweave.mesh(volume, 100, extractor="cube")  # type: ignore[call-overload]
     isoweave.mesh(volume, 100, eror=1)  # type: ignore[call-overload]
+    assert_type(isoweave.distributed.mesh(path, 100, out="a.ply", blocks=128, error="0.2vox"), Report)
+    assert_type(isoweave.distributed.mesh(path, 100, out=path, lods=["0.1vox", 0.5]), "list[Report]")
+    isoweave.distributed.mesh(path, 100, out=path, extractor="dual")  # type: ignore[call-overload]

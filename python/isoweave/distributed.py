@@ -1,0 +1,179 @@
+"""A mesh by the workers of a Dask cluster, which see the volume and a folder: ``isoweave.distributed.mesh``.
+
+The tasks are those of ``isoweave plan``. Dask carries their numbers, and nothing of the volume or of the mesh.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+from contextlib import contextmanager
+from time import sleep
+from typing import TYPE_CHECKING, Any, Iterator, Sequence, Union, overload
+
+import numpy as np
+
+from . import _library as c
+from ._options import Length, length
+from ._outputs import level_reports
+from ._program import run
+from ._report import Report
+from ._volume import Roi, ranges_of
+
+try:
+    import distributed
+except ImportError as error:
+    raise ImportError("isoweave.distributed: expected Dask's package distributed (pip install distributed), found none") from error
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._settings import PlanSettings
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+def _work_on(task: int, folder: str, threads: int) -> None:
+    """Works on a task, in a worker of Dask, for as long as the client wants it."""
+    worker = distributed.get_worker()
+    key = worker.get_current_task()
+
+    def wanted() -> bool:
+        known = worker.state.tasks.get(key)
+        return known is not None and known.state == "executing"
+
+    # The program of a worker that was killed may still be at work on this task.
+    run("work", folder, f"--task={task}", "--wait", f"--threads={threads or 'all'}", "--quiet", wanted=wanted)
+
+
+def _work_on_all(client: Any, folder: str, threads: int) -> None:
+    """Works on all tasks. The ones of a stage take what the ones of the stage before have left."""
+    first = 0
+    for stage in json.loads(run("status", folder, "--json"))["stages"]:
+        end = first + stage["tasks"]
+        tasks = client.map(_work_on, range(first, end), folder=folder, threads=threads, pure=False)
+        try:
+            for task in distributed.as_completed(tasks):
+                task.result()
+        except BaseException:
+            client.cancel(tasks)
+            raise
+        first = end
+
+
+def _plan(options: Sequence[str], folder: str, scratch: str) -> None:
+    """Plans the mesh in a folder, or compares the plan that is there."""
+    plan = pathlib.Path(folder, "plan.json")
+    made = os.path.join(scratch, "plan") if plan.exists() else folder
+    run("plan", *options, f"--output={made}", "--quiet")
+    if pathlib.Path(made, "plan.json").read_bytes() != plan.read_bytes():
+        raise c.BadInput(f"{plan}: expected the plan of the same mesh, found that of another")
+
+
+def _collect(folder: str, out: str, compress: bool, scratch: str) -> Report:
+    report = pathlib.Path(scratch, "report.json")
+    run("collect", folder, f"--output={out}", f"--report={report}", "--quiet", *["--compress"] * compress)
+    return Report(json.loads(report.read_bytes()))
+
+
+@contextmanager
+def _task_folder(folder: PathLike | None, out: str) -> Iterator[str]:
+    """The folder of the tasks: the one that is named, or one beside the mesh that vanishes."""
+    if folder is not None:
+        yield os.path.abspath(folder)
+        return
+    parent, name = os.path.split(out)
+    if not os.path.isdir(parent):
+        raise c.CannotWrite(f"{out}: expected a folder to write it into, found none")
+    temporary = tempfile.mkdtemp(prefix=f"{name}.", suffix=".tasks", dir=parent)
+    try:
+        yield temporary
+    finally:
+        # Workers that have been stopped may still be writing to it, for as long as one of their tasks takes to notice.
+        for _ in range(50):
+            shutil.rmtree(temporary, ignore_errors=True)
+            if not os.path.exists(temporary):
+                break
+            sleep(0.2)
+        else:
+            raise c.CannotWrite(f"{temporary}: cannot be removed")
+
+
+def _numbers(values: Any) -> str | None:
+    return None if values is None else ",".join(repr(float(value)) for value in np.ravel(values))
+
+
+def _length(value: Length | None) -> str | None:
+    return None if value is None else os.fsdecode(length(value) or b"")
+
+
+def _ranges(roi: Roi | None) -> str | None:
+    """As the command line has them: along x, y, z."""
+    if roi is None:
+        return None
+    ends = [(part.start, part.stop) for part in reversed(ranges_of(roi))]
+    return ",".join(":".join("" if end is None else str(end) for end in pair) for pair in ends)
+
+
+@overload
+def mesh(volume: PathLike, level: float | None = None, *, out: PathLike, **settings: Unpack[PlanSettings]) -> Report: ...
+@overload
+def mesh(
+    volume: PathLike, level: float | None = None, *, lods: Sequence[Length], out: PathLike, **settings: Unpack[PlanSettings]
+) -> list[Report]: ...
+def mesh(
+    volume: PathLike, level: float | None = None, *, out: PathLike, client: Any = None, folder: PathLike | None = None,
+    blocks: int = 512, threads: int = 1, error: Length | None = None, lods: Sequence[Length] = (), quality: str = "normal",
+    specks: str = "keep", inside: str = "above", closed: bool = True, smooth: int = 0, extractor: str = "cubes",
+    normals: str | None = None, space: str | None = None, spacing: Any = None, origin: Any = None, raw: str | None = None,
+    dataset: str | None = None, series: str | None = None, channel: int | None = None, time: int | None = None,
+    external: bool = True, roi: Roi | None = None, step: int | None = None, compress: bool = False,
+) -> Any:
+    """The mesh of :func:`isoweave.mesh`, bit for bit, by the workers of a Dask cluster.
+
+    Workers need this package, and see the volume and the folder under the same paths as the client.
+
+    Args:
+        volume: a path. Streams that are packed as a whole, such as ``.nii.gz``, are refused.
+        level: the value at the surface. None: Otsu's threshold.
+        out: the mesh file, which the client writes; with ``lods``, ``a.ply`` becomes ``a_lod0.ply``, ...
+        client: a ``distributed.Client``. None: the current one.
+        folder: where the tasks leave their files. It is kept, and a call with the same volume and options goes on in it.
+            None: a folder beside ``out``, which is removed however the run ends.
+        blocks: cells along each side of a task's block; 128 at least.
+        threads: of each task, whose worker may run several tasks at a time. 0: one for each processor.
+        raw, dataset, series, external: as :func:`isoweave.open_volume`.
+        error, lods, quality, specks, inside, closed, smooth, extractor, normals, space, spacing, origin, channel, time, roi,
+            step, compress: as :func:`isoweave.mesh`. There is no "dual" extractor, and nothing negative in ``roi``.
+
+    Returns:
+        A :class:`Report`; a list of them with ``lods``, finest first.
+
+    Raises:
+        As :func:`isoweave.mesh`; on Ctrl-C the tasks of all workers stop as well.
+        distributed.KilledWorker: where several workers have died of the same task.
+    """
+    if not isinstance(volume, (str, os.PathLike)):
+        raise TypeError(f"volume: expected a path, which all workers see, found {type(volume).__name__}")
+    values: dict[str, Any] = {
+        "iso": _numbers(level) or "auto", "blocks": blocks, "error": _length(error),
+        "lods": ",".join(_length(each) or "" for each in lods) or None, "quality": quality, "specks": specks,
+        "inside": inside, "smooth": smooth or None, "extractor": extractor, "normals": normals or "none", "space": space,
+        "spacing": _numbers(spacing), "origin": _numbers(origin), "raw": raw, "dataset": dataset, "series": series,
+        "channel": channel, "time": time, "roi": _ranges(roi), "step": step,
+    }
+    options = [os.path.abspath(volume), *(f"--{name}={value}" for name, value in values.items() if value is not None)]
+    options += ["--open"] * (not closed) + ["--no-external"] * (not external)
+    client = distributed.get_client() if client is None else client
+    path = os.path.abspath(out)
+    with tempfile.TemporaryDirectory() as scratch, _task_folder(folder, path) as tasks:
+        _plan(options, tasks, scratch)
+        try:
+            report = _collect(tasks, path, compress, scratch)  # a wrong `out` is refused before any task is done
+        except c.BadInput:
+            _work_on_all(client, tasks, threads)
+            report = _collect(tasks, path, compress, scratch)
+    return level_reports(report, len(lods)) if lods else report
