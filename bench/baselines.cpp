@@ -103,7 +103,7 @@ struct Outcome {
 // Hands over all triangles of a zone, also those that are not final.
 class AllTriangles final : public FinalSource {
  public:
-  AllTriangles(Zone& zone, const Executor& executor) : zone_(zone), hand_over_(zone, 0, executor) {}
+  AllTriangles(Zone& zone, const Executor& executor) : zone_(zone), hand_over_(zone, 0, false, executor) {}
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
     std::vector<Index> triangles;
