@@ -5,8 +5,8 @@ from __future__ import annotations
 import subprocess
 from typing import Callable
 
-from ._library import Stopped, error_of
 from .__main__ import PROGRAM
+from ._library import Stopped, error_of
 
 
 def run(*arguments: str, wanted: Callable[[], bool] = lambda: True) -> bytes:

@@ -60,6 +60,26 @@ def programs(folder: pathlib.Path) -> dict[Any, str]:
     return found
 
 
+def suspended(tasks: pathlib.Path, first: int = 0) -> Any:
+    """A program that holds still while it has the lock of its task, and the task: that one or a later one."""
+    for program, task in programs(tasks).items():
+        if int(task) < first:
+            continue
+        with contextlib.suppress(psutil.NoSuchProcess):
+            program.suspend()
+            if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
+                return program, task
+            program.resume()
+    return None
+
+
+def is_told_to_end(program: Any) -> bool:
+    """Whether SIGTERM waits for a program that holds still."""
+    status = pathlib.Path(f"/proc/{program.pid}/status").read_text()
+    waiting = next(line for line in status.splitlines() if line.startswith("ShdPnd:"))
+    return bool(int(waiting.split()[1], 16) & 1 << (signal.SIGTERM - 1))
+
+
 def sorted_rows(array: np.ndarray | None) -> np.ndarray:
     """The rows in an order that the order of vertices does not change; none of no array."""
     return np.empty(0) if array is None else array[np.lexsort(array.T)]
@@ -121,18 +141,8 @@ def test_a_worker_that_is_killed(client: Any, folder: pathlib.Path, noise: str) 
     workers = client.run(os.getpid)
     tasks = folder / "tasks"
 
-    def suspended() -> Any:
-        """A program that holds still while it has the lock of its task, and the task."""
-        for program, task in programs(tasks).items():
-            with contextlib.suppress(psutil.NoSuchProcess):
-                program.suspend()
-                if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
-                    return program, task
-                program.resume()
-        return None
-
     def kill() -> None:
-        program, task = wait_for(suspended)
+        program, task = wait_for(lambda: suspended(tasks))
         try:
             assert program.ppid() in workers.values()
             os.kill(program.ppid(), signal.SIGKILL)
@@ -155,21 +165,38 @@ def test_a_worker_that_is_killed(client: Any, folder: pathlib.Path, noise: str) 
     assert again.digest == report.digest and before == {path: path.stat().st_mtime_ns for path in tasks.glob("*.rest")}
 
 
-def test_control_c_stops_the_workers_and_leaves_no_file(client: Any, folder: pathlib.Path, noise: str) -> None:
+def test_control_c_leaves_no_file(client: Any, folder: pathlib.Path, noise: str) -> None:
     def interrupt() -> None:
-        wait_for(lambda: list(folder.glob("*/0.lock")))
+        wait_for(lambda: list(folder.glob("*/*.lock")))
         os.kill(os.getpid(), signal.SIGINT)
 
     with Beside(interrupt), pytest.raises(KeyboardInterrupt):
-        cluster_mesh(noise, 0.5, client=client, out=folder / "m.ply")
+        cluster_mesh(noise, 0.5, blocks=40, client=client, out=folder / "m.ply")
     assert list(folder.iterdir()) == []
     wait_for(lambda: not programs(folder))
-    # In a folder that stays: the only task was stopped, as it is not done, and nothing of it is left.
-    with Beside(interrupt), pytest.raises(KeyboardInterrupt):
-        cluster_mesh(noise, 0.5, client=client, folder=folder / "tasks", out=folder / "m.ply")
-    wait_for(lambda: not programs(folder))
-    assert sorted(os.listdir(folder / "tasks")) == ["Makefile", "plan.json", "slurm.sh"]
     assert client.submit(os.getpid).result() in client.run(os.getpid).values()  # the workers are free
+
+
+def test_control_c_stops_the_workers(client: Any, folder: pathlib.Path) -> None:
+    """A program holds still, so that it is at work for certain when it is told to end: on the last block of the first stage.
+
+    The volume is less than a block, and the grid of blocks begins so that nearly all of it is in this one.
+    """
+    np.save(folder / "v.npy", np.random.default_rng(8).random((96, 96, 96), dtype=np.float32))
+    tasks, held = folder / "tasks", []
+
+    def interrupt() -> None:
+        held.extend(wait_for(lambda: suspended(tasks, first=7)))
+        os.kill(os.getpid(), signal.SIGINT)
+
+    with Beside(interrupt), pytest.raises(KeyboardInterrupt):
+        cluster_mesh(folder / "v.npy", 0.5, client=client, folder=tasks, out=folder / "m.ply")
+    try:
+        wait_for(lambda: is_told_to_end(held[0]))
+    finally:
+        held[0].resume()
+    wait_for(lambda: not programs(tasks))
+    assert not list(tasks.glob(f"{held[1]}.*"))
 
 
 def test_errors(client: Any, folder: pathlib.Path, noise: str) -> None:
