@@ -27,6 +27,7 @@ std::vector<std::uint32_t> labels_by_id(ZonePart& part, std::size_t level) {
   for_labels(part, level, [&](std::uint64_t id, std::uint32_t label) { sorted.emplace_back(id, label); });
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::uint32_t> labels;
+  labels.reserve(sorted.size());
   for (const auto& [id, label] : sorted) labels.push_back(label);
   return labels;
 }
