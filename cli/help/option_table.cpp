@@ -134,7 +134,7 @@ const std::vector<std::string>& option_groups() {
 }
 
 std::string usage_text(const std::string& verb) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUsages{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kUsages{
       {{"mesh", "VOLUME [-o MESH] --iso VALUE [options]"},
        {"simplify", "MESH [-o MESH] --error LENGTH [options]"},
        {"info", "VOLUME [options]"},
@@ -143,7 +143,11 @@ std::string usage_text(const std::string& verb) {
        {"render", "MESH [-o PICTURE] [options]"},
        {"view", "MESH|REPORT [options]"},
        {"generate", "KIND -o VOLUME --size SIZE [options]"},
-       {"index", "VOLUME [-o FILE] [options]"}}};
+       {"index", "VOLUME [-o FILE] [options]"},
+       {"plan", "VOLUME --iso VALUE -o FOLDER [options]"},
+       {"work", "FOLDER [options]"},
+       {"status", "FOLDER [--json]"},
+       {"collect", "FOLDER -o MESH [options]"}}};
   for (const auto& [name, usage] : kUsages) {
     if (name == verb) return std::string(usage);
   }

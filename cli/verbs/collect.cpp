@@ -73,7 +73,7 @@ void run_collect(const CollectArguments& arguments) {
 }  // namespace
 
 void add_collect_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("collect", "Put the results of all tasks of isoweave plan into a mesh");
+  CLI::App* verb = app.add_subcommand("collect", "Make the mesh when all tasks are done");
   const auto arguments = std::make_shared<CollectArguments>();
   verb->add_option("FOLDER", arguments->folder, "Folder of isoweave plan")->required();
   add_output_options(*verb, arguments->output);

@@ -48,7 +48,7 @@ void run_plan(MeshArguments arguments, const std::string& folder, bool quiet) {
 }  // namespace
 
 void add_plan_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("plan", "Plan a mesh that many processes make, in a folder that they share");
+  CLI::App* verb = app.add_subcommand("plan", "Plan a mesh that many processes make");
   const auto arguments = std::make_shared<MeshArguments>();
   const auto folder = std::make_shared<std::string>();
   const auto quiet = std::make_shared<bool>(false);

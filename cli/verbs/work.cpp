@@ -124,7 +124,7 @@ void run_status(const std::string& folder, bool json) {
 }  // namespace
 
 void add_work_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("work", "Work on the tasks of isoweave plan, beside other processes");
+  CLI::App* verb = app.add_subcommand("work", "Work on the tasks of a plan");
   const auto arguments = std::make_shared<WorkArguments>();
   verb->add_option("FOLDER", arguments->folder, "Folder of isoweave plan")->required();
   CLI::Option* task = verb->add_option("--task", arguments->task, "Work on this task alone, by its number from 0");
@@ -137,7 +137,7 @@ void add_work_verb(CLI::App& app) {
 }
 
 void add_status_verb(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("status", "Tell how many tasks of isoweave plan are done");
+  CLI::App* verb = app.add_subcommand("status", "Tell how many tasks of a plan are done");
   const auto folder = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   verb->add_option("FOLDER", *folder, "Folder of isoweave plan")->required();

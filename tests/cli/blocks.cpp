@@ -1,5 +1,8 @@
 // Meshes in blocks, and by tasks that many processes share: killed, restarted, with files that do not belong there.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -142,27 +145,36 @@ TEST(CliTasks, OneByOneInTheOrderOfStages) {
   expect_collected(folder);
 }
 
-// A process that holds still while it works on task 0.
-std::unique_ptr<program::Running> stopped_worker(const files::Folder& folder) {
-  auto worker = std::make_unique<program::Running>(folder.path(), Words{"work", "tasks", "--task", "0"});
-  while (!std::filesystem::exists(folder / "tasks/0.lock") && !worker->has_ended()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+// Holds task 0 as a process that works on it does, until release().
+class HeldTask {
+ public:
+  explicit HeldTask(const files::Folder& folder)
+      : file_(::open((folder / "tasks/0.lock").c_str(), O_RDWR | O_CREAT, 0600)) {
+    EXPECT_EQ(::flock(file_, LOCK_EX | LOCK_NB), 0);
   }
-  ::kill(worker->process(), SIGSTOP);
-  return worker;
-}
+  ~HeldTask() { release(); }
+  HeldTask(const HeldTask&) = delete;
+  HeldTask& operator=(const HeldTask&) = delete;
+
+  void release() {
+    if (file_ >= 0) ::close(file_);
+    file_ = -1;
+  }
+
+ private:
+  int file_;
+};
 
 TEST(CliTasks, OneOfAnotherProcessIsRefusedOrWaitedFor) {
   const files::Folder folder;
   plan(folder, "80");
-  const auto first = stopped_worker(folder);
-  ASSERT_FALSE(std::filesystem::exists(folder / "tasks/0.rest"));
+  HeldTask held(folder);
   expect_failed(run(folder.path(), {"work", "tasks", "--task", "0"}), 4, "another process works on task 0");
   expect_failed(run(folder.path(), {"work", "tasks", "--wait"}), 2, "--wait");
   program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_FALSE(second.has_ended());
-  ::kill(first->process(), SIGKILL);
+  held.release();
   EXPECT_EQ(second.wait().code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "tasks/0.rest"));
 }
@@ -170,7 +182,7 @@ TEST(CliTasks, OneOfAnotherProcessIsRefusedOrWaitedFor) {
 TEST(CliTasks, WaitingForOneEndsWithTheSignalToStop) {
   const files::Folder folder;
   plan(folder, "80");
-  const auto first = stopped_worker(folder);
+  const HeldTask held(folder);
   program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   ::kill(second.process(), SIGINT);
