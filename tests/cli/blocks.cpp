@@ -149,7 +149,7 @@ TEST(CliTasks, OneByOneInTheOrderOfStages) {
 class HeldTask {
  public:
   explicit HeldTask(const files::Folder& folder)
-      : file_(::open((folder / "tasks/0.lock").c_str(), O_RDWR | O_CREAT, 0600)) {
+      : file_(::open((folder / "tasks/0.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
     EXPECT_EQ(::flock(file_, LOCK_EX | LOCK_NB), 0);
   }
   ~HeldTask() { release(); }
