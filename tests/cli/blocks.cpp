@@ -140,39 +140,41 @@ TEST(CliTasks, OneByOneInTheOrderOfStages) {
   expect_collected(folder);
 }
 
-// A process that holds still while it works on task 0.
+// The one of eight tasks of the first stage that has nearly all of a volume that is smaller than a block.
+const std::string kLong = "7";
+
+// A process that holds still while it works on the long task.
 std::unique_ptr<program::Running> stopped_worker(const files::Folder& folder) {
-  auto worker = std::make_unique<program::Running>(folder.path(), Words{"work", "tasks", "--task", "0"});
-  while (!std::filesystem::exists(folder / "tasks/0.lock") && !worker->has_ended()) {
+  plan(folder, "80");
+  auto worker = std::make_unique<program::Running>(folder.path(), Words{"work", "tasks", "--task", kLong});
+  while (!std::filesystem::exists(folder / ("tasks/" + kLong + ".lock")) && !worker->has_ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ::kill(worker->process(), SIGSTOP);
+  EXPECT_FALSE(std::filesystem::exists(folder / ("tasks/" + kLong + ".rest")));
   return worker;
 }
 
 TEST(CliTasks, OneOfAnotherProcessIsRefusedOrWaitedFor) {
   const files::Folder folder;
-  plan(folder, "80");
   const auto first = stopped_worker(folder);
-  ASSERT_FALSE(std::filesystem::exists(folder / "tasks/0.rest"));
-  expect_failed(run(folder.path(), {"work", "tasks", "--task", "0"}), 4, "another process works on task 0");
+  expect_failed(run(folder.path(), {"work", "tasks", "--task", kLong}), 4, "another process works on task " + kLong);
   expect_failed(run(folder.path(), {"work", "tasks", "--wait"}), 2, "--wait");
-  program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
+  program::Running second(folder.path(), {"work", "tasks", "--task", kLong, "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_FALSE(second.has_ended());
   ::kill(first->process(), SIGKILL);
   EXPECT_EQ(second.wait().code, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / "tasks/0.rest"));
+  EXPECT_TRUE(std::filesystem::exists(folder / ("tasks/" + kLong + ".rest")));
 }
 
 TEST(CliTasks, WaitingForOneEndsWithTheSignalToStop) {
   const files::Folder folder;
-  plan(folder, "80");
   const auto first = stopped_worker(folder);
-  program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
+  program::Running second(folder.path(), {"work", "tasks", "--task", kLong, "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   ::kill(second.process(), SIGINT);
-  expect_failed(second.wait(), 130, "interrupted");
+  expect_failed(second.wait(), 130, "interrupted while another process works on the task");
 }
 
 TEST(CliTasks, MakeWorksOnThem) {
