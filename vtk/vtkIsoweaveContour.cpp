@@ -88,7 +88,7 @@ vtkSmartPointer<vtkDataArray> in_one_block(vtkDataArray* samples) {
                                 std::to_string(samples->GetNumberOfComponents()));
   }
   if (samples->HasStandardMemoryLayout()) return samples;
-  const auto block = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(samples->GetDataType()));
+  auto block = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(samples->GetDataType()));
   block->DeepCopy(samples);
   return block;
 }
@@ -96,7 +96,7 @@ vtkSmartPointer<vtkDataArray> in_one_block(vtkDataArray* samples) {
 // An array of VTK with the rows of a span, each moved by an offset.
 template <class Array>
 vtkSmartPointer<Array> rows(std::span<const isoweave::Point> from, const std::array<double, 3>& offset = {}) {
-  const auto array = vtkSmartPointer<Array>::New();
+  auto array = vtkSmartPointer<Array>::New();
   array->SetNumberOfComponents(3);
   array->SetNumberOfTuples(static_cast<vtkIdType>(from.size()));
   auto* to = array->GetPointer(0);
@@ -117,10 +117,10 @@ vtkSmartPointer<vtkDataArray> points_of(const isoweave::MeshInMemory& mesh) {
 
 vtkSmartPointer<vtkCellArray> polys_of(const isoweave::MeshInMemory& mesh) {
   vtkNew<vtkTypeInt64Array> corners;
-  corners->SetNumberOfValues(static_cast<vtkIdType>(3 * mesh.triangles().size()));
+  corners->SetNumberOfValues(3 * static_cast<vtkIdType>(mesh.triangles().size()));
   vtkTypeInt64* to = corners->GetPointer(0);
   for (const auto& triangle : mesh.triangles()) to = std::ranges::copy(triangle, to).out;
-  const auto polys = vtkSmartPointer<vtkCellArray>::New();
+  auto polys = vtkSmartPointer<vtkCellArray>::New();
   polys->SetData(3, corners);
   return polys;
 }

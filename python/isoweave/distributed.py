@@ -10,7 +10,7 @@ import os
 import pathlib
 import shutil
 import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from time import sleep
 from typing import TYPE_CHECKING, Any, Iterator, Sequence, Union, overload
 
@@ -171,9 +171,10 @@ def mesh(
     path = os.path.abspath(out)
     with tempfile.TemporaryDirectory() as scratch, _task_folder(folder, path) as tasks:
         _plan(options, tasks, scratch)
-        try:
-            report = _collect(tasks, path, compress, scratch)  # a wrong `out` is refused before any task is done
-        except c.BadInput:
+        report = None
+        with suppress(c.BadInput):  # tasks are left; a wrong `out` is refused before any of them is done
+            report = _collect(tasks, path, compress, scratch)
+        if report is None:
             _work_on_all(client, tasks, threads)
             report = _collect(tasks, path, compress, scratch)
     return level_reports(report, len(lods)) if lods else report

@@ -228,8 +228,9 @@ def test_errors_of_workers_come_out_as_they_were(client: Any, folder: pathlib.Pa
     (tasks / "0.rest").write_bytes((tasks / "0.rest").read_bytes()[:-1])
     for done in tasks.glob("[1-9]*.rest"):
         done.unlink()
-    with pytest.raises(isoweave.BadInput, match=r"0\.rest"):
+    with pytest.raises(isoweave.BadInput, match=r"0\.rest") as raised:
         cluster_mesh(path, 100, blocks=30, folder=tasks, out=out)
+    assert raised.value.__context__ is None
 
 
 def test_without_dask() -> None:

@@ -171,12 +171,12 @@ TEST(CliTasks, OneOfAnotherProcessIsRefusedOrWaitedFor) {
   HeldTask held(folder);
   expect_failed(run(folder.path(), {"work", "tasks", "--task", "0"}), 4, "another process works on task 0");
   expect_failed(run(folder.path(), {"work", "tasks", "--wait"}), 2, "--wait");
-  program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
+  program::Running second(folder.path(), {"work", "tasks", "--task", kLong, "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_FALSE(second.has_ended());
   held.release();
   EXPECT_EQ(second.wait().code, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / "tasks/0.rest"));
+  EXPECT_TRUE(std::filesystem::exists(folder / ("tasks/" + kLong + ".rest")));
 }
 
 TEST(CliTasks, WaitingForOneEndsWithTheSignalToStop) {
@@ -186,7 +186,7 @@ TEST(CliTasks, WaitingForOneEndsWithTheSignalToStop) {
   program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   ::kill(second.process(), SIGINT);
-  expect_failed(second.wait(), 130, "interrupted");
+  expect_failed(second.wait(), 130, "interrupted while another process works on the task");
 }
 
 TEST(CliTasks, MakeWorksOnThem) {
