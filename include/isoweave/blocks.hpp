@@ -22,8 +22,9 @@ namespace isoweave {
 using VolumeOpener = std::function<std::unique_ptr<SliceSource>()>;
 
 struct BlockOptions {
-  std::int64_t size = 256;                     // cells of a block along each axis, 8 or more
-  std::array<std::int64_t, 3> first{0, 0, 0};  // a cell at which a block begins; blocks lie before it, too
+  std::int64_t size = 256;  // cells of a block along each axis, 8 or more
+  std::array<std::int64_t, 3> first{0, 0,
+                                    0};  // where a block begins, in cells from the first one; others lie before it
   // An existing folder: what waits for a block of the next grid waits in files there, which are gone when the run ends.
   // Empty: it waits in memory.
   std::string folder{};

@@ -171,12 +171,12 @@ TEST(CliTasks, OneOfAnotherProcessIsRefusedOrWaitedFor) {
   HeldTask held(folder);
   expect_failed(run(folder.path(), {"work", "tasks", "--task", "0"}), 4, "another process works on task 0");
   expect_failed(run(folder.path(), {"work", "tasks", "--wait"}), 2, "--wait");
-  program::Running second(folder.path(), {"work", "tasks", "--task", kLong, "--wait"});
+  program::Running second(folder.path(), {"work", "tasks", "--task", "0", "--wait"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_FALSE(second.has_ended());
   held.release();
   EXPECT_EQ(second.wait().code, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / ("tasks/" + kLong + ".rest")));
+  EXPECT_TRUE(std::filesystem::exists(folder / "tasks/0.rest"));
 }
 
 TEST(CliTasks, WaitingForOneEndsWithTheSignalToStop) {

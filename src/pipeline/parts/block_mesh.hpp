@@ -22,7 +22,9 @@ PartShape cut_part_shape(const SimplifyTask& task);
 struct BlockStages {
   BlockStages(const Task& task, const BlockOptions& blocks)
       : all(CellBox::of_volume(task.volume.dims, task.surface.closed)),
-        grids(stage_grids(all, blocks.size, blocks.first)) {}
+        grids(stage_grids(
+            all, blocks.size,
+            {all.first[0] + blocks.first[0], all.first[1] + blocks.first[1], all.first[2] + blocks.first[2]})) {}
 
   // The first block of a stage, and how many there are along each axis.
   BlockIndex first_block(std::size_t stage) const { return grids[stage].block_of(all.first); }
