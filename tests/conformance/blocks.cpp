@@ -1,5 +1,5 @@
 // Blocks of any size, beginning anywhere, give the mesh of the sweep, and its counts.
-// Threads: Blocks.AnySizeAndPlaceGivesTheMeshOfTheSweep/*
+// Threads: *Blocks.AnySize*/noise:*Blocks.AnySize*/whiteOpen:*Blocks.AnySize*/noiseLevels
 #include "isoweave/blocks.hpp"
 
 #include <gtest/gtest.h>

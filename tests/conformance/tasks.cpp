@@ -1,5 +1,5 @@
 // Tasks of a mesh, done in any order, at the same time, and again after a crash, give the mesh of the sweep.
-// Threads: Tasks.AnyOrderGivesTheMeshOfTheSweep/*
+// Threads: TaskFolder.SeveralWorkersShareTheTasks:*Tasks.AnyOrder*/noise
 #include "isoweave/tasks.hpp"
 
 #include <gtest/gtest.h>
