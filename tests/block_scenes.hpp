@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <ostream>
 #include <random>
 #include <span>
 #include <string>
@@ -23,6 +24,8 @@ struct BlockScene {
   VolumeOpener open{};
   MeshOptions options{};
 };
+
+inline void PrintTo(const BlockScene& scene, std::ostream* out) { *out << scene.name; }
 
 inline BlockScene scene_of(const std::string& name, const std::string& kind, const MeshOptions& options) {
   GenerateOptions volume;
