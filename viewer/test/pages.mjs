@@ -152,7 +152,20 @@ export async function expectOnFirstScreen(page) {
 }
 
 export const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
-export const settled = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
+export const settled = (page) => page.evaluate(`(async () => {
+  const after = (time, value) => new Promise((resolve) => setTimeout(resolve, time, value));
+  const frame = () => Promise.race([new Promise(requestAnimationFrame), after(200)]);
+  const shown = await Promise.race([Promise.resolve(window.isoweave?.ready).catch(() => null), after(1000, null)]);
+  const look = () => JSON.stringify([document.documentElement.scrollHeight, shown?.view?.canvas?.width, shown?.view?.canvas?.height,
+    shown?.view?.camera?.position.toArray()]);
+  await after(120);
+  for (let same = 0, tries = 0, last = ''; same < 4 && tries < 100; ++tries) {
+    await frame();
+    const now = look();
+    same = now === last ? same + 1 : 0;
+    last = now;
+  }
+})()`);
 
 // Waits for what comes in its own time.
 export async function until(page, condition) {
