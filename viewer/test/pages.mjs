@@ -152,6 +152,9 @@ export async function expectOnFirstScreen(page) {
 }
 
 export const pressed = (page, id) => page.evaluate(`document.getElementById('${id}').getAttribute('aria-pressed')`);
+const pause = (page) => page.evaluate('new Promise((resolve) => setTimeout(resolve, 120))');
+
+// Waits until what is drawn holds still.
 export const settled = (page) => page.evaluate(`(async () => {
   const after = (time, value) => new Promise((resolve) => setTimeout(resolve, time, value));
   const frame = () => Promise.race([new Promise(requestAnimationFrame), after(200)]);
@@ -159,7 +162,7 @@ export const settled = (page) => page.evaluate(`(async () => {
   const look = () => JSON.stringify([document.documentElement.scrollHeight, shown?.view?.canvas?.width, shown?.view?.canvas?.height,
     shown?.view?.camera?.position.toArray()]);
   await after(120);
-  for (let same = 0, tries = 0, last = ''; same < 4 && tries < 100; ++tries) {
+  for (let same = 0, tries = 0, last = ''; same < 4 && tries < 40; ++tries) {
     await frame();
     const now = look();
     same = now === last ? same + 1 : 0;
@@ -171,7 +174,7 @@ export const settled = (page) => page.evaluate(`(async () => {
 export async function until(page, condition) {
   for (let tries = 0; tries < 200; ++tries) {
     if (await page.evaluate(condition)) return;
-    await settled(page);
+    await pause(page);
   }
   assert.fail(`never: ${condition}`);
 }
