@@ -60,11 +60,9 @@ def programs(folder: pathlib.Path) -> dict[Any, str]:
     return found
 
 
-def suspended(tasks: pathlib.Path, first: int = 0) -> Any:
-    """A program that holds still while it has the lock of its task, and the task: that one or a later one."""
+def suspended(tasks: pathlib.Path) -> Any:
+    """A program that holds still while it has the lock of its task, and the task."""
     for program, task in programs(tasks).items():
-        if int(task) < first:
-            continue
         with contextlib.suppress(psutil.NoSuchProcess):
             program.suspend()
             if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
@@ -178,15 +176,12 @@ def test_control_c_leaves_no_file(client: Any, folder: pathlib.Path, noise: str)
 
 
 def test_control_c_stops_the_workers(client: Any, folder: pathlib.Path) -> None:
-    """A program holds still, so that it is at work for certain when it is told to end: on the last block of the first stage.
-
-    The volume is less than a block, and the grid of blocks begins so that nearly all of it is in this one.
-    """
+    """A program holds still, so that it is at work for certain when it is told to end. The volume is less than a block."""
     np.save(folder / "v.npy", np.random.default_rng(8).random((96, 96, 96), dtype=np.float32))
     tasks, held = folder / "tasks", []
 
     def interrupt() -> None:
-        held.extend(wait_for(lambda: suspended(tasks, first=7)))
+        held.extend(wait_for(lambda: suspended(tasks)))
         os.kill(os.getpid(), signal.SIGINT)
 
     with Beside(interrupt), pytest.raises(KeyboardInterrupt):
