@@ -121,24 +121,12 @@ inline BlockRun run_sweep(const BlockScene& scene) {
       scene, [&](std::span<MeshSink* const> sinks) { return mesh_volume(*scene.open(), sinks, scene.options); });
 }
 
-inline void expect_same(const SurfaceReport& a, const SurfaceReport& b) {
-  EXPECT_EQ(a.error, b.error);
-  EXPECT_EQ(a.triangles, b.triangles);
-  EXPECT_EQ(a.vertices, b.vertices);
-  EXPECT_EQ(a.open_edges, b.open_edges);
-  EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
-  EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
-  EXPECT_EQ(a.components, b.components);
-  EXPECT_EQ(a.euler, b.euler);
-  EXPECT_EQ(digest_text(a.digest), digest_text(b.digest));
-}
-
 inline void expect_same(const BlockRun& found, const BlockRun& expected) {
   const MeshReport& a = found.report;
   const MeshReport& b = expected.report;
-  expect_same(static_cast<const SurfaceReport&>(a), b);
+  expect_same_surface(a, b);
   ASSERT_EQ(a.levels.size(), b.levels.size());
-  for (std::size_t level = 0; level < a.levels.size(); ++level) expect_same(a.levels[level], b.levels[level]);
+  for (std::size_t level = 0; level < a.levels.size(); ++level) expect_same_surface(a.levels[level], b.levels[level]);
   EXPECT_EQ(a.cells_crossed, b.cells_crossed);
   EXPECT_EQ(a.triangles_extracted, b.triangles_extracted);
   EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
@@ -150,7 +138,7 @@ inline void expect_same(const BlockRun& found, const BlockRun& expected) {
   EXPECT_EQ(a.max, b.max);
   EXPECT_EQ(a.nan, b.nan);
   EXPECT_EQ(a.warnings, b.warnings);
-  // What has arrived: each vertex once, at its number.
+  // The sinks have each vertex once, at its number.
   for (std::size_t n = 0; n < found.meshes.size(); ++n) {
     const MeshCheck check = check_mesh(found.meshes[n]);
     EXPECT_EQ(digest_text(check.digest), digest_text(check_mesh(expected.meshes[n]).digest));

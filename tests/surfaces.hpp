@@ -1,6 +1,8 @@
 // Runs of the pipeline's pieces, as tests need them: small volumes, any schedule, the mesh in memory.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -60,6 +62,19 @@ class MemorySink final : public MeshSink {
   TriangleMesh mesh;
   bool finished = false;
 };
+
+// Two reports of the same surface have the same counts.
+inline void expect_same_surface(const SurfaceReport& found, const SurfaceReport& expected) {
+  EXPECT_EQ(found.error, expected.error);
+  EXPECT_EQ(found.triangles, expected.triangles);
+  EXPECT_EQ(found.vertices, expected.vertices);
+  EXPECT_EQ(found.open_edges, expected.open_edges);
+  EXPECT_EQ(found.nonmanifold_edges, expected.nonmanifold_edges);
+  EXPECT_EQ(found.nonmanifold_vertices, expected.nonmanifold_vertices);
+  EXPECT_EQ(found.components, expected.components);
+  EXPECT_EQ(found.euler, expected.euler);
+  EXPECT_EQ(digest_text(found.digest), digest_text(expected.digest));
+}
 
 // Of what rides on the vertices, in any order of vertices.
 inline std::uint64_t riders_digest(const TriangleMesh& mesh) {

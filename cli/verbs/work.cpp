@@ -78,17 +78,27 @@ std::uint64_t count_done(const PlannedMesh& plan, const TaskList& tasks, std::si
   return done;
 }
 
-void work_on_all(const PlannedMesh& plan, const TaskList& tasks, const RunControl& control, bool quiet) {
+// Works on the stages, one after the other. Throws Interrupted.
+void work_on_stages(const PlannedMesh& plan, const TaskList& tasks, const RunControl& control, bool quiet) {
   for (std::size_t stage = 0; stage < tasks.stages.size(); ++stage) {
     std::uint64_t done = 0;
     while (count_done(plan, tasks, stage) < tasks.stages[stage]) {
       const std::uint64_t more = work_on_stage(plan, tasks, stage, control);
       done += more;
-      if (control.stop->load()) throw Interrupted("interrupted; isoweave work goes on with the tasks that are left");
+      if (control.stop->load()) throw Interrupted("interrupted between two tasks");
       if (more == 0) std::this_thread::sleep_for(kPause);
     }
     if (!quiet)
       print_note(fmt::format("stage {}: {} of {} tasks here", stage, grouped(done), grouped(tasks.stages[stage])));
+  }
+}
+
+void work_on_all(const PlannedMesh& plan, const TaskList& tasks, const RunControl& control, bool quiet) {
+  try {
+    work_on_stages(plan, tasks, control, quiet);
+  } catch (const Interrupted&) {
+    throw Interrupted(fmt::format(
+        "interrupted: tasks that are done stay done, and isoweave work {} goes on with the others", plan.mesh.folder));
   }
   if (!quiet) print_note(fmt::format("all tasks are done: isoweave collect {} -o MESH", plan.mesh.folder));
 }

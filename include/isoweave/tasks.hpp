@@ -38,8 +38,8 @@ struct TaskMesh {
 // @throws what mesh_in_blocks throws for its options
 TaskList list_tasks(const TaskMesh& mesh);
 
-// What became of a task: it is done; it was done before; another process works on it; a task of an earlier stage is not
-// done yet.
+// The end of a call of do_task: the task is done; it was done before; another process works on it; a task of an earlier
+// stage is not done yet.
 enum class TaskEnd : std::uint8_t { kDone, kDoneBefore, kElsewhere, kTooEarly };
 
 // Works on a task. Two processes never work on the same one, as files are locked.

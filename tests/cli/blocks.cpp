@@ -124,6 +124,19 @@ TEST(CliTasks, KilledWorkersLoseNothing) {
   expect_collected(folder);
 }
 
+TEST(CliTasks, AWorkerThatIsInterruptedSaysThatItsTasksStay) {
+  const files::Folder folder;
+  plan(folder, testing::kSanitized ? "16" : "12");
+  program::Setup setup;
+  setup.signal = SIGINT;
+  setup.ready = [&](pid_t) { return std::filesystem::exists(folder / "tasks/3.rest"); };
+  const Result worker = run(folder.path(), {"work", "tasks", "--threads", "1", "--quiet"}, setup);
+  expect_failed(worker, 130, "tasks that are done stay done, and isoweave work tasks goes on with the others");
+  EXPECT_TRUE(std::filesystem::exists(folder / "tasks/0.rest"));
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  expect_collected(folder);
+}
+
 TEST(CliTasks, OneByOneInTheOrderOfStages) {
   const files::Folder folder;
   plan(folder, "40");

@@ -258,7 +258,7 @@ TEST(CliPage, ASurfaceTooLargeForAPageIsComparedWithAsItIs) {
   EXPECT_DOUBLE_EQ(page["distance"]["mean"], sum / static_cast<double>(distances.size()));
   EXPECT_FALSE(page["distance"].contains("sampled"));
 
-  // Those who hold the surface say the same of it, and sample it as well.
+  // The verb `view` holds the surface: it says the same of it, and samples it as well.
   expect_done(folder,
               {"view", "out.json", "--before", "full.ply", "--page-triangles", "20000", "-o", "view.html", "--quiet"});
   const Json held = json_in(files::read_bytes(folder / "view.html"), "report")["page"];

@@ -69,20 +69,14 @@ void expect_same(const IsoRun& found, const IsoRun& expected) {
     const MeshReport& a = found.reports[n];
     const MeshReport& b = expected.reports[n];
     triangles += b.triangles;
-    EXPECT_EQ(a.error, b.error);
+    expect_same_surface(a, b);
     EXPECT_EQ(a.min, b.min);
     EXPECT_EQ(a.max, b.max);
     EXPECT_EQ(a.triangles_extracted, b.triangles_extracted);
     EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
     EXPECT_EQ(a.cells_crossed, b.cells_crossed);
-    EXPECT_EQ(a.triangles, b.triangles);
-    EXPECT_EQ(a.vertices, b.vertices);
     EXPECT_EQ(a.collapses, b.collapses);
-    EXPECT_EQ(a.open_edges, b.open_edges);
-    EXPECT_EQ(a.components, b.components);
-    EXPECT_EQ(a.euler, b.euler);
     EXPECT_EQ(a.warnings, b.warnings);
-    EXPECT_EQ(digest_text(a.digest), digest_text(b.digest));
     EXPECT_EQ(check_mesh(found.meshes[n]).digest, b.digest);
     EXPECT_EQ(riders_digest(found.meshes[n]), riders_digest(expected.meshes[n]));
   }

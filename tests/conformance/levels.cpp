@@ -59,15 +59,7 @@ void expect_same(const LevelRun& found, const LevelRun& expected) {
     SCOPED_TRACE(::testing::Message() << "error " << kErrors[n]);
     const SurfaceReport& a = found.reports[n];
     const SurfaceReport& b = expected.reports[n];
-    EXPECT_EQ(a.error, b.error);
-    EXPECT_EQ(a.triangles, b.triangles);
-    EXPECT_EQ(a.vertices, b.vertices);
-    EXPECT_EQ(a.open_edges, b.open_edges);
-    EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
-    EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
-    EXPECT_EQ(a.components, b.components);
-    EXPECT_EQ(a.euler, b.euler);
-    EXPECT_EQ(digest_text(a.digest), digest_text(b.digest));
+    expect_same_surface(a, b);
     const MeshCheck check = check_mesh(found.meshes[n]);
     EXPECT_EQ(check.digest, b.digest);
     EXPECT_EQ(check.vertices, b.vertices);

@@ -1,8 +1,9 @@
 // The grids that cut space into blocks, stage after stage.
 //
-// What a stage leaves undecided lies near the planes of its grid. The grids of the first four stages are shifted by a
-// half, a quarter and three quarters of a block, so that what one cuts lies inside the blocks of another. The blocks of
-// each later stage are twice as large, up to one that holds the whole surface: chains of decisions may be as long.
+// Undecided triangles of a stage lie near the planes of its grid. The grids of the second to the fourth stage are
+// shifted by a half, a quarter and three quarters of a block, so that triangles at a plane of one grid lie inside the
+// blocks of another. The blocks of each later stage are twice as large, up to one that holds the whole surface: chains
+// of decisions may be as long.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What is done with one block: extract its surface or take in what others have left, decide, hand over what is final.
+// A worker on blocks: it extracts the surface of a block or takes parts in, decides, and hands over final triangles.
 #pragma once
 
 #include <cstdint>

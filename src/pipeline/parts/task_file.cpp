@@ -74,7 +74,11 @@ bool has_rest(const std::string& folder, std::uint64_t task) {
   return system::facts_of_file(rest_file(folder, task)).has_value();
 }
 
-void write_final_piece(StateWriter& state, const FinalPiece& piece) {
+namespace {
+
+// The fields of a piece, written or read.
+template <class State, class Piece>
+void serialize_piece(State& state, Piece& piece) {
   state.list(piece.known);
   state.list(piece.positions);
   state.list(piece.normals);
@@ -83,13 +87,12 @@ void write_final_piece(StateWriter& state, const FinalPiece& piece) {
   state.value(piece.open_edges);
 }
 
+}  // namespace
+
+void write_final_piece(StateWriter& state, const FinalPiece& piece) { serialize_piece(state, piece); }
+
 void read_final_piece(StateReader& state, FinalPiece& piece) {
-  state.list(piece.known);
-  state.list(piece.positions);
-  state.list(piece.normals);
-  state.list(piece.values);
-  state.list(piece.triangles);
-  state.value(piece.open_edges);
+  serialize_piece(state, piece);
   piece.locked.resize(0);
   const std::size_t vertices = piece.known.size() + piece.positions.size();
   const auto fits = [&](std::size_t count) { return count == 0 || count == piece.positions.size(); };

@@ -56,7 +56,7 @@ struct TaskPart {
   std::uint64_t triangles = 0;
 };
 
-// What a task tells about itself.
+// The facts about a task that later tasks and the collection need: its counts, and the tasks that its parts go to.
 struct TaskFacts {
   TaskCounts counts;
   std::vector<LevelCounts> levels;
