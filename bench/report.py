@@ -1,12 +1,14 @@
 #!/usr/bin/python3
-"""Tables and plots from the results of bench/run; needs python3-matplotlib.
+"""Tables and plots from the results of bench/run; needs python3-matplotlib for plots.
 
-  bench/report.py RESULTS OUT            OUT/report.md and OUT/*.svg, *.png
+  bench/report.py RESULTS OUT            OUT/report.md, with every table, and OUT/*.svg, *.png
   bench/report.py RESULTS --docs FILE    rewrites what lies in FILE between the lines <!-- begin NAME --> and
-                                         <!-- end NAME -->; plots go to the folder named as FILE without its ending
-  bench/report.py RESULTS --docs FILE --block NAME
-                                         rewrites only that part, with the ratios of simplification and the jobs
-  bench/report.py RESULTS --summary FILE the part of the results that all of these need, medians, in one small file
+                                         <!-- end NAME -->; plots that it names go to the folder named as FILE without
+                                         its ending
+  bench/report.py RESULTS --summary FILE puts what all of these need of the results, medians, in one small file;
+                                         what it has of other volumes, suites and numbers of processors stays
+  bench/report.py RESULTS --changes FILE prints a line for each goal: its figure in FILE, such a summary, and in
+                                         RESULTS, whether the change is more than noise, and whether the goal is met
 
 RESULTS: the folder that bench/run leaves, or such a summary.
 """
@@ -14,36 +16,36 @@ import argparse
 import pathlib
 import re
 
-from reporting.results import failure, load, suite, thread_counts, volume_name
-from reporting.tables import extraction_tables, job_tables, number, simplification_tables, summary_table
+from reporting.changes import change_lines
 from reporting.goals import goal_table
+from reporting.questions import (
+    fullest, growth_tables, job_memory_table, job_time_table, peers_table, quality_table, simplification_time_table,
+)
+from reporting.results import failure, load, machines, on_machine, suite, thread_counts, volume_name
 from reporting.scaling import scaling_tables
 from reporting.summary import write_summary
+from reporting.tables import extraction_tables, job_tables, number, simplification_tables, summary_table
 
 
 def paragraphs(parts):
     return "\n\n".join(part for part in parts if part) or "Not measured."
 
 
-def image(folder, name, text):
-    return f"![{text}]({folder}{name}.svg)"
-
-
 def machine_text(results):
-    found = {(result["machine"]["processor"], result["machine"]["threads"]) for result in results}
+    found = sorted({result["machine"]["processor"] for result in results})
     rounds = [row["rounds"] for result in results for row in result.get("rows", []) if "rounds" in row]
     loads = [result["machine"]["load"] for result in results if "load" in result["machine"]]
     absent = sorted({name for result in results for name in result.get("absent", [])})
-    text = "; ".join(f"{processor}, {threads} threads" for processor, threads in sorted(found))
-    text += f". Rounds of a pair: {min(rounds)} to {max(rounds)}." if rounds else "."
+    text = f"{machines(results)[0]} processors: {'; '.join(found)}."
+    if rounds:
+        text += f" Rounds of a pair: {min(rounds)} to {max(rounds)}."
     if loads:
         text += f" Load when the suites began: {number(min(loads), 2)} to {number(max(loads), 2)}."
     return text + (f" Not in this build: {', '.join(absent)}." if absent else "")
 
 
-def missing_text(results):
-    absent = [name for name in ("extract", "simplify", "job", "scaling") if not suite(results, name)]
-    return f"No results of: {', '.join(absent)}." if absent else ""
+def machine_texts(results):
+    return paragraphs([*(machine_text(on_machine(results, at)) for at in machines(results)), failures(results)])
 
 
 def failures(results):
@@ -52,29 +54,15 @@ def failures(results):
     return "Failed:\n\n" + "\n".join(f"- {line}" for line in sorted(lines)) if lines else ""
 
 
-def plots(results, folder):
-    """Names of the files and what they show, by block."""
+def plots(results, folder, shown=None):
+    """Markdown of the plots that are made. `shown`: the volumes with plots of their own, all where not given."""
     from reporting.plots import plot_error, plot_job_memory, plot_scaling, plot_speed  # needs matplotlib
 
     folder.mkdir(parents=True, exist_ok=True)
-    made = {
-        "simplification": [
-            (plot(result, folder), f"{what}, {volume_name(result)}")
-            for result in suite(results, "simplify")
-            for plot, what in ((plot_speed, "Speed ratios"), (plot_error, "Error against triangles left"))
-        ],
-        "job": [(plot_job_memory(results, folder), "Memory of the whole job")],
-        "scaling": [(plot_scaling(result, folder), "Scaling") for result in suite(results, "scaling")],
-    }
-    return {block: [(name, text) for name, text in found if name] for block, found in made.items()}
-
-
-def with_few_simplified(results):
-    """What people read through: the simplification of the skull, which everybody can get, and of the largest surface."""
-    found = suite(results, "simplify")
-    shown = [result for result in found if volume_name(result) == "skull"] or found[:1]
-    largest = max(found, key=lambda result: result["full"]["triangles"], default=None)
-    return [result for result in results if result not in found or result in shown or result == largest]
+    pictured = [result for result in suite(results, "simplify") if shown is None or volume_name(result) in shown]
+    made = [plot(result, folder) for result in fullest(pictured) for plot in (plot_speed, plot_error)]
+    made += [plot_job_memory(results, folder), *(plot_scaling(result, folder) for result in suite(results, "scaling"))]
+    return [f"![{name}]({name}.svg)" for name in made if name]
 
 
 def summaries(results):
@@ -82,72 +70,77 @@ def summaries(results):
     return [summary_table(results, threads) for threads in sorted(counts, reverse=True)]
 
 
-def blocks(results, folder, link, detailed):
-    """Every part of the report by its name. `detailed`: the results that are shown one by one."""
-    made = plots(detailed, folder)
-    images = {block: [image(link, name, text) for name, text in found] for block, found in made.items()}
+def blocks(results):
+    """Every table of the page by its name."""
     parts = {
-        "machine": [machine_text(results), missing_text(results), failures(results)],
-        "goals": [goal_table(results)],
-        "extraction": list(extraction_tables(results)),
-        "simplification": summaries(results) + images["simplification"] + list(simplification_tables(detailed)),
-        "job": images["job"] + list(job_tables(results)),
-        "scaling": images["scaling"] + list(scaling_tables(results)),
+        "times": job_time_table(results),
+        "memory": job_memory_table(results),
+        "quality": quality_table(results),
+        "growth": growth_tables(results),
+        "goals": goal_table(results),
+        "machine": machine_texts(results),
     }
-    return {name: paragraphs(found) for name, found in parts.items()}
+    for at in machines(results):
+        parts[f"simplification on {at}"] = simplification_time_table(on_machine(results, at))
+        parts[f"peers on {at}"] = peers_table(on_machine(results, at))
+    return parts
+
+
+def every_table(results):
+    return paragraphs([machine_text(results), *summaries(results), *extraction_tables(results),
+                       *simplification_tables(results), *job_tables(results), *scaling_tables(results)])
 
 
 def write_report(results, out):
-    parts = blocks(results, out, "", results)
-    text = "\n\n".join(f"## {name.capitalize()}\n\n{part}" for name, part in parts.items())
+    pictures = paragraphs(plots(results, out))
+    parts = [f"## On {at} processors\n\n{every_table(on_machine(results, at))}" for at in machines(results)]
+    text = "\n\n".join([f"## Goals\n\n{goal_table(results)}", *parts, pictures, failures(results)]).strip()
     (out / "report.md").write_text(f"# isoweave beside other libraries\n\n{text}\n")
     print(out / "report.md")
 
 
-def replace_blocks(path, parts):
-    text = path.read_text()
-    for name, part in parts.items():
-        pattern = re.compile(f"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
-        text, found = pattern.subn(lambda match: f"{match[1]}\n{part}\n\n{match[2]}", text)
-        if not found:
-            raise SystemExit(f"{path}: expected <!-- begin {name} --> and <!-- end {name} -->")
-    path.write_text(text)
+def with_blocks(text, parts):
+    """The text with each of its blocks made anew."""
+    def block(match):
+        if match[2] not in parts:
+            raise SystemExit(f"<!-- begin {match[2]} -->: expected one of {', '.join(sorted(parts))}")
+        return f"{match[1]}\n{parts[match[2]]}\n\n{match[3]}"
+    made, found = re.subn(r"(<!-- begin ([^>]*) -->\n).*?(<!-- end \2 -->)", block, text, flags=re.DOTALL)
+    if found != text.count("<!-- begin "):
+        raise SystemExit(f"expected an <!-- end NAME --> for each <!-- begin NAME -->, found {found}")
+    return made
 
 
 def rewrite_docs(results, path):
-    parts = blocks(results, path.with_suffix(""), f"{path.stem}/", with_few_simplified(results))
-    for png in path.with_suffix("").glob("*.png"):
-        png.unlink()
-    replace_blocks(path, parts)
-
-
-def rewrite_block(results, path, name):
-    replace_blocks(path, {name: paragraphs([machine_text(results), *summaries(results), *job_tables(results)])})
+    text = with_blocks(path.read_text(), blocks(results))
+    path.write_text(text)
+    folder = path.with_suffix("")
+    plots(results, folder, ["skull"])  # which everybody can get
+    for picture in [*folder.glob("*.png"), *folder.glob("*.svg")]:
+        if picture.name not in text:
+            picture.unlink()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path, nargs="?")
-    parser.add_argument("--docs", type=pathlib.Path)
-    parser.add_argument("--block")
-    parser.add_argument("--summary", type=pathlib.Path)
+    for name in ("--docs", "--summary", "--changes"):
+        parser.add_argument(name, type=pathlib.Path, metavar="FILE")
     arguments = parser.parse_args()
     results = load(arguments.results)
     if not results:
         raise SystemExit(f"{arguments.results}: expected results as *.json, found none")
-    if arguments.out is None and arguments.docs is None and arguments.summary is None:
-        parser.error("expected OUT, --docs FILE or --summary FILE")
+    if not any((arguments.out, arguments.docs, arguments.summary, arguments.changes)):
+        parser.error("expected OUT, --docs FILE, --summary FILE or --changes FILE")
     if arguments.summary:
         write_summary(results, arguments.summary)
     if arguments.out:
         write_report(results, arguments.out)
-    if arguments.block and not arguments.docs:
-        parser.error("--block: expected --docs FILE")
-    if arguments.block:
-        rewrite_block(results, arguments.docs, arguments.block)
-    elif arguments.docs:
+    if arguments.docs:
         rewrite_docs(results, arguments.docs)
+    if arguments.changes:
+        print("\n".join(change_lines(load(arguments.changes), results)))
 
 
 if __name__ == "__main__":

@@ -51,6 +51,8 @@ void occupy_standard_streams() {
 
 void exit_on_signal() { handle_with(exit_at_once); }
 
+const std::atomic<bool>& stop_flag() { return stop_requested; }
+
 const std::atomic<bool>& stop_on_signal() {
   handle_with(request_stop);
   return stop_requested;

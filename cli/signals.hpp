@@ -18,4 +18,7 @@ void exit_on_signal();
 // Makes signals set a flag for the run to see.
 const std::atomic<bool>& stop_on_signal();
 
+// The same flag, which stays as it is where signals do something else.
+const std::atomic<bool>& stop_flag();
+
 }  // namespace isoweave::cli

@@ -2,14 +2,14 @@
 # threads only, and the formats, which need zlib, nlohmann-json and what cmake/readers.cmake finds. Both are compiled once,
 # as objects; `isoweave` is made of both, `isoweave_core` of the first.
 # The rooms of the core, and of the rooms that are not wholly in it the files that those need:
-set(ISOWEAVE_CORE_ROOMS system parallel lattice extract select simplify device measure output pipeline)
+set(ISOWEAVE_CORE_ROOMS system parallel lattice extract select simplify cluster device measure output pipeline)
 set(ISOWEAVE_CORE_FILES
     files/atomic_file.cpp files/crc32.cpp files/file_lock.cpp files/from_chars.cpp files/header_text.cpp files/input_file.cpp files/length_units.cpp
     files/output_file.cpp files/printable.cpp files/state_file.cpp
     mesh/mesh_in_memory.cpp mesh/read/match_place.cpp mesh/read/welder.cpp
     volume/axes.cpp volume/build_index.cpp volume/crossed_bricks.cpp volume/crossing_counts.cpp volume/fields.cpp volume/generate.cpp volume/histogram.cpp volume/histogram_counter.cpp volume/index_file.cpp volume/index_identity.cpp volume/indexed_source.cpp volume/label_box.cpp volume/label_numbers.cpp volume/labels.cpp
-    volume/noise.cpp volume/part_of_volume.cpp volume/row_source.cpp volume/sample_type.cpp volume/samples.cpp
-    volume/slice_window.cpp volume/smoothed_mask.cpp volume/volume_in_memory.cpp volume/volume_index.cpp volume/volume_sizes.cpp)
+    volume/noise.cpp volume/part_of_volume.cpp volume/row_source.cpp volume/sample_type.cpp volume/samples.cpp volume/smaller.cpp
+    volume/slice_window.cpp volume/smoothed_mask.cpp volume/thinned_labels.cpp volume/volume_in_memory.cpp volume/volume_index.cpp volume/volume_sizes.cpp)
 
 # isoweave_split_sources(CORE FORMATS SOURCE...)
 function(isoweave_split_sources core formats)

@@ -1,4 +1,6 @@
-# A package for Debian, by cpack in the build folder.
+# Packages by cpack in the build folder: for Debian, and with -G TGZ an archive for any Linux of this processor.
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/package_options.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/tarball.cmake)
 set(CPACK_PACKAGE_NAME isoweave)
 set(CPACK_PACKAGE_VENDOR isoweave)
 set(ISOWEAVE_PACKAGER "isoweave packagers <packages@isoweave.invalid>" CACHE STRING "Who answers for the packages")
@@ -20,7 +22,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
-# Loaded when a file of HDF5 is read.
+# Loaded when the first URL or the first HDF5 file is met: apt installs the one unless it is told not to, as URLs are
+# volumes of several formats, and names the other.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libcurl4")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libhdf5-103-1")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)

@@ -1,6 +1,7 @@
 # Formats whose libraries may be missing. Each option is AUTO (take the format in if the library is there), ON (stop
 # without it) or OFF. What is left out is compiled as an error that says so (missing_formats.cpp in src/volume/formats,
-# missing_packers.cpp in src/mesh/write and missing_png.cpp in src/render).
+# missing_http.cpp in src/files, missing_packers.cpp in src/mesh/write, missing_unpackers.cpp in src/mesh/read and
+# missing_png.cpp in src/render).
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 set(ISOWEAVE_READERS)
 
@@ -37,14 +38,17 @@ set(hdf5_sources hdf5.cpp hdf5_dataset.cpp hdf5_dream3d.cpp hdf5_imaris.cpp hdf5
     hdf5_place.cpp hdf5_vtk.cpp)
 isoweave_reader(HDF5 "${hdf5_sources}" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5> IsoweaveHdf5)
 # Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
-isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp"
+isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp;precomputed_info.cpp"
                 $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
 isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
 isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)
 isoweave_reader(LZMA vtk_lzma.cpp LibLZMA::LibLZMA LibLZMA)
 isoweave_reader(LZ4 "codec_lz4.cpp;vtk_lz4.cpp" IsoweaveLz4::IsoweaveLz4 IsoweaveLz4)
-# Packed meshes, which are written only.
-isoweave_reader(MESHOPTIMIZER glb_packed.cpp meshoptimizer::meshoptimizer meshoptimizer)
+# Volumes on servers. Loaded when it is needed; headers only.
+isoweave_reader(HTTP "curl_library.cpp;http_client.cpp;remote_store.cpp" $<BUILD_INTERFACE:IsoweaveCurl::IsoweaveCurl>
+                IsoweaveCurl 7.87)
+# Packed meshes: GLB is written and read, precomputed is written.
+isoweave_reader(MESHOPTIMIZER "glb_packed.cpp;gltf_packed.cpp" meshoptimizer::meshoptimizer meshoptimizer)
 isoweave_reader(DRACO precomputed_packed.cpp draco::draco draco)
 
 # The libraries, and what tells the sources which of them are there.

@@ -46,12 +46,13 @@ install_packages() {
 
 build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libtiff-dev libpng-dev libcharls-dev libopenjp2-7-dev libhdf5-dev libzstd-dev libblosc-dev liblz4-dev liblzma-dev
-  libmeshoptimizer-dev libdraco-dev libcpp-httplib-dev pkgconf)
-test_packages=(ccache libgtest-dev libgdcm-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind
+  libcurl4-openssl-dev libmeshoptimizer-dev libdraco-dev libcpp-httplib-dev pkgconf)
+test_packages=(ccache libopenmpi-dev openmpi-bin libmpich-dev mpich libgtest-dev libgdcm-dev clang clang-tidy clang-format libclang-rt-14-dev valgrind
   clang-19 libc++-19-dev libc++abi-19-dev g++-aarch64-linux-gnu qemu-user
   python3-numpy python3-nibabel python3-pydicom python3-tifffile python3-pil python3-vtk9 teem-apps
   python3-h5py python3-numcodecs python3-zarr draco chromium abigail-tools python3-venv
-  paraview libvtk9-dev libopenmpi3 libpython3.11 xvfb lintian man-db mricron-data)
+  paraview libvtk9-dev libpython3.11 xvfb lintian man-db mricron-data
+  patchelf debootstrap)
 
 # What the page for the browser is built with. Where there is a node that is not Debian's, Debian's npm conflicts with it.
 viewer_packages=()
@@ -105,6 +106,22 @@ install_nvcc() {
 # which other tests need. What it needs of Debian is among the test_packages.
 paraview_folder=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/paraview
 
+# A Debian of another glibc, with nothing but what every Debian has, for the test of the .tar.gz: outside any clone, too.
+other_debian=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/debian-13
+
+# Installs that Debian where there is none. Needs root.
+install_other_debian() {
+  if [ -e "$other_debian" ]; then return; fi
+  say "installing Debian 13 into $other_debian"
+  mkdir -p "$(dirname "$other_debian")"
+  local unpacked
+  unpacked=$(mktemp -d -p "$(dirname "$other_debian")")
+  quietly as_root debootstrap --variant=minbase trixie "$unpacked" \
+    || { as_root rm -rf "$unpacked"; fail "could not install Debian 13"; }
+  as_root chmod 755 "$unpacked"
+  as_root mv -T "$unpacked" "$other_debian"
+}
+
 # Unpacks pvpython where there is none.
 install_pvpython() {
   if [ -e "$paraview_folder" ]; then return; fi
@@ -115,4 +132,21 @@ install_pvpython() {
   (cd "$unpacked" && quietly apt-get download python3-paraview && dpkg -x python3-paraview_*.deb . && rm ./*.deb) \
     || { rm -rf "$unpacked"; fail "could not unpack pvpython"; }
   mv -T "$unpacked" "$paraview_folder"
+}
+
+# Where cloud-volume is, which reads neuroglancer's meshes back. It is not Debian's, so it has an environment of its own,
+# outside any clone.
+cloud_volume_folder=${XDG_CACHE_HOME:-$HOME/.cache}/isoweave/cloud-volume
+
+# Installs cloud-volume where there is none.
+install_cloud_volume() {
+  if [ -e "$cloud_volume_folder" ]; then return; fi
+  install_packages python3-venv
+  say "installing cloud-volume into $cloud_volume_folder"
+  mkdir -p "$(dirname "$cloud_volume_folder")"
+  local unpacked
+  unpacked=$(mktemp -d -p "$(dirname "$cloud_volume_folder")")
+  (quietly /usr/bin/python3 -m venv "$unpacked" && quietly "$unpacked/bin/pip" install cloud-volume==12.15.2) \
+    || { rm -rf "$unpacked"; fail "could not install cloud-volume"; }
+  mv -T "$unpacked" "$cloud_volume_folder"
 }

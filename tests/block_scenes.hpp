@@ -96,6 +96,19 @@ inline std::vector<BlockScene> block_scenes() {
   return all;
 }
 
+// All scenes, or under sanitizers a few.
+inline std::vector<BlockScene> some_scenes() {
+  std::vector<BlockScene> some;
+  for (const BlockScene& scene : block_scenes()) {
+    if (!kSanitized || scene.name == "noise" || scene.name == "gyroidQuadric" || scene.name == "noiseLevels") {
+      some.push_back(scene);
+    }
+  }
+  return some;
+}
+
+inline BlockScene noise_scene() { return block_scenes().front(); }
+
 struct BlockRun {
   std::vector<TriangleMesh> meshes;
   MeshReport report;

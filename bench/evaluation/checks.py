@@ -49,6 +49,16 @@ def check_methods(programs, volume, error):
     check_digests(programs, volume, error, reference)
 
 
+def check_preview(programs, volume):
+    """Slabs and threads do not change a preview, and triangles have gone for the reasons that it tells."""
+    whole = programs.mesh(volume, ISO, "--preview=3vox", "--slab", "whole", "--threads", "1")[1]
+    for options in (("--slab", "1"), ("--slab", "12"), ("--threads", "2")):
+        expect(f"digest of a preview with {' '.join(options)}", whole["digest"],
+               programs.mesh(volume, ISO, "--preview=3vox", *options)[1]["digest"])
+    gone = whole["preview"]["triangles_collapsed"] + whole["preview"]["triangles_repeated"]
+    expect("triangles of a preview and those gone", whole["triangles_extracted"], whole["triangles"] + gone)
+
+
 def vertices_on(triangles, slice_number):
     return np.unique(triangles[triangles[:, :, 2] == slice_number], axis=0)
 
@@ -98,4 +108,5 @@ def check_all(programs):
             check_methods(programs, volume, error)
         check_fronts(programs, volume)
         check_held(programs, volume)
+        check_preview(programs, volume)
     check_stand_in(programs)

@@ -1,5 +1,5 @@
 """The tables of docs/evaluation.md, from results."""
-from evaluation import method_runs, published
+from evaluation import growth, method_runs, published
 
 MEGABYTE = 1e6
 
@@ -122,6 +122,104 @@ def middle(surfaces):
     return table(head, lines)
 
 
+def clusters(surfaces):
+    """Previews, each beside isoweave at as many triangles."""
+    lines = []
+    for surface in surfaces:
+        size = " x ".join(map(str, surface["dims"]))
+        lines += [f"{surface['name']}, {size} samples, {surface['triangles']:,} triangles, {surface['components']:,} "
+                  f"parts, Euler number {surface['euler']:,}:", ""]
+        rows = []
+        for of in surface["cells"]:
+            for name, time in (("preview", f"{of['seconds per isoweave']:.2f}"), ("isoweave", "1")):
+                shape = of[name]
+                told = f"{of['plane_rms']:.4f}" if name == "preview" else "–"
+                rows.append((f"`--preview={of['cell']}vox`" if name == "preview" else "isoweave, as many",
+                             f"{shape['triangles']:,}", time, megabytes(shape["bytes"]), f"{shape['rms']:.4f}",
+                             f"{shape['max']:.2f}", told, f"{shape['edges']:,}", f"{shape['components']:,}",
+                             f"{shape['euler']:,}"))
+        lines += [*table(("", "triangles", "time", "MB", "RMS", "largest distance", "`plane_rms`",
+                          "non-manifold edges", "parts", "Euler number"), rows), ""]
+    return lines[:-1]
+
+
+def sizes(found):
+    lines = []
+    for name, rows in (("more layers", found["layers"]), ("larger cross-section", found["sections"]),
+                       ("the largest", found["largest"])):
+        for row in rows:
+            lines.append((name, " x ".join(map(str, row["dims"])), f"{growth.samples_of(row) / 1e6:,.0f}",
+                          str(row["rounds"]), f"{row['faces']:,}", f"{row['left']:,}", f"{row['seconds']:,.1f}",
+                          f"{1e9 * row['seconds'] / growth.samples_of(row):.1f}", megabytes(row["bytes"]),
+                          f"{row['held']:,}"))
+    return table(("", "samples", "million", "rounds", "triangles extracted", "left", "processor seconds",
+                  "ns per sample", "peak MB", "most undecided"), lines)
+
+
+def slopes(found):
+    time, memory = growth.of_time(found), growth.of_memory(found)
+    errors = found["errors"]
+    lengths = [float(row["options"].split()[1].removesuffix("vox")) for row in errors]
+    per_sample, always = memory["line"]
+    exponents = [("processor seconds", "samples, by layers", time["layers"][0]),
+                 ("processor seconds", "samples, by cross-section", time["sections"][0]),
+                 ("processor seconds", "samples, all runs", time["all"][0]),
+                 ("peak memory", "layers", memory["layers"]),
+                 ("peak memory", "samples of a slice", memory["sections"]),
+                 ("triangles left", "error", growth.fit(lengths, [row["left"] for row in errors])[0]),
+                 ("processor seconds", "error", growth.fit(lengths, [row["seconds"] for row in errors])[0]),
+                 ("peak memory", "error", growth.fit(lengths, [row["bytes"] for row in errors])[0]),
+                 ("triangles handed on by blocks", "side of the blocks", growth.of_blocks(found)[0])]
+    lines = [(of, to, f"{slope:.3f}") for of, to, slope in exponents]
+    return [*table(("what grows", "with", "exponent"), lines), "",
+            f"Peak memory is {always / 1e6:.0f} MB and {per_sample:.1f} bytes for each sample of a slice."]
+
+
+def errors(found):
+    lines = [(row["options"].split()[1].replace("vox", " voxel"), f"{row['left']:,}", f"{row['seconds']:.2f}",
+              megabytes(row["bytes"]), f"{row['held']:,}") for row in found["errors"]]
+    return table(("error", "triangles left", "processor seconds", "peak MB", "most undecided"), lines)
+
+
+def threads(found):
+    lines = [(str(row["threads"]), f"{row['seconds per one']:.2f}", f"{row['clock per one']:.2f}",
+              megabytes(row["bytes"])) for row in found["threads"]]
+    same = "the same" if len({row["digest"] for row in found["threads"]}) == 1 else "DIFFERENT"
+    return [*table(("threads", "processor seconds, per one thread's", "by the clock", "peak MB"), lines), "",
+            f"The digests are {same}."]
+
+
+def blocks(found):
+    slabs = found["blocks"][0]
+    lines = []
+    for row in found["blocks"][1:]:
+        handed = growth.handed_on(row)
+        in_all = growth.handed_in_all(row)
+        lines.append((str(row["blocks"][0]["size"]), ", ".join(f"{100 * part:.2g}" for part in handed) + " %",
+                      f"{row['seconds'] / slabs['seconds']:.2f}", f"{100 * in_all:.0f} %",
+                      f"{100 * growth.efficiency(in_all):.0f} %",
+                      "the same" if row["digest"] == slabs["digest"] else "DIFFERENT"))
+    return table(("cells along a block", "handed on to stages 1, 2, ...", "processor seconds, per those of slabs",
+                  "in all, volume without end", "efficiency by the model", "digest"), lines)
+
+
+def duration(seconds):
+    for size, unit in ((86400, "days"), (3600, "hours"), (60, "minutes")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.1f} {unit}"
+    return f"{seconds:.0f} s"
+
+
+def prediction(found):
+    told = growth.prediction(found)
+    rows = [("one thread, slabs", f"{growth.SIDE:,}", "–", "–", duration(told["seconds"]),
+             f"{told['bytes'] / 1e9:.1f} GB")]
+    for of in told["ranks"]:
+        rows.append((f"{of['ranks']:,} ranks of one thread", f"{of['side']:,.0f}", f"{100 * of['handed']:.1f} %",
+                     f"{100 * of['efficiency']:.0f} %", duration(of["seconds"]), f"{of['bytes'] / 1e9:.2f} GB"))
+    return table(("", "cells along a block", "handed on", "efficiency", "time", "memory of a rank"), rows)
+
+
 def triangles_of(name):
     def lines(pictures):
         return [", ".join(f"`{method}` {count:,}" for method, count in pictures[name].items()) + " triangles."]
@@ -132,6 +230,9 @@ def triangles_of(name):
 # The blocks of the page: the part of the results that each is made of, and how.
 BLOCKS = {"volumes": ("tables", volumes), "crossed": ("tables", crossed), "left": ("tables", left),
           "methods": ("methods", methods), "beside": ("methods", beside), "middle": ("methods", middle),
+          "clusters": ("clusters", clusters), "sizes": ("growth", sizes), "slopes": ("growth", slopes),
+          "errors": ("growth", errors), "threads": ("growth", threads), "blocks": ("growth", blocks),
+          "prediction": ("growth", prediction),
           "regions": ("pictures", triangles_of("methods")), "halves": ("pictures", triangles_of("half"))}
 
 

@@ -1,15 +1,16 @@
 """isoweave beside the packages with which Python users make and simplify iso-surfaces: one scan, one count of triangles.
 
-    pip install numpy scikit-image fast-simplification PyMCubes pymeshlab pyvista meshlib zmesh isoweave.whl
+    pip install numpy scikit-image fast-simplification PyMCubes pymeshlab pyvista meshlib zmesh open3d isoweave.whl
     python bench/python/compare.py VOLUME.npy LEVEL SPACING_Z,Y,X TRIANGLES [ROUNDS]
 
 Each contestant runs in a process of its own, in turn, who begins changes. Time is that from the array to the arrays of the
 mesh, by the clock and of all processors together, which a busy machine disturbs less; memory is the peak of the process
-above what importing its packages takes. A line for each: times and memory in terms of isoweave's, as medians of the rounds;
-triangles; RMS distance to the full surface, both ways; whether the mesh is manifold. zmesh makes the surface of a mask, and
-no iso-surface.
+above what its packages and the volume take. A line for each: times and memory in terms of isoweave's of the same round, as
+medians of the rounds; triangles; RMS distance to the full surface, both ways; whether the mesh is manifold. Then the versions.
+zmesh makes the surface of a mask, and no iso-surface. Open3D needs libusb-1.0-0 of Debian.
 """
 
+import importlib.metadata
 import json
 import pathlib
 import statistics
@@ -20,7 +21,7 @@ import time
 
 import numpy as np
 
-CONTESTANTS = ["isoweave", "isoweave-1", "skimage+fast", "pyvista", "pymcubes+fast", "skimage+pymeshlab", "meshlib", "zmesh"]
+PACKAGES = "scikit-image fast-simplification PyMCubes pymeshlab pyvista meshlib zmesh open3d".split()
 
 
 def run_isoweave(volume, level, spacing, triangles, threads=0):
@@ -120,33 +121,49 @@ def run_zmesh(volume, level, spacing, triangles):
     return work
 
 
+def run_open3d(volume, level, spacing, triangles):
+    import open3d
+
+    def work():
+        samples = open3d.core.Tensor(volume.astype(np.float32))
+        surface = open3d.t.geometry.TriangleMesh.create_isosurfaces(samples, [level]).to_legacy()
+        mesh = surface.simplify_quadric_decimation(triangles)
+        return np.asarray(mesh.vertices) * spacing[::-1], np.asarray(mesh.triangles)
+
+    return work
+
+
 RUNNERS = {
     "isoweave": run_isoweave,
-    "isoweave-1": lambda *task: run_isoweave(*task, threads=1),
-    "skimage+fast": run_skimage_fast,
-    "pyvista": run_pyvista,
-    "pymcubes+fast": run_pymcubes_fast,
-    "skimage+pymeshlab": run_skimage_pymeshlab,
-    "meshlib": run_meshlib,
-    "zmesh": run_zmesh,
+    "isoweave, one thread": lambda *task: run_isoweave(*task, threads=1),
+    "scikit-image + fast-simplification": run_skimage_fast,
+    "PyMCubes + fast-simplification": run_pymcubes_fast,
+    "scikit-image + pymeshlab": run_skimage_pymeshlab,
+    "PyVista: flying edges, `decimate`": run_pyvista,
+    "MeshLib": run_meshlib,
+    "zmesh, of the mask": run_zmesh,
+    "Open3D: `create_isosurfaces`, quadric decimation": run_open3d,
 }
 
 
-def peak():
-    """The peak of this process in bytes. What getrusage calls so begins with that of the process that started it."""
+def resident(key):
+    """What is resident of this process in bytes, now (VmRSS) or at its peak (VmHWM)."""
     for line in pathlib.Path("/proc/self/status").read_text().splitlines():
-        if line.startswith("VmHWM:"):
+        if line.startswith(f"{key}:"):
             return int(line.split()[1]) * 1024
-    raise OSError("/proc/self/status: expected VmHWM, found none")
+    raise OSError(f"/proc/self/status: expected {key}, found none")
 
 
 def run_child(name, path, level, spacing, triangles, out):
     """One contestant, in this process."""
     volume = np.load(path)
     work = RUNNERS[name](volume, level, spacing, triangles)
-    before, start, used = peak(), time.perf_counter(), time.process_time()
+    # The peak begins anew here: an import may take more than stays of it.
+    pathlib.Path("/proc/self/clear_refs").write_text("5")
+    before, start, used = resident("VmRSS"), time.perf_counter(), time.process_time()
     vertices, faces = work()
-    seconds, processor, bytes_more = time.perf_counter() - start, time.process_time() - used, peak() - before
+    seconds, processor = time.perf_counter() - start, time.process_time() - used
+    bytes_more = resident("VmHWM") - before
     np.savez(out, vertices=np.asarray(vertices, dtype=np.float32), faces=np.asarray(faces, dtype=np.int64))
     print(json.dumps({"seconds": seconds, "processor": processor, "bytes": bytes_more}))
 
@@ -160,35 +177,50 @@ def measure(full, out):
     return len(mesh[1]), isoweave.compare(mesh, full).rms, check.manifold and check.oriented
 
 
+def run_rounds(rounds, full, *task):
+    """Times and memory of every contestant by rounds, and what its mesh is like."""
+    found = {name: {} for name in RUNNERS}
+    facts = {}
+    names = list(RUNNERS)
+    with tempfile.TemporaryDirectory() as folder:
+        out = str(pathlib.Path(folder) / "mesh.npz")
+        for number in range(rounds):
+            first = number % len(names)
+            for name in names[first:] + names[:first]:
+                command = [sys.executable, __file__, "--child", name, *task, out]
+                done = subprocess.run(command, capture_output=True, text=True, check=False)
+                if done.returncode != 0:
+                    print(f"{name}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+                    continue
+                found[name][number] = json.loads(done.stdout.splitlines()[-1])
+                if name not in facts:
+                    facts[name] = measure(full, out)
+    return found, facts
+
+
+def print_table(found, facts):
+    print("| | time | processor time | memory | triangles | RMS | manifold |\n|---|---|---|---|---|---|---|")
+    ours = found["isoweave"]
+    for name, (count, rms, manifold) in facts.items():
+        ratios = [
+            statistics.median(one[key] / ours[number][key] for number, one in found[name].items() if number in ours)
+            for key in ("seconds", "processor", "bytes")
+        ]
+        cells = [name, *(f"{ratio:.2f}" for ratio in ratios), f"{count:,}", f"{rms:.4f}", "yes" if manifold else "no"]
+        print(f"| {' | '.join(cells)} |")
+
+
 def main():
-    path, level, spacing, triangles = sys.argv[1], float(sys.argv[2]), sys.argv[3], int(sys.argv[4])
+    path, level, spacing, triangles = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4]
     rounds = int(sys.argv[5]) if len(sys.argv) > 5 else 3
     steps = tuple(float(step) for step in spacing.split(","))
     import isoweave
 
     full = isoweave.mesh(np.load(path), level, error=0, spacing=steps[::-1], closed=False)
-    found = {name: [] for name in CONTESTANTS}
-    facts = {}
-    with tempfile.TemporaryDirectory() as folder:
-        out = str(pathlib.Path(folder) / "mesh.npz")
-        for number in range(rounds):
-            for name in CONTESTANTS[number % len(CONTESTANTS) :] + CONTESTANTS[: number % len(CONTESTANTS)]:
-                command = [sys.executable, __file__, "--child", name, path, str(level), spacing, str(triangles), out]
-                done = subprocess.run(command, capture_output=True, text=True, check=False)
-                if done.returncode != 0:
-                    print(f"{name}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
-                    continue
-                found[name].append(json.loads(done.stdout.splitlines()[-1]))
-                facts.setdefault(name, measure(full, out))
-    print(f"full surface: {len(full.faces)} triangles")
-    print("| contestant | time | processor time | memory | triangles | RMS | manifold |\n|---|---|---|---|---|---|---|")
-    for name in facts:
-        ratio = [
-            statistics.median(one[key] / base[key] for one, base in zip(found[name], found["isoweave"]))
-            for key in ("seconds", "processor", "bytes")
-        ]
-        count, rms, manifold = facts[name]
-        print(f"| {name} | {' | '.join(f'{value:.2f}' for value in ratio)} | {count:,} | {rms:.4f} | {'yes' if manifold else 'no'} |")
+    found, facts = run_rounds(rounds, full, path, str(level), spacing, triangles)
+    print(f"full surface: {len(full.faces):,} triangles; rounds: {rounds}\n")
+    print_table(found, facts)
+    print("\n" + ", ".join(f"{package} {importlib.metadata.version(package)}" for package in PACKAGES))
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ def measure(name: str, *command: str) -> None:
     _, status, usage = os.wait4(child.pid, 0)
     if status != 0:
         sys.exit(f"{name}: {said}")
-    print(f"{name:<24}{usage.ru_maxrss / 1024:8.0f} MB   {said}", flush=True)
+    print(f"{name:<24}{usage.ru_maxrss * 1024 / 1e6:8.0f} MB   {said}", flush=True)
 
 
 def main() -> None:

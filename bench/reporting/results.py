@@ -23,6 +23,15 @@ def suite(results, name):
     return [result for result in results if result["suite"] == name]
 
 
+def machines(results):
+    """How many processors the machines have that the results are of."""
+    return sorted({result["machine"]["threads"] for result in results})
+
+
+def on_machine(results, processors):
+    return [result for result in results if result["machine"]["threads"] == processors]
+
+
 def samples(result):
     x, y, z = result["input"]["dims"]
     return x * y * z

@@ -21,10 +21,18 @@ def summarized_side(side):
     return kept
 
 
+def spread(ratios):
+    """By how much of their median rounds are off it, typically. Nothing for one round, which tells nothing of it."""
+    if len(ratios) < 2:
+        return None
+    median = statistics.median(ratios)
+    return rounded(statistics.median(abs(ratio - median) for ratio in ratios) / median)
+
+
 def summarized_row(row):
     kept = {name: row[name] for name in ("left", "threads")}
     if "ratio" in row:
-        kept |= {"ratio": rounded(row["ratio"]), "rounds": len(row["ratios"])}
+        kept |= {"ratio": rounded(row["ratio"]), "rounds": len(row["ratios"]), "spread": spread(row["ratios"])}
     return kept | {side: summarized_side(row[side]) for side in ("ours", "peer")}
 
 
@@ -85,13 +93,22 @@ def packed_result(result):
     if result["suite"] == "scaling":
         return json.dumps(head)[:-1] + f', "rows": {lines(result["rows"])}}}'
     table = SideTable()
-    rows = [[row["left"], row["threads"], row.get("ratio"), row.get("rounds"), table.packed(row["ours"]),
-             table.packed(row["peer"])] for row in result["rows"]]
+    rows = [[row["left"], row["threads"], row.get("ratio"), row.get("rounds"), row.get("spread"),
+             table.packed(row["ours"]), table.packed(row["peer"])] for row in result["rows"]]
     return (json.dumps(head)[:-1] + f', "names": {json.dumps(table.names)}, "qualities": {lines(table.qualities)}, '
             f'"rows": {lines(rows)}}}')
 
 
+def place(result):
+    """What a result is of. A later one of the same replaces it."""
+    return result["suite"], result.get("input", {}).get("name"), result["machine"]["threads"]
+
+
 def write_summary(results, path):
+    """What the file has of other volumes, suites and numbers of processors stays."""
+    kept = {place(result): result for result in (read_summary(path) if path.exists() else [])}
+    kept |= {place(result): result for result in results}
+    results = sorted(kept.values(), key=lambda result: [str(part) for part in place(result)])
     path.write_text("[\n" + ",\n".join(packed_result(result) for result in results) + "\n]\n")
 
 
@@ -100,10 +117,10 @@ def unpacked_result(packed):
         return packed
     table = SideTable(packed.pop("names"), packed.pop("qualities"))
     rows = []
-    for left, threads, ratio, rounds, ours, peer in packed["rows"]:
+    for left, threads, ratio, rounds, spread_of_rounds, ours, peer in packed["rows"]:
         row = {"left": left, "threads": threads}
         if ratio is not None:
-            row |= {"ratio": ratio, "rounds": rounds}
+            row |= {"ratio": ratio, "rounds": rounds, "spread": spread_of_rounds}
         rows.append(row | {"ours": table.unpacked(ours), "peer": table.unpacked(peer)})
     return packed | {"rows": rows}
 

@@ -21,7 +21,7 @@ constexpr const char* kResources = "Resources";
 constexpr const char* kOther = "Other";
 
 struct Entry {
-  std::string_view name;   // longest, without dashes
+  std::string_view name;   // longest, without dashes; behind the name of a verb where that has another meaning of it
   const char* value = "";  // what its value is; empty for a flag
   const char* group = kOther;
 };
@@ -59,6 +59,7 @@ constexpr std::array kEntries{
     Entry{"max-distance", "LENGTH", kSimplification},
     Entry{"quality", "HOW", kSimplification},
     Entry{"specks", "HOW", kSimplification},
+    Entry{"preview", "", kSimplification},
     Entry{"output", "FILE", kOutput},
     Entry{"to-stdout", "FORMAT", kOutput},
     Entry{"no-clobber", "", kOutput},
@@ -76,10 +77,14 @@ constexpr std::array kEntries{
     Entry{"seed", "N", kOutput},
     Entry{"size", "SIZE", kOutput},
     Entry{"view", "VIEW", kPicture},
+    Entry{"up", "AXIS", kPicture},
+    Entry{"zoom", "FACTOR", kPicture},
+    Entry{"axes", "", kPicture},
     Entry{"background", "COLOR", kPicture},
     Entry{"color", "COLOR", kPicture},
     Entry{"color-by", "WHAT", kOutput},
     Entry{"range", "LOW,HIGH", kPicture},
+    Entry{"no-color-bar", "", kPicture},
     Entry{"shading", "KIND", kPicture},
     Entry{"wireframe", "", kPicture},
     Entry{"samples", "N", kMeasures},
@@ -93,6 +98,7 @@ constexpr std::array kEntries{
     Entry{"html", "FILE", kEvidence},
     Entry{"page-triangles", "N", kEvidence},
     Entry{"before", "MESH", kEvidence},
+    Entry{"view open", "", kOther},
     Entry{"watch", "", kEvidence},
     Entry{"dry-run", "", kEvidence},
     Entry{"isos", "", kEvidence},
@@ -120,7 +126,8 @@ std::string name_of(const CLI::Option& option) {
 void describe_options(CLI::App& verb) {
   for (CLI::Option* option : verb.get_options()) {
     const std::string name = name_of(*option);
-    const auto* const entry = std::ranges::find(kEntries, std::string_view(name), &Entry::name);
+    const auto* entry = std::ranges::find(kEntries, verb.get_name() + " " + name, &Entry::name);
+    if (entry == kEntries.end()) entry = std::ranges::find(kEntries, std::string_view(name), &Entry::name);
     if (option->get_positional()) continue;
     option->group(entry != kEntries.end() ? entry->group : kOther);
     if (entry != kEntries.end() && *entry->value != '\0') option->type_name(entry->value);

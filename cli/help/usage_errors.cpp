@@ -52,9 +52,15 @@ bool is_file(const std::string& path) {
 std::string flag_before(const std::vector<std::string>& arguments, const std::string& extra) {
   for (std::size_t n = 1; n < arguments.size(); ++n) {
     const std::string& before = arguments[n - 1];
-    if (arguments[n] == extra && (before == "--smooth" || before == "--watch")) return before;
+    const bool takes_value = before == "--smooth" || before == "--watch" || before == "--preview";
+    if (arguments[n] == extra && takes_value) return before;
   }
   return "";
+}
+
+// "-q" and the like, but no negative number.
+bool is_short_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
 }
 
 }  // namespace
@@ -93,6 +99,7 @@ std::string extra_text(const CLI::App& verb, const std::vector<std::string>& arg
   if (extra.size() > 1 && std::ranges::all_of(extra, is_file)) {
     return fmt::format("found {} files more than one: put a pattern in quotes, such as 'slices/*.tif'", extra.size());
   }
+  if (is_short_option(extra.front())) return "unknown option " + extra.front();
   return fmt::format("'{}' is one argument too many", extra.front());
 }
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "isoweave/error.hpp"
+#include "isoweave/remote.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -48,6 +49,7 @@ std::string usual_output(const std::string& input, std::string_view more, std::s
   if (unnamed || input.starts_with("generate:")) throw CLI::RequiredError("--output");
   std::filesystem::path path(input);
   if (!path.has_filename()) path = path.parent_path();
+  if (is_url(input)) path = path.filename();
   if (path.extension() == kPacked) path.replace_extension();
   path.replace_filename(path.stem().string() + std::string(more) + std::string(ending));
   std::error_code error;

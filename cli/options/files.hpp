@@ -19,8 +19,9 @@ bool is_read_once(const std::string& path);
 void check_different(std::initializer_list<std::string_view> paths);
 
 // The name for an output that is not given: that of the input, with `more` behind it and another ending, beside it.
-// scan.nii.gz becomes scan.ply. Throws CLI::RequiredError for an input without such a name, and CannotWrite where the
-// file exists: only a name that was typed replaces a file.
+// scan.nii.gz becomes scan.ply, and https://host/scan.zarr scan.ply in the folder where the program runs. Throws
+// CLI::RequiredError for an input without such a name, and CannotWrite where the file exists: only a name that was
+// typed replaces a file.
 std::string usual_output(const std::string& input, std::string_view more, std::string_view ending);
 
 // Adds --no-clobber.

@@ -7,8 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "isoweave/remote.hpp"
+#include "isoweave/run.hpp"
 #include "options/files.hpp"
 #include "options/values.hpp"
+#include "signals.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -59,7 +62,10 @@ std::unique_ptr<SliceSource> open_whole(const InputOptions& input) {
   }
   options.uneven_slices = parse_uneven(input.even_spacing);
   options.external = input.external;
-  return open_volume(input_file(input.path), options);
+  if (!is_url(input.path)) return open_volume(input_file(input.path), options);
+  RemoteOptions remote = remote_options();
+  remote.stop = borrow(stop_flag());
+  return open_remote_volume(input.secret_url.empty() ? input.path : input.secret_url, options, remote);
 }
 
 // One end of a range; `left_out` where the text is empty.
@@ -85,10 +91,16 @@ Region parse_region(std::string_view text, const std::array<std::int64_t, 3>& di
 
 }  // namespace
 
+void set_place(InputOptions& input, const std::string& given) {
+  input.path = shown_url(given);
+  input.secret_url = input.path == given ? "" : given;
+}
+
 void add_input_options(CLI::App& verb, InputOptions& input) {
-  verb.add_option("VOLUME", input.path,
-                  "Volume file, - for standard input, folder of Zarr, N5 or slices, quoted pattern such as "
-                  "'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
+  verb.add_option_function<std::string>(
+      "VOLUME", [&input](const std::string& given) { set_place(input, given); },
+      "Volume file, - for standard input, folder of Zarr, N5, precomputed or slices, URL of the first three (http://, "
+      "https://, s3:// or gs://), quoted pattern such as 'slices/*.tif', or generate:KIND:WxHxD[:TYPE[:SEED]]");
   verb.add_option("--raw", input.raw,
                   "Read headerless data: WxHxD:TYPE[:big][:skip=N]; of a folder or pattern, a file for each slice");
   verb.add_option("--spacing", input.spacing,
@@ -103,7 +115,8 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
       "are, at their mean distance) or refuse");
   verb.add_option("--dataset", input.dataset,
                   "Which array of an HDF5, NPZ or VTK file or of a Zarr or N5 folder, by its path or name in it");
-  verb.add_option("--level", input.level, "Resolution level of OME-Zarr, N5 or Imaris; 0 is the full size");
+  verb.add_option("--level", input.level,
+                  "Resolution level of OME-Zarr, N5, precomputed or Imaris; 0 is the full size");
   verb.add_option("--channel", input.channel, "Which channel of a stack or array, from 0");
   verb.add_option("--time", input.time, "Which time or frame of a stack or array, from 0");
   verb.add_option("--slices-from", input.slices_from,
@@ -113,7 +126,9 @@ void add_input_options(CLI::App& verb, InputOptions& input) {
   verb.add_flag_callback(
       "--no-external", [&input] { input.external = false; },
       "Refuse a header that names other files, and links out of a folder: for files from strangers");
-  verb.add_option("--step", input.step, "Make the volume smaller first: means of blocks of N x N x N samples");
+  verb.add_option("--step", input.step,
+                  "Make the volume smaller first: means of blocks of N x N x N samples, with --labels the most "
+                  "frequent label of each");
 }
 
 std::optional<GenerateOptions> generated_input(const InputOptions& input) {
@@ -155,8 +170,9 @@ std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
     const Region region = parse_region(input.roi, volume->info().dims);
     volume = crop_volume(std::move(volume), region);
   }
-  if (!input.step.empty()) volume = downsample_volume(std::move(volume), parse_count("--step", input.step));
-  return volume;
+  if (input.step.empty()) return volume;
+  const std::int64_t step = parse_count("--step", input.step);
+  return input.holds_labels ? thin_label_map(std::move(volume), step) : downsample_volume(std::move(volume), step);
 }
 
 }  // namespace isoweave::cli

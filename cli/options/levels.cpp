@@ -27,10 +27,10 @@ std::string level_name(const std::vector<OutputOptions>& outputs, std::size_t le
 
 }  // namespace
 
-std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit) {
+std::vector<Length> finer_levels(const StopOptions& stop, const LengthBasis& basis) {
   std::vector<Length> levels;
   if (!stop.has_levels()) return levels;
-  for (const StopOptions& level : stop_levels(stop)) levels.push_back(parse_error_length("--lods", level.error, unit));
+  for (const StopOptions& level : stop_levels(stop)) levels.push_back(parse_error_length("--lods", level.error, basis));
   levels.pop_back();
   return levels;
 }

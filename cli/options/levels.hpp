@@ -7,7 +7,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "isoweave/pipeline.hpp"
@@ -18,7 +17,7 @@
 namespace isoweave::cli {
 
 // The errors of all levels but the last one.
-std::vector<Length> finer_levels(const StopOptions& stop, std::string_view unit);
+std::vector<Length> finer_levels(const StopOptions& stop, const LengthBasis& basis);
 
 // The output of each level, finest first: a.ply becomes a_lod0.ply, a_lod1.ply, ... The output stays as it is where no
 // levels are asked for, and for each level where one file has them all. Refuses formats that cannot hold several

@@ -44,8 +44,9 @@ void add_output_options(CLI::App& verb, OutputOptions& output) {
   CLI::Option* path = verb.add_option("-o,--output", output.path, std::string("Mesh to write: ") + kMeshEndings);
   verb.add_option("--to-stdout", output.to_stdout, "Write the mesh to standard output when it is done: ply or stl")
       ->excludes(path);
-  verb.add_flag("--compress", output.compress,
-                "Pack .glb (EXT_meshopt_compression) or .precomputed (multi-resolution, Draco), with rounding");
+  verb.add_flag(
+      "--compress", output.compress,
+      "Pack .glb (EXT_meshopt_compression) or .precomputed (multi-resolution, sharded, Draco), with rounding");
   verb.add_flag("--one-file", output.one_file,
                 "All levels of --lods in one .glb (MSFT_lod), or .precomputed with --compress; all iso-values or "
                 "labels, as parts with names and colours, in one .glb or .vtp")

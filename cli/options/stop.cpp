@@ -14,15 +14,15 @@
 namespace isoweave::cli {
 
 void add_stop_options(CLI::App& verb, StopOptions& stop) {
-  verb.add_option("--error", stop.error,
-                  "How far the surface may move, typically (RMS); the largest distance may be several times that, see "
-                  "--max-distance. In vox, mm, um, nm, in, or the unit of the input; 0: no simplification");
+  verb.add_option(
+      "--error", stop.error,
+      "How far the surface may move, typically (RMS); the largest distance may be several times that, see "
+      "--max-distance. In vox, mm, um, nm, in, the unit of the input, or % of the diagonal of its box (that of the "
+      "volume, of the mesh); 0: no simplification");
   CLI::Option* const triangles =
       verb.add_option("--triangles", stop.triangles,
                       "Stop at so many triangles, or earlier at --error (without it: at a twentieth of the diagonal)");
-  verb.add_option("--ratio", stop.ratio,
-                  "Stop at this part of the full surface's triangles, such as 10%; a volume is read twice")
-      ->excludes(triangles);
+  verb.add_option("--ratio", stop.ratio, "Stop at this part of all triangles, such as 10%")->excludes(triangles);
   CLI::Option* lods =
       verb.add_option("--lods", stop.lods,
                       "Several errors E1,E2,... in one sweep: -o a.ply makes a_lod0.ply (the finest), a_lod1.ply, ...")
@@ -34,11 +34,11 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
       ->capture_default_str();
 }
 
-Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit) {
-  if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, unit);
-  if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, unit);
+Length stop_error(const StopOptions& stop, const std::string& usual, const LengthBasis& basis) {
+  if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, basis);
+  if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, basis);
   if (stop.error.empty() && stop.has_number()) return Length::units(std::numeric_limits<double>::infinity());
-  return parse_error_length("--error", stop.error.empty() ? usual : stop.error, unit);
+  return parse_error_length("--error", stop.error.empty() ? usual : stop.error, basis);
 }
 
 std::vector<StopOptions> stop_levels(const StopOptions& stop) {
@@ -50,23 +50,21 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
   return levels;
 }
 
-bool has_metric_length(const StopOptions& stop) {
-  const auto is_metric = [](const std::string& text) {
-    return !text.empty() && text.find_last_not_of("0123456789.") == text.size() - 1 &&
-           text.find("vox") == std::string::npos;
-  };
-  const std::vector<StopOptions> levels = stop_levels(stop);
-  return is_metric(stop.max_distance) ||
-         std::ranges::any_of(levels, [&](const StopOptions& level) { return is_metric(level.error); });
+std::vector<GivenLength> given_lengths(const StopOptions& stop) {
+  std::vector<GivenLength> lengths{{"--max-distance", stop.max_distance}};
+  for (const StopOptions& level : stop_levels(stop)) {
+    lengths.push_back({stop.has_levels() ? "--lods" : "--error", level.error});
+  }
+  return lengths;
 }
 
 bool drops_specks(const StopOptions& stop) {
   return parse_choice<bool>("--specks", stop.specks, {{"keep", false}, {"drop", true}});
 }
 
-Length stop_distance(const StopOptions& stop, std::string_view unit) {
+Length stop_distance(const StopOptions& stop, const LengthBasis& basis) {
   if (stop.max_distance.empty()) return {};
-  const Length distance = parse_error_length("--max-distance", stop.max_distance, unit);
+  const Length distance = parse_error_length("--max-distance", stop.max_distance, basis);
   if (!(distance.value > 0)) wrong_value("--max-distance", "a length above 0", stop.max_distance);
   return distance;
 }

@@ -8,6 +8,7 @@
 
 #include "isoweave/pipeline.hpp"
 #include "options/cli_app.hpp"
+#include "options/lengths.hpp"
 
 namespace isoweave::cli {
 
@@ -27,18 +28,18 @@ void add_stop_options(CLI::App& verb, StopOptions& stop);
 
 // `usual` is the error where no option is given. Where only a guaranteed distance is given, that is the error. Where
 // only a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken.
-Length stop_error(const StopOptions& stop, const std::string& usual, std::string_view unit);
+Length stop_error(const StopOptions& stop, const std::string& usual, const LengthBasis& basis);
 
 // The options of each level of detail, finest first, as they would be for that mesh alone.
 std::vector<StopOptions> stop_levels(const StopOptions& stop);
 
-// Whether a length is given in a metric unit, and not in voxels or without a unit.
-bool has_metric_length(const StopOptions& stop);
+// All lengths that were given, by their options.
+std::vector<GivenLength> given_lengths(const StopOptions& stop);
 
 bool drops_specks(const StopOptions& stop);
 
 // The guaranteed distance; 0: none is asked for.
-Length stop_distance(const StopOptions& stop, std::string_view unit);
+Length stop_distance(const StopOptions& stop, const LengthBasis& basis);
 
 // The number of triangles; 0: none is asked for. count() gives the triangles of the full surface, for a ratio.
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);

@@ -14,14 +14,6 @@ std::optional<double> to_finite(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// "0.2voxels" as "0.2vox".
-std::string short_length(const std::string& text) {
-  for (const std::string_view name : {"voxels", "voxel"}) {
-    if (text.ends_with(name)) return text.substr(0, text.size() - name.size()) + "vox";
-  }
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -139,16 +131,6 @@ std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view
     dims[axis] = *side;
   }
   return dims;
-}
-
-Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit) {
-  try {
-    const Length length = parse_length(short_length(text), unit);
-    if (std::isfinite(length.value) && length.value >= 0) return length;
-  } catch (const std::invalid_argument&) {
-    // The library does not know which option the text came from.
-  }
-  wrong_value(option, "a length of at least 0 such as 0.2vox, 0.05mm, 30um or 500nm", text);
 }
 
 Quality parse_quality(std::string_view text) {

@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "isoweave/length.hpp"
 #include "isoweave/simplify_options.hpp"
 
 namespace isoweave::cli {
@@ -50,9 +49,6 @@ std::array<double, 3> parse_spacing(std::string_view option, std::string_view te
 std::string type_name(std::string_view text);
 
 std::array<std::int64_t, 3> parse_size(std::string_view option, std::string_view text);  // "N" or "WxHxD"
-
-// Parses a length, with the option's name in its message. Refuses lengths that cannot be an error.
-Length parse_error_length(std::string_view option, const std::string& text, std::string_view unit);
 
 // Parses a text that must be one of a few words.
 template <class T>

@@ -10,6 +10,7 @@
 
 #include "isoweave/error.hpp"
 #include "isoweave/printable.hpp"
+#include "ranks.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -19,8 +20,9 @@ std::string one_line(std::string_view text) {
   return printable(text);
 }
 
-// Writes a text. Returns 0, or the error number of the failure.
+// Writes a text. Returns 0, or the error number of the failure. Of several ranks one writes for all.
 int write_to(std::FILE* stream, std::string_view text) {
+  if (!speaks()) return 0;
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
   return written ? 0 : errno != 0 ? errno : EIO;

@@ -44,6 +44,11 @@ Json volume_json(const VolumeInfo& info, const std::string& path) {
   return json;
 }
 
+void print_volume_notes(const VolumeInfo& info) {
+  for (const std::string& note : info.notes) print_note("warning: " + note);
+  for (const std::string& remark : info.remarks) print_note(remark);
+}
+
 void add_range(Json& input, double min, double max, std::uint64_t nan) {
   input.update(Json::parse(range_json(min, max, nan)));
 }

@@ -19,6 +19,9 @@ using Json = nlohmann::ordered_json;
 // The `input` part: the facts of the header. `path` is the path that the user gave.
 Json volume_json(const VolumeInfo& info, const std::string& path);
 
+// Prints the notes of a volume as warnings, and its remarks.
+void print_volume_notes(const VolumeInfo& info);
+
 // Adds min, max and nan; null where there is no value at all.
 void add_range(Json& input, double min, double max, std::uint64_t nan);
 

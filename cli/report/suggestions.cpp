@@ -16,7 +16,9 @@ Suggestions suggestions(const Histogram& histogram, const InputOptions& input, c
   if (const std::optional<GenerateOptions> generated = generated_input(input)) {
     found.formula = suggested_iso(generated->kind, generated->type);
   } else if (found.otsu && histogram.min >= 0 && !is_read_once(input.path)) {
-    found.label_map = looks_like_label_map(open_input(input), stop);
+    InputOptions map = input;
+    map.holds_labels = true;
+    found.label_map = looks_like_label_map(open_input(map), stop);
   }
   return found;
 }

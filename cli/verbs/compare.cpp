@@ -46,6 +46,7 @@ std::string distances_text(const MeshDistance& distance, double unit, std::strin
 // The histogram of one way. Bars for both ways side by side would be too wide.
 std::string histogram_text(const OneWayDistance& way, double max, std::string_view name) {
   constexpr double kWidest = 40;
+  if (max == 0) return fmt::format("{}: all distances are 0\n", name);
   const std::uint64_t most = std::ranges::max(way.histogram);
   std::string text = fmt::format("{} (bars: square roots of the counts)\n", name);
   for (std::size_t n = 0; n < way.histogram.size(); ++n) {

@@ -82,25 +82,65 @@ Json info_json(const VolumeInfo& info, const Histogram& histogram, const Suggest
           {"suggested_iso", iso}};
 }
 
+double part_of_range(const Histogram& histogram) { return histogram.max / kParts - histogram.min / kParts; }
+
+double largest_value(const Histogram& histogram) { return std::max(std::abs(histogram.min), std::abs(histogram.max)); }
+
+// Why a range has no parts; empty where it has some.
+std::string why_no_parts(const Histogram& histogram) {
+  if (histogram.empty()) return "no sample is finite";
+  const bool differ = histogram.whole ? (*histogram.whole)[0] != (*histogram.whole)[1] : histogram.min != histogram.max;
+  if (!differ) return histogram.nan + histogram.infinite > 0 ? "all finite samples are equal" : "all samples are equal";
+  const double largest = largest_value(histogram);
+  const double distance = largest - std::nextafter(largest, 0.0);  // of numbers that differ by their last digits
+  return part_of_range(histogram) < distance ? "the samples differ by their last digits" : "";
+}
+
+// Values of a range as text, with so many digits that a part of the range is told from the next one: 6, or more where
+// the range is narrow beside its values.
+class ValueText {
+ public:
+  explicit ValueText(const Histogram& histogram) {
+    const double digits = std::log10(largest_value(histogram) / part_of_range(histogram));
+    if (digits > 0) digits_ = static_cast<int>(std::clamp(std::ceil(digits) + 3, kUsual, kMost));
+  }
+
+  std::string operator()(double value) const { return fmt::format("{:.{}g}", value, digits_); }
+
+  // To the right of a column that is wide enough for all values of the range.
+  std::string in_column(double value) const {
+    constexpr int kSignPointAndExponent = 6;
+    return fmt::format("{:>{}.{}g}", value, digits_ + kSignPointAndExponent, digits_);
+  }
+
+ private:
+  static constexpr double kUsual = 6, kMost = 17;
+  int digits_ = 6;
+};
+
 // The histogram. The length of a bar is the square root of its count: else air would hide everything.
-std::string histogram_text(const Histogram& histogram) {
+std::string histogram_text(const Histogram& histogram, const ValueText& value_text) {
+  const std::string reason = why_no_parts(histogram);
+  if (!reason.empty()) return fmt::format("histogram  none: {}\n", reason);
   const std::vector<std::uint64_t> counts = coarser_bins(histogram, kParts);
   const auto most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
   std::string text = "histogram  (bars: square roots of the counts)\n";
-  const double step = histogram.max / kParts - histogram.min / kParts;
   for (std::size_t n = 0; n < kParts; ++n) {
     const double length = std::sqrt(static_cast<double>(counts[n]) / most) * static_cast<double>(kBarLength);
-    text += fmt::format("  from {:>12.6g} {:>16} {}\n", histogram.min + step * static_cast<double>(n),
-                        grouped(counts[n]), std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
+    // Not from the difference of the ends, which may be no number.
+    const double part = static_cast<double>(n) / kParts;
+    text +=
+        fmt::format("  from {} {:>16} {}\n", value_text.in_column(histogram.min * (1 - part) + histogram.max * part),
+                    grouped(counts[n]), std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
   }
   return text;
 }
 
 // The triangles of surfaces at some of the iso-values. Bars are in proportion: the largest of a part of the range
 // stands for it.
-std::string isos_text(const CrossingCounts& crossings) {
+std::string isos_text(const CrossingCounts& crossings, const ValueText& value_text) {
   constexpr std::size_t kLines = 32;
-  if (crossings.counts.empty()) return "isos       none: all samples are one value\n";
+  if (crossings.counts.empty()) return fmt::format("isos       none: {}\n", why_no_parts(crossings.histogram));
   const auto most = static_cast<double>(std::ranges::max(crossings.counts));
   const std::size_t lines = std::min(kLines, crossings.counts.size());
   std::string text = "isos       (about so many triangles of the closed surface; the most of each part of the range)\n";
@@ -108,9 +148,11 @@ std::string isos_text(const CrossingCounts& crossings) {
     const auto begin = crossings.counts.begin() + static_cast<std::ptrdiff_t>(n * crossings.counts.size() / lines);
     const auto end = crossings.counts.begin() + static_cast<std::ptrdiff_t>((n + 1) * crossings.counts.size() / lines);
     const auto largest = std::max_element(begin, end);
-    const double iso = crossings.first + crossings.step * static_cast<double>(largest - crossings.counts.begin());
+    const auto place = static_cast<double>(largest - crossings.counts.begin());
+    // By halves, as the width of the range may be no number.
+    const double iso = 2 * (crossings.first / 2 + crossings.step / 2 * place);
     const double length = static_cast<double>(*largest) / std::max(most, 1.0) * static_cast<double>(kBarLength);
-    text += fmt::format("  iso {:>12.6g} {:>16} {}\n", iso, grouped(2 * *largest),
+    text += fmt::format("  iso {} {:>16} {}\n", value_text.in_column(iso), grouped(2 * *largest),
                         std::string(static_cast<std::size_t>(std::ceil(length)), '#'));
   }
   return text;
@@ -153,18 +195,20 @@ std::string info_text(const VolumeInfo& info, const Histogram& histogram, const 
   text += "values     " + range_text(histogram);
   text += fmt::format(", {} NaN, {} infinite\n", grouped(histogram.nan), grouped(histogram.infinite));
   if (suggested.formula) text += fmt::format("suggested  --iso {} (the formula's surface)\n", *suggested.formula);
-  if (suggested.otsu) text += fmt::format("suggested  --iso {:.6g} (Otsu's threshold)\n", *suggested.otsu);
+  const ValueText value_text(histogram);
+  if (suggested.otsu) text += fmt::format("suggested  --iso {} (Otsu's threshold)\n", value_text(*suggested.otsu));
   if (suggested.three_classes.size() == 2) {
-    text += fmt::format("           --iso {:.6g} or {:.6g} (three classes)\n", suggested.three_classes[0],
-                        suggested.three_classes[1]);
+    text += fmt::format("           --iso {} or {} (three classes)\n", value_text(suggested.three_classes[0]),
+                        value_text(suggested.three_classes[1]));
   }
   if (suggested.ct) text += fmt::format("           --iso {} (tissues of CT)\n", presets_text());
   if (suggested.label_map) text += "           --labels all (looks like a mask or label map)\n";
   for (const LabelName& label : info.labels) {
     text += fmt::format("label      {} {}\n", label.label.text(), printable(label.name));
   }
-  for (const std::string& note : info.notes) text += fmt::format("note       {}\n", printable(note));
-  if (!histogram.empty()) text += histogram_text(histogram);
+  for (const std::string& note : info.notes) text += fmt::format("warning    {}\n", printable(note));
+  for (const std::string& remark : info.remarks) text += fmt::format("note       {}\n", printable(remark));
+  text += histogram_text(histogram, value_text);
   return text;
 }
 
@@ -191,7 +235,8 @@ void run_info(const InfoArguments& arguments) {
   if (arguments.isos) json["isos"] = isos_json(crossings);
   if (page) write_range_page(*page, json);
   if (arguments.json) return print_out(json_text(json));
-  print_to_reader(info_text(info, histogram, suggested, path) + (arguments.isos ? isos_text(crossings) : ""));
+  print_to_reader(info_text(info, histogram, suggested, path) +
+                  (arguments.isos ? isos_text(crossings, ValueText(histogram)) : ""));
 }
 
 }  // namespace

@@ -5,13 +5,18 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "isoweave/checkpoint_folder.hpp"
 #include "options/files.hpp"
+#include "options/preview.hpp"
+#include "ranks.hpp"
 #include "report/print.hpp"
 #include "verbs/mesh_arguments.hpp"
 #include "verbs/mesh_job.hpp"
+#include "verbs/mesh_ranks.hpp"
 #include "verbs/mesh_state.hpp"
 #include "verbs/mesh_task_options.hpp"
 #include "verbs/verbs.hpp"
@@ -29,6 +34,7 @@ Examples:
   isoweave mesh mask.nii.gz --iso 0.5 --smooth --center --ground -o print.stl
   isoweave mesh segmentation.nii.gz --labels all --smooth -o seg.ply
   isoweave mesh ct.nii.gz --iso -300,200 --one-file -o skin-and-bone.glb
+  isoweave mesh huge.zarr --iso 100 --preview -o look.ply
   isoweave mesh huge.zarr --iso 100 --memory 2G --checkpoint run -o huge.ply
   isoweave mesh --resume run
 
@@ -41,15 +47,20 @@ void run_mesh(MeshArguments arguments) {
     if (arguments.iso.empty() && arguments.labels.empty()) throw CLI::RequiredError("--iso");
     if (!arguments.output.given()) arguments.output.path = usual_output(arguments.input.path, "", ".ply");
     if (arguments.slab.empty()) arguments.slab = "auto";
+    if (rank_link() != nullptr) return run_mesh_in_ranks(std::move(arguments), *rank_link());
     if (arguments.every.empty()) arguments.every = "5min";
-    // Labels are not resampled, as a value between two labels is no label.
-    const bool labels = !arguments.labels.empty() && !generated_input(arguments.input);
-    if (labels && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
+    // Labels are neither resampled nor averaged, as a value between two labels is no label.
+    arguments.input.holds_labels = !arguments.labels.empty();
+    const bool file = arguments.input.holds_labels && !generated_input(arguments.input);
+    if (file && arguments.input.even_spacing.empty()) arguments.input.even_spacing = "refuse";
     return run_mesh_job(arguments, std::nullopt, nullptr);
+  }
+  if (rank_link() != nullptr) {
+    throw std::invalid_argument("--resume: the same isoweave-mpi command goes on from its --checkpoint");
   }
   // A path that is no folder cannot be locked and holds no state.
   std::shared_ptr<const CheckpointLock> lock;
-  if (std::filesystem::is_directory(arguments.resume)) lock = std::make_shared<CheckpointLock>(arguments.resume);
+  if (std::filesystem::is_directory(arguments.resume)) lock = lock_checkpoint_folder(arguments.resume);
   const Checkpoint checkpoint = read_checkpoint(arguments.resume);
   arguments = resumed_arguments(arguments, checkpoint);
   if (!arguments.run.quiet) print_note(fmt::format("resumed at layer {} of {}", checkpoint.layer, checkpoint.layers));
@@ -105,8 +116,12 @@ void add_way_options(CLI::App& verb, MeshArguments& arguments) {
 // require_possible.
 void exclude_from_labels(CLI::App& verb) {
   verb.get_option("--labels")
-      ->excludes("--iso", "--inside", "--step", "--to-stdout", "--dry-run", "--every", "--html", "--page-triangles",
-                 "--blocks");
+      ->excludes("--iso", "--inside", "--to-stdout", "--dry-run", "--every", "--html", "--page-triangles");
+}
+
+// Excludes what only the command line knows of and a preview does not have, beside what any preview excludes.
+void exclude_from_preview(CLI::App& verb) {
+  verb.get_option("--preview")->excludes("--labels", "--normals", "--dry-run", "--blocks");
 }
 
 }  // namespace
@@ -118,8 +133,11 @@ void add_mesh_verb(CLI::App& app) {
   const std::vector<CLI::Option*> task = verb->get_options();
   add_way_options(*verb, *arguments);
   exclude_from_labels(*verb);
+  add_preview_option(*verb, arguments->preview);
+  exclude_from_preview(*verb);
   CLI::Option* resume =
       verb->add_option("--resume", arguments->resume, "Continue the run whose state is in this folder");
+  resume->excludes("--preview");
   for (CLI::Option* option : task) {
     if (option != verb->get_help_ptr()) resume->excludes(option);
   }

@@ -7,6 +7,7 @@
 #include "options/index.hpp"
 #include "options/input_volume.hpp"
 #include "options/output_mesh.hpp"
+#include "options/preview.hpp"
 #include "options/run.hpp"
 #include "options/stop.hpp"
 #include "page/page.hpp"
@@ -21,6 +22,7 @@ struct MeshArguments {
   RunOptions run;
   OutputOptions output;
   StopOptions stop;
+  PreviewChoice preview;
   ComponentOptions components;
   PageOptions page;
   WatchOptions watch;

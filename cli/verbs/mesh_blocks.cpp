@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "isoweave/error.hpp"
 #include "isoweave/possible_runs.hpp"
@@ -10,37 +9,12 @@
 #include "options/values.hpp"
 
 namespace isoweave::cli {
-namespace {
-
-// A folder that is there for as long as this object.
-class PassingFolder {
- public:
-  // Throws CannotWrite where there is a file or folder of that name.
-  explicit PassingFolder(std::string path) : path_(std::move(path)) {
-    std::error_code error;
-    if (std::filesystem::create_directory(path_, error)) return;
-    throw CannotWrite(path_ + ": expected a new folder for what waits from block to block, found " +
-                      (error ? error.message() : "one of that name"));
-  }
-  PassingFolder(const PassingFolder&) = delete;
-  PassingFolder& operator=(const PassingFolder&) = delete;
-  ~PassingFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 std::string folder_beside(const OutputOptions& output) {
-  return output.path.empty() ? (std::filesystem::temp_directory_path() / "isoweave.blocks").string()
-                             : output.path + ".blocks";
+  if (output.path.empty()) return std::filesystem::temp_directory_path().string();
+  const std::filesystem::path folder = std::filesystem::path(output.path).parent_path();
+  return folder.empty() ? "." : folder.string();
 }
-
-}  // namespace
 
 std::optional<std::int64_t> asked_blocks(const MeshArguments& arguments) {
   if (arguments.blocks.empty() || arguments.blocks == "auto" || arguments.blocks == "off") return std::nullopt;
@@ -53,7 +27,7 @@ bool may_take_blocks(const MeshArguments& arguments, const MeshOptions& options,
                      const SliceSource& volume) {
   const bool is_auto = arguments.blocks.empty() || arguments.blocks == "auto";
   if (!is_auto || control.memory == 0 || is_read_once(arguments.input.path)) return false;
-  if (!volume.skips() || !volume.reads_parts_of_rows()) return false;
+  if (!volume.skips() || !volume.reads_boxes()) return false;
   if (!arguments.checkpoint.empty() || arguments.watch.given() || arguments.index.named()) return false;
   try {
     require_possible(RunKind::kBlocks, options, control);
@@ -63,13 +37,19 @@ bool may_take_blocks(const MeshArguments& arguments, const MeshOptions& options,
   return true;
 }
 
+std::uint64_t count_input_in_blocks(const MeshArguments& arguments, std::int64_t size, const MeshOptions& options,
+                                    const RunControl& control) {
+  RunControl in_blocks = control;
+  in_blocks.index = nullptr;
+  return count_triangles_in_blocks([&] { return open_input(arguments.input); }, options, {size}, in_blocks);
+}
+
 MeshReport mesh_input_in_blocks(const MeshArguments& arguments, std::int64_t size, std::span<MeshSink* const> sinks,
                                 const MeshOptions& options, const RunControl& control) {
   RunControl in_blocks = control;
   in_blocks.index = nullptr;
   BlockOptions blocks{size};
-  std::optional<PassingFolder> folder;
-  if (control.memory > 0) blocks.folder = folder.emplace(folder_beside(arguments.output)).path();
+  if (control.memory > 0) blocks.folder = folder_beside(arguments.output);
   return mesh_in_blocks([&] { return open_input(arguments.input); }, sinks, options, blocks, in_blocks);
 }
 

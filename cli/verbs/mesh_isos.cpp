@@ -18,6 +18,7 @@
 #include "report/report.hpp"
 #include "verbs/mesh_forecast.hpp"
 #include "verbs/mesh_options.hpp"
+#include "verbs/mesh_report.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -108,10 +109,7 @@ Json report_json(const MeshArguments& arguments, const VolumeInfo& info, const I
   add_range(input, report.total.min, report.total.max, report.total.nan);
   Json json = run_json(report.total, std::move(input));
   const MeshOptions& options = meshes.front().options;
-  json["inside"] = arguments.inside;
-  json["closed"] = options.closed;
-  json["smooth"] = options.smooth;
-  json["extractor"] = arguments.extractor;
+  report_surface_options(json, arguments, options);
   if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
@@ -169,9 +167,7 @@ void mesh_iso_files(const MeshArguments& arguments, const MeshOptions& options, 
   std::vector<IsoSink> sinks;
   for (std::size_t n = 0; n < meshes.size(); ++n) sinks.push_back({meshes[n].options.iso, files[n].get()});
   const bool quiet = arguments.run.quiet;
-  if (!quiet) {
-    for (const std::string& note : info.notes) print_note("warning: " + note);
-  }
+  if (!quiet) print_volume_notes(info);
   ProgressPrinter printer(progress_mode(arguments.run.progress, quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   IsoValuesReport report = mesh_iso_values(volume, sinks, options, control);

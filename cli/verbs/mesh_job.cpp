@@ -16,12 +16,11 @@
 #include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
-#include "isoweave/generate.hpp"
 #include "isoweave/printable.hpp"
+#include "isoweave/remote.hpp"
 #include "options/files.hpp"
 #include "options/levels.hpp"
 #include "options/parts.hpp"
-#include "options/possible.hpp"
 #include "options/values.hpp"
 #include "report/evidence.hpp"
 #include "report/print.hpp"
@@ -32,36 +31,13 @@
 #include "verbs/mesh_isos.hpp"
 #include "verbs/mesh_labels.hpp"
 #include "verbs/mesh_options.hpp"
+#include "verbs/mesh_possible.hpp"
+#include "verbs/mesh_preview.hpp"
+#include "verbs/mesh_report.hpp"
 #include "verbs/mesh_state.hpp"
 
 namespace isoweave::cli {
 namespace {
-
-Json report_json(const MeshReport& report, const VolumeInfo& info, const MeshArguments& arguments,
-                 const MeshOptions& options, const MeshFileOptions& file, const std::optional<Forecast>& forecast) {
-  const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
-  Json input = volume_json(info, arguments.input.path);
-  add_range(input, report.min, report.max, report.nan);
-  Json json = run_json(report, std::move(input));
-  if (forecast) {
-    json["memory"]["predicted_bytes"] = forecast->peak_bytes;
-    json["forecast"] = Json::parse(forecast_json(*forecast, output_bytes(*forecast, arguments, file)));
-  }
-  json["iso"] = options.iso;
-  json["inside"] = arguments.inside;
-  json["closed"] = options.closed;
-  json["smooth"] = options.smooth;
-  json["extractor"] = arguments.extractor;
-  if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
-  json["quality"] = arguments.quality;
-  json["normals"] = normals_name(options.normals);
-  if (!arguments.color_by.empty()) json["color_by"] = arguments.color_by;
-  json["output"] = outputs.back().name();
-  if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
-  json["space"] = space_of_mesh(info.geometry, options.space);
-  json["offset"] = file.offset;
-  return json;
-}
 
 // A pass over the volume that makes its surface.
 void make_surface(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
@@ -116,15 +92,9 @@ void check_labels(const MeshArguments& arguments) {
 void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info,
                  const RunControl& control) {
   Evidence evidence(arguments.run, arguments.page);
-  LabelsTask task{arguments.input,
-                  arguments.output,
-                  arguments.run,
-                  options,
-                  parse_labels(arguments.labels),
-                  arguments.label_names,
-                  arguments.numbered,
-                  {},
-                  {}};
+  LabelsTask task{
+      arguments.input,         arguments.output,      arguments.run,      options, parse_labels(arguments.labels),
+      asked_blocks(arguments), arguments.label_names, arguments.numbered, {},      {}};
   task.file = [&](const LabelName& label) {
     MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
@@ -143,13 +113,6 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
   };
   mesh_label_files(task, info, control, evidence);
 }
-
-// Stands for the page that will watch the run.
-class NoObserver final : public SweepObserver {
- public:
-  void add_final(std::span<const TriangleCorners>) override {}
-  void end_slab(const Progress&, const SlabRecord&, const std::function<void(const Visitor&)>&) override {}
-};
 
 // One run, step by step.
 class MeshJob {
@@ -172,14 +135,15 @@ class MeshJob {
     open();
     if (!arguments_.labels.empty()) {
       mesh_labels(arguments_, options_, info_, control_);
-      return tell_unit();
+      return tell_lengths();
     }
     Evidence evidence(arguments_.run, arguments_.page);
     if (has_several_isos(arguments_)) return mesh_isos(evidence);
     if (arguments_.iso == "auto") find_iso();
+    if (arguments_.preview.given()) return preview(evidence);
     find_target();
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
-    if (!resume_) foresee();
+    if (!resume_) slabs_or_blocks([&] { foresee_slabs(); });
     if (arguments_.dry_run) return tell_forecast(evidence);
     choose();
     prepare_states();
@@ -197,7 +161,7 @@ class MeshJob {
   void check() const {
     parse_slab(arguments_.slab, 1);
     check_watch(arguments_.watch);
-    check_possible();
+    check_possible(arguments_, options_, control_, resume_);
     check_labels(arguments_);
     check_isos(arguments_);
     if (asked_blocks(arguments_) && (arguments_.dry_run || is_read_once(arguments_.input.path))) {
@@ -208,9 +172,10 @@ class MeshJob {
     if (!arguments_.checkpoint.empty() && is_read_once(arguments_.input.path)) {
       throw std::invalid_argument("--checkpoint: expected a volume that --resume can read again, found a pipe");
     }
+    if (!arguments_.checkpoint.empty()) refuse_secrets(arguments_, "saved state");
     for (const OutputOptions& output : outputs_) {
       check_different({arguments_.input.path, output.path, arguments_.run.report, arguments_.page.path});
-      check_different({arguments_.color_by, output.path});
+      check_different({shown_url(arguments_.color_by), output.path});
       if (one_surface()) check_absent(no_clobber(), {output.path});
     }
     check_absent(no_clobber(), {arguments_.run.report, arguments_.page.path});
@@ -219,38 +184,16 @@ class MeshJob {
     if (!one_surface()) check_parts(arguments_.output);
   }
 
-  // Refuses options that do not go together, before any file is looked at. A volume, an index and an observer that
-  // are not the real ones stand for those that are opened later: only their presence counts.
-  void check_possible() const {
-    MeshOptions asked = options_;
-    RunControl control = control_;
-    if (!arguments_.color_by.empty()) asked.values = generate_volume({});
-    if (arguments_.watch.given()) control.observer = std::make_shared<NoObserver>();
-    if (arguments_.index.named()) control.index = build_index(*generate_volume({"box", {1, 1, 1}}));
-    control.checkpoint.folder = arguments_.checkpoint;
-    control.resume = resume_;
-    const bool labels = !arguments_.labels.empty();
-    const bool isos = has_several_isos(arguments_);
-    const bool blocks = asked_blocks(arguments_).has_value();
-    if (isos && blocks) throw std::invalid_argument("--iso with several values: expected a run without --blocks");
-    const RunKind kind = labels   ? RunKind::kLabels
-                         : isos   ? RunKind::kIsoValues
-                         : blocks ? RunKind::kBlocks
-                                  : RunKind::kMesh;
-    const char* const name = labels ? "--labels" : isos ? "--iso with several values" : "--blocks";
-    require_possible({kind, name, asked, control, arguments_.stop, arguments_.components});
-  }
-
   // The volumes, and the options that depend on their units and sizes.
   void open() {
+    exit_on_signal();
     volume_ = open_input(arguments_.input);
     info_ = volume_->info();
     if (one_surface()) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
     control_.index = index_.index;
+    if (!is_read_once(arguments_.input.path)) control_.reopen = [this] { return open_input(arguments_.input); };
     options_.values = open_values(arguments_);
-    // Viewers of GLB draw a surface without normals in facets.
-    const bool automatic = arguments_.normals == "auto";
-    if (automatic && output_format(arguments_.output) == MeshFormat::kGlb) options_.normals = Normals::kGradient;
+    set_automatic_normals(arguments_, options_);
     set_lengths(arguments_, info_, options_);
     control_.slab = parse_slab(arguments_.slab, info_.dims[2]);
     control_.stop = borrow(stop_on_signal());
@@ -260,21 +203,16 @@ class MeshJob {
   void mesh_isos(Evidence& evidence) {
     options_.triangles = stop_triangles(arguments_.stop, [] { return std::uint64_t{0}; });
     mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
-    tell_unit();
+    tell_lengths();
   }
 
-  // Tells of a unit that is assumed, and of an error that is likely to be in another unit than was meant. When the
-  // run is done: a run that fails has one line.
-  void tell_unit() const {
-    if (quiet()) return;
-    const bool matters = has_metric_length(arguments_.stop) || states_unit(arguments_.output);
-    if (info_.geometry.unit.empty() && matters) {
-      print_note(info_.path + ": does not say its unit: lengths are taken for it to be mm (--unit says otherwise)");
-    }
-    const bool by_error = !arguments_.stop.error.empty() && !options_.error.in_voxels;
-    if (!by_error || options_.error.value <= most_shape_error(info_)) return;
-    print_note(fmt::format("warning: --error {} is more than a twentieth of the volume's diagonal, {:.4g} {}",
-                           arguments_.stop.error, most_shape_error(info_) * 20, unit_text(info_.geometry.unit)));
+  void preview(Evidence& evidence) {
+    mesh_preview(arguments_, options_, *volume_, control_, evidence);
+    tell_lengths();
+  }
+
+  void tell_lengths() const {
+    if (!quiet()) cli::tell_lengths(arguments_, info_);
   }
 
   void find_iso() {
@@ -297,12 +235,17 @@ class MeshJob {
 
   // Finds the number of triangles to stop at. For a share, all triangles are counted first.
   void find_target() {
-    if (control_.memory > 0 && !arguments_.stop.ratio.empty()) foresee_share();
+    block_size_ = asked_blocks(arguments_);
+    if (control_.memory > 0 && !arguments_.stop.ratio.empty()) slabs_or_blocks([&] { foresee_share(); });
     options_.triangles = stop_triangles(arguments_.stop, [&] {
       choose();
-      if (options_.components != nullptr) return options_.components->triangles;
-      return count_triangles(*open_input(arguments_.input), options_, control_);
+      return options_.components != nullptr ? options_.components->triangles : count_all();
     });
+  }
+
+  std::uint64_t count_all() const {
+    if (!block_size_) return count_triangles(*open_input(arguments_.input), options_, control_);
+    return count_input_in_blocks(arguments_, *block_size_, options_, control_);
   }
 
   // Refuses a cap that is too small for a share of all triangles, before they are counted.
@@ -322,12 +265,12 @@ class MeshJob {
     options_.triangles = 0;
   }
 
-  // Foresees the run. Where its slabs do not fit into the cap, it takes blocks instead.
-  void foresee() {
-    block_size_ = asked_blocks(arguments_);
+  // Foresees a run in slabs. Where they do not fit into the cap, it takes blocks instead.
+  template <class Foresee>
+  void slabs_or_blocks(const Foresee& foresee) {
     if (block_size_) return;
     try {
-      foresee_slabs();
+      foresee();
     } catch (const OverMemory&) {
       if (arguments_.dry_run || !may_take_blocks(arguments_, options_, control_, *volume_)) throw;
       choose_blocks();
@@ -335,12 +278,17 @@ class MeshJob {
     }
   }
 
-  // Chooses blocks that are expected to fit into the cap, if there are any.
+  // Chooses blocks that are expected to fit into the cap, if there are any. Where not even empty ones do, nothing is
+  // read.
   void choose_blocks() {
+    const auto size_for = [this](std::uint64_t triangles) {
+      return block_size_for([this] { return open_input(arguments_.input); }, triangles, control_.memory,
+                            options_.triangles);
+    };
+    if (!size_for(0)) return;
     RunControl uncapped = control_;
     uncapped.memory = 0;
-    const Forecast forecast = forecast_mesh(*open_input(arguments_.input), options_, uncapped);
-    block_size_ = block_size_for(info_, forecast.triangles_extracted, control_.memory);
+    block_size_ = size_for(forecast_mesh(*open_input(arguments_.input), options_, uncapped).triangles_extracted);
     if (quiet() || !block_size_) return;
     print_note(fmt::format("--memory {}: too little for slabs, so blocks of {} are taken (--blocks off: they are not)",
                            arguments_.memory, *block_size_));
@@ -349,6 +297,8 @@ class MeshJob {
   void foresee_slabs() {
     const CheckedForecast checked = checked_forecast(arguments_, options_, file_, control_);
     forecast_ = checked.run;
+    // A forecast does not know how many triangles dropped components have: then the run makes one that does.
+    if (rule_.keeps_all()) control_.head_start = forecast_->head_start;
     files_bytes_ = checked.files;
     check_finer(arguments_, options_, file_, control_, *forecast_);
   }
@@ -358,7 +308,7 @@ class MeshJob {
     const int threads = control_.threads > 0 ? control_.threads : static_cast<int>(std::thread::hardware_concurrency());
     print_to_reader(forecast_text(*forecast_, options_.triangles, bytes, threads));
     if (!rule_.keeps_all()) print_to_reader("components that --largest or --min-component drops are counted in\n");
-    tell_unit();
+    tell_lengths();
     evidence.write_forecast(
         {{"version", ISOWEAVE_VERSION}, {"forecast", Json::parse(forecast_json(*forecast_, bytes))}});
   }
@@ -368,7 +318,7 @@ class MeshJob {
     if (resume_ && resume_->marks.size() != outputs_.size()) refuse_state(*resume_);
     if (arguments_.checkpoint.empty()) return;
     parse_every(arguments_.every, control_.checkpoint);
-    if (!resume_) lock_ = std::make_shared<CheckpointLock>(begin_checkpoints(arguments_.checkpoint));
+    if (!resume_) lock_ = begin_checkpoints(arguments_.checkpoint);
     control_.checkpoint.folder = arguments_.checkpoint;
     control_.checkpoint.lock = lock_;
     control_.checkpoint.note = task_json(arguments_, options_).dump();
@@ -401,7 +351,6 @@ class MeshJob {
     sinks.tell_digests(report);
     const std::string preset = preset_note(arguments_.iso, report.min, report.max);
     if (!preset.empty()) report.warnings.push_back(preset);
-    remove_part_folders(folders);
     if (watch) watch->complete(report);
     printer.finish();
     write_evidence(report, sinks, evidence);
@@ -423,13 +372,12 @@ class MeshJob {
 
   void print_volume_notes() const {
     if (quiet()) return;
-    for (const std::string& note : info_.notes) print_note("warning: " + note);
-    if (options_.values == nullptr) return;
-    for (const std::string& note : options_.values->info().notes) print_note("warning: " + note);
+    cli::print_volume_notes(info_);
+    if (options_.values != nullptr) cli::print_volume_notes(options_.values->info());
   }
 
   void write_evidence(const MeshReport& report, const LevelSinks& sinks, Evidence& evidence) const {
-    Json json = report_json(report, info_, arguments_, options_, file_, forecast_);
+    Json json = mesh_report_json(report, info_, arguments_, options_, file_, forecast_);
     json["notes"] = sinks.last().notes();
     if (report.left_out) json["index"] = left_out_json(*report.left_out, index_.path);
     evidence.write(std::move(json), control_, [&](const RunControl& control) {
@@ -443,9 +391,10 @@ class MeshJob {
   }
 
   void print_result(const MeshReport& report, const LevelSinks& sinks) const {
-    tell_unit();
+    tell_lengths();
     for (const std::string& warning : report.warnings) print_note("warning: " + warning);
     print_notes(sinks.last());
+    print_caps(report, arguments_);
     print_dropped(report);
     print_levels(report, outputs_);
     print_target(arguments_.stop, report, options_.triangles, options_.error, info_.geometry.unit);

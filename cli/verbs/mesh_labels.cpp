@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "isoweave/blocks.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/label_names.hpp"
 #include "options/files.hpp"
@@ -117,10 +118,16 @@ void check_is_label_map(const LabelsTask& task, std::span<const LabelExtent> lab
                   task.input.path, labels.size(), count_scattered(labels)));
 }
 
+std::vector<LabelExtent> find_in(const LabelsTask& task, const InputOptions& input, std::span<const Label> wanted,
+                                 const std::atomic<bool>* stop) {
+  if (!task.blocks) return find_labels(*open_input(input), wanted, stop);
+  return find_labels_in_blocks([&] { return open_input(input); }, *task.blocks, wanted, stop);
+}
+
 // All labels that occur, and the segments that do not.
 std::vector<MeshedLabel> all_labels(const LabelsTask& task, const LabelBook& book, const InputOptions& input,
                                     std::int64_t layer, const std::atomic<bool>* stop) {
-  const std::vector<LabelExtent> extents = find_labels(*open_input(input), {}, stop);
+  const std::vector<LabelExtent> extents = find_in(task, input, {}, stop);
   if (book.segments(layer).empty()) check_is_label_map(task, extents);
   std::vector<MeshedLabel> labels;
   labels.reserve(extents.size());
@@ -143,7 +150,7 @@ std::vector<MeshedLabel> chosen_labels(const LabelsTask& task, std::span<const L
     wanted.push_back(name.label);
   }
   if (here.empty()) return {};
-  const std::vector<LabelExtent> extents = find_labels(*open_input(input), wanted, stop);
+  const std::vector<LabelExtent> extents = find_in(task, input, wanted, stop);
   std::vector<MeshedLabel> labels;
   for (std::size_t n = 0; n < here.size(); ++n) {
     if (extents[n].samples == 0 && !task.run.allow_empty) {
@@ -168,6 +175,13 @@ std::vector<LabelLayer> find_layers(const LabelsTask& task, const LabelBook& boo
   return layers;
 }
 
+LabelsReport mesh_layer(const LabelsTask& task, const LabelLayer& layer, std::span<const LabelSink> sinks,
+                        const RunControl& control) {
+  if (!task.blocks) return mesh_labels(*open_input(layer.input), sinks, task.options, control);
+  const VolumeOpener open = [&] { return open_input(layer.input); };
+  return mesh_labels_in_blocks(open, sinks, task.options, {*task.blocks}, control);
+}
+
 LabelsReport mesh_layers(const LabelsTask& task, std::span<const LabelLayer> layers, LabelFiles& files,
                          const RunControl& control) {
   LabelsReport report;
@@ -177,7 +191,7 @@ LabelsReport mesh_layers(const LabelsTask& task, std::span<const LabelLayer> lay
     for (const MeshedLabel& label : layer.labels) {
       sinks.push_back({label.name.label, &files.sinks[first + sinks.size()], label.extent.box});
     }
-    LabelsReport of_layer = mesh_labels(*open_input(layer.input), sinks, task.options, control);
+    LabelsReport of_layer = mesh_layer(task, layer, sinks, control);
     if (first == 0) {
       report = std::move(of_layer);
     } else {
@@ -228,7 +242,9 @@ void print_labels(const LabelsTask& task, const VolumeInfo& info, const LabelsRe
     print_surface(report.labels[n], files.surfaces[n].name());
   }
   const auto voxels = static_cast<double>(info.slice_samples()) * static_cast<double>(info.dims[2]);
-  print_summary(report.total, fmt::format("{}: {} labels", task.output.name(), report.labels.size()),
+  print_summary(report.total,
+                fmt::format("{}: {} {}", task.output.name(), report.labels.size(),
+                            report.labels.size() == 1 ? "label" : "labels"),
                 voxels * static_cast<double>(layers));
 }
 
@@ -251,7 +267,7 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   LabelFiles files(task, layers);
   if (!run.quiet) {
     const std::unique_ptr<SliceSource> first = open_input(layers.front().input);
-    for (const std::string& note : first->info().notes) print_note("warning: " + note);
+    print_volume_notes(first->info());
   }
   ProgressPrinter printer(progress_mode(run.progress, run.quiet));
   control.progress = [&](const Progress& progress) { printer.show(progress); };

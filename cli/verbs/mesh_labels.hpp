@@ -1,7 +1,9 @@
 // mesh --labels: a mesh for each label, each in a file of its own.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "isoweave/pipeline.hpp"
@@ -20,6 +22,8 @@ struct LabelsTask {
   const RunOptions& run;
   const MeshOptions& options;
   LabelChoice choice;
+  std::optional<std::int64_t>
+      blocks;             // samples along each side of the boxes in which labels are meshed; none: one sweep
   std::string names;      // a file of names, or none
   bool numbered = false;  // --segment is given: else a label is the number of its object
   // Gives the options of a label's file, and the task for the report.

@@ -10,7 +10,9 @@
 
 #include "isoweave/error.hpp"
 #include "isoweave/histogram.hpp"
+#include "isoweave/remote.hpp"
 #include "options/input_volume.hpp"
+#include "options/lengths.hpp"
 #include "options/levels.hpp"
 #include "options/values.hpp"
 #include "report/report.hpp"
@@ -95,23 +97,43 @@ MeshOptions mesh_options(const MeshArguments& arguments) {
   return options;
 }
 
+void set_automatic_normals(const MeshArguments& arguments, MeshOptions& options) {
+  const bool automatic = arguments.normals == "auto" && !arguments.preview.given();
+  if (automatic && output_format(arguments.output) == MeshFormat::kGlb) options.normals = Normals::kGradient;
+}
+
 void set_lengths(const MeshArguments& arguments, const VolumeInfo& volume, MeshOptions& options) {
-  const std::string& unit = volume.geometry.unit;
-  options.error = stop_error(arguments.stop, kUsualError, unit);
+  const LengthBasis basis = length_basis(volume);
+  options.error = stop_error(arguments.stop, kUsualError, basis);
   if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(volume));
-  options.max_distance = stop_distance(arguments.stop, unit);
-  options.levels = finer_levels(arguments.stop, unit);
+  options.max_distance = stop_distance(arguments.stop, basis);
+  options.levels = finer_levels(arguments.stop, basis);
+}
+
+void tell_lengths(const MeshArguments& arguments, const VolumeInfo& volume) {
+  std::vector<GivenLength> lengths = given_lengths(arguments.stop);
+  lengths.push_back(given_cell(arguments.preview));
+  const bool stated = arguments.output.given() && states_unit(arguments.output);
+  tell_lengths(volume.path, lengths, stated, length_basis(volume));
 }
 
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments) {
   if (arguments.color_by.empty()) return nullptr;
   InputOptions input;
-  input.path = arguments.color_by;
+  set_place(input, arguments.color_by);
   input.roi = arguments.input.roi;
   input.step = arguments.input.step;
   input.even_spacing = arguments.input.even_spacing;
   input.external = arguments.input.external;
   return open_input(input);
+}
+
+void refuse_secrets(const MeshArguments& arguments, std::string_view kept) {
+  for (const std::string& url : {arguments.input.secret_url, arguments.color_by}) {
+    if (!is_url(url) || url.find_first_of("@?") == std::string::npos) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: expected a URL without a user and a query, which are kept in no {}", shown_url(url), kept));
+  }
 }
 
 AutomaticIso automatic_iso(const InputOptions& input, const std::atomic<bool>& stop) {

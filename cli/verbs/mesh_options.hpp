@@ -20,11 +20,21 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices);
 // The options that need no volume.
 MeshOptions mesh_options(const MeshArguments& arguments);
 
+// Chooses normals for --normals auto: viewers of GLB draw a surface without them in facets. Previews have none.
+void set_automatic_normals(const MeshArguments& arguments, MeshOptions& options);
+
 // Sets the lengths among the options, which may be in the unit of the volume.
 void set_lengths(const MeshArguments& arguments, const VolumeInfo& volume, MeshOptions& options);
 
+// Says what is to be said of the unit of the volume and of the lengths that were given. When the run is done: a run
+// that fails has one line.
+void tell_lengths(const MeshArguments& arguments, const VolumeInfo& volume);
+
 // The volume whose values the vertices get, opened with the choices made for the first volume; or null.
 std::unique_ptr<SliceSource> open_values(const MeshArguments& arguments);
+
+// Throws std::invalid_argument for a URL with a user or a query, which must not get into `kept`, a file.
+void refuse_secrets(const MeshArguments& arguments, std::string_view kept);
 
 // Otsu's threshold, and a line about other surfaces that the volume has.
 struct AutomaticIso {

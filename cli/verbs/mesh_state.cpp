@@ -9,15 +9,16 @@
 
 #include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/remote.hpp"
 #include "options/input_volume.hpp"
 #include "options/values.hpp"
 
 namespace isoweave::cli {
 namespace {
 
-// Empty where the path is.
+// Empty where the path is; a URL as it is.
 std::string absolute_path(const std::string& path) {
-  return path.empty() ? path : std::filesystem::absolute(path).string();
+  return path.empty() || is_url(path) ? path : std::filesystem::absolute(path).string();
 }
 
 }  // namespace
@@ -121,8 +122,8 @@ void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
   }
 }
 
-CheckpointLock begin_checkpoints(const std::string& folder) {
-  CheckpointLock lock = lock_checkpoint_folder(folder);
+std::shared_ptr<const CheckpointLock> begin_checkpoints(const std::string& folder) {
+  std::shared_ptr<const CheckpointLock> lock = lock_checkpoint_folder(folder);
   if (holds_state(folder)) {
     throw CannotWrite(
         fmt::format("{}: holds an unfinished run: go on with isoweave mesh --resume {}, or remove it", folder, folder));

@@ -1,6 +1,7 @@
 // The part of the command line that isoweave mesh saves, and the folders of saved states.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,6 @@ MeshArguments resumed_arguments(const MeshArguments& now, const Checkpoint& chec
 void parse_every(std::string_view text, CheckpointOptions& checkpoint);
 
 // Makes the folder for the states of a new run, and locks it. States of another run are never overwritten.
-CheckpointLock begin_checkpoints(const std::string& folder);
+std::shared_ptr<const CheckpointLock> begin_checkpoints(const std::string& folder);
 
 }  // namespace isoweave::cli

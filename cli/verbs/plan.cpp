@@ -33,14 +33,17 @@ void run_plan(MeshArguments arguments, const std::string& folder, bool quiet) {
   if (has_several_isos(arguments)) wrong_value("--iso", "one value", arguments.iso);
   if (is_read_once(arguments.input.path))
     throw std::invalid_argument("plan: expected a volume that every task can read");
+  refuse_secrets(arguments, "plan");
   if (arguments.iso == "auto") {
     arguments.iso = fmt::format("{}", automatic_iso(arguments.input, *borrow(stop_on_signal())).iso);
     if (!quiet) print_note("--iso " + arguments.iso + " (Otsu's threshold)");
   }
   const MeshOptions asked = mesh_options(arguments);
-  require_possible({RunKind::kBlocks, "plan", asked, {}, arguments.stop, arguments.components});
-  const TaskList tasks = list_tasks(make_plan(arguments, block, folder).mesh);
+  require_possible({RunKind::kProcesses, "plan", asked, {}, arguments.stop, arguments.components});
+  const PlannedMesh plan = make_plan(arguments, block, folder);
+  const TaskList tasks = list_tasks(plan.mesh);
   if (quiet) return;
+  tell_lengths(arguments, plan.volume);
   print_note(fmt::format("{}: {} tasks in {} stages, {} of them to read the volume: isoweave work {}", folder,
                          grouped(tasks.count()), tasks.stages.size(), grouped(tasks.stages.front()), folder));
 }

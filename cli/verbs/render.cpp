@@ -27,21 +27,25 @@ Examples:
   isoweave render bone.ply -o bone.png
   isoweave render bone.ply -o side.png --view right --size 1920x1080 \
     --background transparent
+  isoweave render scan.ply -o scan.png --view front --axes --zoom 1.5
   isoweave render small.ply -o mesh.png --wireframe --shading flat --view 150,10
   isoweave render distances.ply -o error.png --color-by quality --range 0,0.5
 At --view 0,0 (front) the camera looks along +y with z up, in a mesh that says
 RAS along -y: at the face of a patient. Azimuth turns it to the side of +x
-(RAS: -x), elevation up.)";
+(RAS: -x), elevation up. --up y is for files with y up, as most of glTF and OBJ
+are: from the front the camera looks along -z then.)";
 
 constexpr std::int64_t kMostPixels = 16384;
 constexpr std::int64_t kMostSamples = 8;
+constexpr int kWidthsOfBar = 4;  // of a picture that has room for a bar of its colours
 
 struct RenderArguments {
   ReadMeshOptions reading;
   std::string path, output, size = "1200x900", view = "35,20", background = "white", colour = "#decdb4", colour_by,
                             range;
+  std::string up = "z", zoom = "1";
   std::string shading = "smooth", samples = "3", threads = "all";
-  bool wireframe = false, quiet = false, no_clobber = false;
+  bool wireframe = false, axes = false, quiet = false, no_clobber = false, no_color_bar = false;
 };
 
 int parse_limited(std::string_view option, std::string_view text, std::int64_t most) {
@@ -70,6 +74,22 @@ View parse_view(std::string_view text) {
   const View view{parse_number("--view", azimuth), parse_number("--view", elevation)};
   if (view.elevation < -90 || view.elevation > 90) wrong_value("--view", kExpected, text);
   return view;
+}
+
+Axis parse_axis(std::string_view text) {
+  return parse_choice<Axis>("--up", text,
+                            {{"x", Axis::kX},
+                             {"y", Axis::kY},
+                             {"z", Axis::kZ},
+                             {"-x", Axis::kMinusX},
+                             {"-y", Axis::kMinusY},
+                             {"-z", Axis::kMinusZ}});
+}
+
+double parse_zoom(std::string_view text) {
+  const double zoom = parse_number("--zoom", text);
+  if (!(zoom >= 0.01 && zoom <= 100)) wrong_value("--zoom", "a number from 0.01 to 100", text);
+  return zoom;
 }
 
 Colour parse_colour(std::string_view option, std::string_view text) {
@@ -105,6 +125,9 @@ RenderOptions parse_options(const RenderArguments& arguments) {
   options.width = parse_limited("--size", width, kMostPixels);
   options.height = parse_limited("--size", height, kMostPixels);
   options.view = parse_view(arguments.view);
+  options.up = parse_axis(arguments.up);
+  options.zoom = parse_zoom(arguments.zoom);
+  options.axes = arguments.axes;
   options.background.reset();
   if (arguments.background != "transparent") options.background = parse_colour("--background", arguments.background);
   options.colour = parse_colour("--color", arguments.colour);
@@ -121,10 +144,18 @@ RenderOptions parse_options(const RenderArguments& arguments) {
   return options;
 }
 
-// A text for the numbers at the ends of the colours.
-std::string colours_text(const RenderOptions& options, std::span<const float> quality) {
-  const auto [low, high] = options.range ? *options.range : finite_range(quality);
-  return low <= high ? fmt::format(", colours from {:.6g} to {:.6g}", low, high) : "";
+// The numbers at the ends of the colours; none where nothing has a number.
+std::optional<std::array<double, 2>> colour_range(const RenderOptions& options, std::span<const float> quality) {
+  const std::array<double, 2> range = options.range ? *options.range : finite_range(quality);
+  return range[0] <= range[1] ? std::optional(range) : std::nullopt;
+}
+
+// The picture, with a bar of its colours where they stand for numbers and the picture has room for one.
+Picture draw(const TriangleMesh& mesh, RenderOptions options, const std::optional<std::array<double, 2>>& range) {
+  const auto bar = static_cast<int>(colour_bar_width(options.height));
+  if (!range || bar > options.width / kWidthsOfBar) return render_mesh(mesh, options, mesh.values);
+  options.width -= bar;
+  return with_colour_bar(render_mesh(mesh, options, mesh.values), *range, options.background);
 }
 
 // Finds an error that would keep the picture from being written, before the picture is made.
@@ -148,10 +179,12 @@ void run_render(RenderArguments arguments) {
   } else if (mesh.values.empty()) {
     throw BadInput(arguments.path + ": expected a PLY file with a number such as 'quality' at each vertex, found none");
   }
-  write_png(arguments.output, render_mesh(mesh, options, mesh.values));
+  const std::optional<std::array<double, 2>> range = colour_range(options, mesh.values);
+  write_png(arguments.output, draw(mesh, options, arguments.no_color_bar ? std::nullopt : range));
   if (!arguments.quiet) {
     print_note(fmt::format("{}: {} x {} pixels, {} triangles{}", arguments.output, options.width, options.height,
-                           grouped(mesh.triangles.size()), colours_text(options, mesh.values)));
+                           grouped(mesh.triangles.size()),
+                           range ? fmt::format(", colours from {:.6g} to {:.6g}", (*range)[0], (*range)[1]) : ""));
   }
 }
 
@@ -165,14 +198,22 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--size", arguments->size, "Pixels: WxH")->capture_default_str();
   verb->add_option("--view", arguments->view, "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION")
       ->capture_default_str();
-  verb->add_option("--background", arguments->background, "#rrggbb, white, black or transparent")
+  verb->add_option("--up", arguments->up, "Axis of the mesh that points up: x, y, z, -x, -y or -z")
       ->capture_default_str();
-  verb->add_option("--color", arguments->colour, "Of the surface: #rrggbb, white or black")->capture_default_str();
+  verb->add_option("--zoom", arguments->zoom, "2: twice as large, around the middle; 1: all of the mesh just fits")
+      ->capture_default_str();
+  verb->add_flag("--axes", arguments->axes, "Mark where the axes point: R L A P S I in LPS and RAS, else x y z");
+  verb->add_option("--background", arguments->background, "#rrggbb, a name such as white or black, or transparent")
+      ->capture_default_str();
+  verb->add_option("--color", arguments->colour, "Of the surface: #rrggbb, or a name such as white, red or bone")
+      ->capture_default_str();
   verb->add_option(
       "--color-by", arguments->colour_by,
       "quality: by the number at each vertex that mesh --color-by and compare --distances write, dark to bright");
   verb->add_option("--range", arguments->range,
                    "LOW,HIGH: numbers at the ends of the colours (default: all there are)");
+  verb->add_flag("--no-color-bar", arguments->no_color_bar,
+                 "With --color-by: no bar of the colours and their numbers at the right");
   verb->add_option("--shading", arguments->shading, "smooth or flat")->capture_default_str();
   verb->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the triangles");
   verb->add_option("--samples", arguments->samples, "Samples along each side of a pixel")->capture_default_str();

@@ -13,6 +13,7 @@
 #include "options/levels.hpp"
 #include "options/output_mesh.hpp"
 #include "options/possible.hpp"
+#include "options/preview.hpp"
 #include "options/run.hpp"
 #include "options/stop.hpp"
 #include "options/values.hpp"
@@ -29,6 +30,7 @@ constexpr const char* kExamples = R"(
 Examples:
   isoweave simplify scan.stl --error 0.1mm -o smaller.ply
   isoweave simplify brain.ply --ratio 10% --quality fine -o brain.obj
+  isoweave simplify city.stl --preview=2mm -o look.ply
 
 A vox is here the square root of twice the mean triangle area.)";
 
@@ -36,6 +38,7 @@ struct SimplifyArguments {
   ReadMeshOptions reading;
   std::string input, quality = "normal";
   StopOptions stop;
+  PreviewChoice preview;
   ComponentOptions components;
   OutputOptions output;
   RunOptions run;
@@ -52,25 +55,32 @@ Json report_json(const MeshReport& report, const SimplifyArguments& arguments, c
                 {"vertices", report.vertices_extracted}};
   input.update(place);
   Json json = run_json(report, std::move(input));
-  json["quality"] = arguments.quality;
+  if (!report.preview) json["quality"] = arguments.quality;
   json["output"] = level_outputs(arguments.output, arguments.stop).back().name();
   return json;
 }
 
-bool keeps_values(const OutputOptions& output) { return holds_values(output_format(output)); }
+bool keeps_values(const SimplifyArguments& arguments) {
+  return holds_values(output_format(arguments.output)) && !arguments.preview.given();
+}
+
+// The comment of a level's mesh file.
+std::string how_text(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles) {
+  if (arguments.preview.given()) return preview_text(arguments.preview);
+  return fmt::format("simplified, {} quality {}", stop_text(stop_levels(arguments.stop)[level], "", triangles),
+                     arguments.quality);
+}
 
 // The options of a level's mesh file.
 MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleMesh& mesh, std::size_t level,
                              std::uint64_t triangles) {
   MeshFileOptions file;
-  file.values = !mesh.values.empty() && keeps_values(arguments.output);
+  file.values = !mesh.values.empty() && keeps_values(arguments);
   file.unit = mesh.unit;
   file.space = mesh.space;
   file.offset = mesh.offset;
   file.comments = {"isoweave " ISOWEAVE_VERSION,
-                   fmt::format("simplified, {} quality {}",
-                               stop_text(stop_levels(arguments.stop)[level], "", triangles), arguments.quality) +
-                       component_text(component_rule(arguments.components))};
+                   how_text(arguments, level, triangles) + component_text(component_rule(arguments.components))};
   return mesh_file_options(arguments.output, std::move(file));
 }
 
@@ -92,6 +102,10 @@ void add_dropped(const DroppedComponents& dropped, MeshReport& report) {
 MeshReport simplify_named(const SimplifyArguments& arguments, const TriangleMesh& mesh, const LevelSinks& sinks,
                           const SimplifyOptions& options, const RunControl& control, const DroppedComponents& dropped) {
   try {
+    if (arguments.preview.given()) {
+      return preview_mesh(mesh, *sinks.pointers().front(), preview_cell(arguments.preview, length_basis(mesh)),
+                          control);
+    }
     return simplify_mesh(mesh, sinks.pointers(), options, control);
   } catch (const EmptySurface& empty) {
     std::string reason = empty.what();
@@ -107,7 +121,7 @@ MeshReport simplify_named(const SimplifyArguments& arguments, const TriangleMesh
 // Warnings about parts of the input that the output will not have.
 std::vector<std::string> input_warnings(const SimplifyArguments& arguments, const TriangleMesh& mesh) {
   std::vector<std::string> warnings = mesh_warnings(arguments.input, mesh);
-  if (!mesh.values.empty() && !keeps_values(arguments.output)) {
+  if (!mesh.values.empty() && !keeps_values(arguments)) {
     warnings.push_back(arguments.input + ": the values at its vertices are not kept, which needs .ply or .vtp");
   }
   return warnings;
@@ -115,7 +129,7 @@ std::vector<std::string> input_warnings(const SimplifyArguments& arguments, cons
 
 // Reports seams: a border that stays may be a seam.
 void add_seams(const SimplifyArguments& arguments, const TriangleMesh& mesh, MeshReport& report) {
-  if (report.open_edges == 0 || arguments.weld) return;
+  if (report.open_edges == 0 || arguments.weld || report.preview) return;
   for (std::string& warning : seam_warnings(arguments.input, count_seam_edges(mesh))) {
     report.warnings.push_back(std::move(warning));
   }
@@ -130,12 +144,12 @@ PageContents page_contents(const std::vector<OutputOptions>& outputs, TriangleMe
 }
 
 // The options, with lengths in the unit of the mesh.
-SimplifyOptions simplify_options(const SimplifyArguments& arguments, std::string_view unit) {
+SimplifyOptions simplify_options(const SimplifyArguments& arguments, const LengthBasis& basis) {
   SimplifyOptions options;
-  options.error = stop_error(arguments.stop, "", unit);
+  if (!arguments.preview.given()) options.error = stop_error(arguments.stop, "", basis);
   options.quality = parse_quality(arguments.quality);
-  options.max_distance = stop_distance(arguments.stop, unit);
-  options.levels = finer_levels(arguments.stop, unit);
+  options.max_distance = stop_distance(arguments.stop, basis);
+  options.levels = finer_levels(arguments.stop, basis);
   options.drop_specks = drops_specks(arguments.stop);
   return options;
 }
@@ -144,7 +158,17 @@ SimplifyOptions simplify_options(const SimplifyArguments& arguments, std::string
 void check_possible(const SimplifyArguments& arguments, const SimplifyOptions& options, const RunControl& control) {
   MeshOptions asked;
   static_cast<SimplifyOptions&>(asked) = options;
-  require_possible({RunKind::kSimplify, "simplify", asked, control, arguments.stop, arguments.components});
+  const bool preview = arguments.preview.given();
+  if (preview) preview_cell(arguments.preview, unknown_basis());  // finds errors in it now
+  const RunKind kind = preview ? RunKind::kPreview : RunKind::kSimplify;
+  const char* const name = preview ? "--preview" : "simplify";
+  require_possible({kind, name, asked, control, arguments.stop, arguments.components});
+}
+
+std::vector<GivenLength> given_lengths(const SimplifyArguments& arguments) {
+  std::vector<GivenLength> lengths = given_lengths(arguments.stop);
+  lengths.push_back(given_cell(arguments.preview));
+  return lengths;
 }
 
 void run_simplify(SimplifyArguments arguments) {
@@ -152,8 +176,8 @@ void run_simplify(SimplifyArguments arguments) {
   const RunOptions& run = arguments.run;
   RunControl control = run_control(run);
   const ProgressMode mode = progress_mode(run.progress, run.quiet);
-  if (!arguments.stop.given()) throw CLI::RequiredError("--error");
-  SimplifyOptions options = simplify_options(arguments, "");  // finds errors in them now
+  if (!arguments.stop.given() && !arguments.preview.given()) throw CLI::RequiredError("--error");
+  SimplifyOptions options = simplify_options(arguments, unknown_basis());  // finds errors in them now
   check_possible(arguments, options, control);
   const ComponentRule rule = component_rule(arguments.components);
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, arguments.stop);
@@ -169,8 +193,8 @@ void run_simplify(SimplifyArguments arguments) {
   TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
   const Json place = place_json(mesh);
-  const std::string unit = mesh.unit;
-  options = simplify_options(arguments, unit);
+  const LengthBasis basis = length_basis(mesh);
+  options = simplify_options(arguments, basis);
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
@@ -193,15 +217,14 @@ void run_simplify(SimplifyArguments arguments) {
   json["notes"] = sinks.last().notes();
   evidence.write(std::move(json), control, [&](const RunControl&) { return page_contents(outputs, std::move(mesh)); });
   if (run.quiet) return;
-  if (unit.empty() && (has_metric_length(arguments.stop) || states_unit(arguments.output))) {
-    print_note(arguments.input + ": does not say its unit: lengths are taken for it to be mm");
-  }
+  tell_lengths(arguments.input, given_lengths(arguments), states_unit(arguments.output), basis);
   print_welded(arguments.input, arguments.weld, input.welded);
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_notes(sinks.last());
   print_dropped(report);
   print_levels(report, outputs);
-  print_target(arguments.stop, report, options.triangles, options.error, unit);
+  print_target(arguments.stop, report, options.triangles, options.error, basis.unit);
+  if (report.preview) print_preview(report, basis.unit);
   print_summary(report, outputs.back().name(), 0);
 }
 
@@ -219,6 +242,7 @@ void add_simplify_verb(CLI::App& app) {
   verb->add_option("--quality", arguments->quality, "fast, normal or fine")->capture_default_str();
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);
+  add_preview_option(*verb, arguments->preview);
   verb->footer(kExamples);
   add_external_option(*verb, arguments->reading);
   verb->callback([arguments] { run_simplify(*arguments); });

@@ -13,6 +13,7 @@
 #include "options/files.hpp"
 #include "options/input_mesh.hpp"
 #include "options/values.hpp"
+#include "page/open_page.hpp"
 #include "page/page.hpp"
 #include "report/print.hpp"
 #include "report/report.hpp"
@@ -24,7 +25,7 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  isoweave view bone.ply
+  isoweave view bone.ply --open
   isoweave view bone.json -o bone.html --before full.ply
 
 The report is one that mesh or simplify wrote (--report); the page shows the
@@ -34,7 +35,7 @@ struct ViewArguments {
   ReadMeshOptions reading;
   std::string input, before, threads = "all";
   PageOptions page;
-  bool quiet = false, no_clobber = false;
+  bool quiet = false, no_clobber = false, open = false;
 };
 
 // Whether a file is a report. A scene of glTF begins like a report as well, and is told by its name. A pipe, which can
@@ -107,7 +108,8 @@ void run_view(ViewArguments arguments) {
   control.stop = borrow(stop_on_signal());
   OutputFile file(arguments.page.path);
   write_page(file, arguments.page, report, std::move(contents), control);
-  if (!arguments.quiet) print_note(arguments.page.path + ": open it in a browser");
+  if (arguments.open) return open_page(arguments.page.path);
+  if (!arguments.quiet) print_note(arguments.page.path + ": open it in a browser, which --open does");
 }
 
 }  // namespace
@@ -117,6 +119,7 @@ void add_view_verb(CLI::App& app) {
   const auto arguments = std::make_shared<ViewArguments>();
   verb->add_option("MESH|REPORT", arguments->input, "Mesh, or report that mesh or simplify wrote")->required();
   verb->add_option("-o,--output", arguments->page.path, "Page to write (default: the name and .html)");
+  verb->add_flag("--open", arguments->open, "Open the page in the browser of the desktop (xdg-open; open on macOS)");
   verb->add_option("--before", arguments->before, "Mesh before simplification, to compare with");
   add_page_triangles(*verb, arguments->page);
   add_external_option(*verb, arguments->reading);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,11 @@
 #pragma GCC visibility push(default)
 namespace isoweave {
 
-// Makes the folder where it is missing, and locks it.
+// Makes the folder where it is missing, and locks it. When the lock is no more, and no state is in the folder,
+// unfinished meshes in it are removed, and so are folders that were made here and have nothing in them: a run that is
+// refused, or done, leaves none. The sinks must be gone before the lock is.
 // @throws CannotWrite
-CheckpointLock lock_checkpoint_folder(const std::string& folder);
+std::shared_ptr<const CheckpointLock> lock_checkpoint_folder(const std::string& folder);
 
 // Whether a folder holds a state of an unfinished run. It may be damaged: read_checkpoint tells.
 bool holds_state(const std::string& folder);
@@ -25,9 +28,6 @@ std::vector<std::string> part_folders(const std::string& folder, std::size_t mes
 // parts in it are of a run that ended before its first state, and cannot be continued.
 // @throws CannotWrite
 void make_part_folder(const std::string& folder);
-
-// Removes the folders of several meshes, which are empty when the run is finished.
-void remove_part_folders(const std::vector<std::string>& folders);
 
 }  // namespace isoweave
 #pragma GCC visibility pop

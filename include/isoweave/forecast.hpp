@@ -18,7 +18,10 @@ struct Forecast {
   std::uint64_t peak_bytes = 0;               // of the process
   std::uint64_t least_bytes = 0;              // the smallest RunControl::memory that should do
   std::uint64_t surface_bytes = 0;            // the part of peak_bytes that the surface takes: its slab and zone
-  double seconds = 0;                         // of mesh_volume on this machine, once the volume can be read fast enough
+  // Of a run to a number of triangles: an error that is expected to leave clearly more of them, in the unit of the
+  // volume (RunControl::head_start). 0: none is known.
+  double head_start = 0;
+  double seconds = 0;  // of mesh_volume on this machine, once the volume can be read fast enough
 };
 
 // Forecasts a run. Reads slices at up to 24 places, extracts the surface between them and simplifies a part of it, in a

@@ -2,7 +2,8 @@
 //
 // Handles are opaque. Every struct begins with its size, and a struct of zeros with its size set has the safe defaults:
 //   iw_mesh_options options = {.struct_size = sizeof options};
-// So a program goes on working with a later library whose structs have more members at their ends.
+// So a program goes on working with a later library whose structs have more members at their ends. Members that are
+// reserved must be 0: a later library gives them a meaning.
 //
 // Every call that can fail returns a status, and says more in an iw_result, which may be NULL. No C++ exception leaves
 // a call. Nothing is printed, nothing is global, and no thread outlives a call. Calls on different handles are
@@ -105,6 +106,7 @@ typedef struct iw_open_options {
   const int64_t* channel;  // NULL: not said
   const int64_t* time;     // NULL: not said
   int32_t no_external;     // 1: a header may not name other files
+  int32_t reserved;        // 0
 } iw_open_options;
 
 // Opens a file or folder of any format of the library. options: NULL for the defaults. A pipe can be read by one run.
@@ -121,8 +123,11 @@ typedef struct iw_source {
   size_t struct_size;
   void* context;
   // Writes the slices first ... first + count - 1 to `out`, densely packed. Returns 0, or another number to stop the
-  // run, which returns IW_STOPPED then.
+  // run, which returns IW_STOPPED then and a message that ends with "stopped by its source (NUMBER)".
   int32_t (*read)(void* context, int64_t first, int64_t count, void* out);
+  // The most bytes that the callback holds between and during calls, beside `out`: below 2^63. Forecasts and caps on
+  // memory count them.
+  uint64_t held_bytes;
 } iw_source;
 
 // A volume whose slices come from a callback. `context` must outlive the volume and every volume made from it.
@@ -207,7 +212,8 @@ enum { IW_OUTPUT_AS_VOLUME = 0, IW_OUTPUT_LPS, IW_OUTPUT_RAS, IW_OUTPUT_INDEX };
 enum { IW_EXTRACTOR_CUBES = 0, IW_EXTRACTOR_TRILINEAR, IW_EXTRACTOR_TETRAHEDRA, IW_EXTRACTOR_DUAL };
 enum { IW_DEVICE_AUTO = 0, IW_DEVICE_CPU, IW_DEVICE_CUDA };
 
-// How a surface is simplified. Lengths are texts: "0.2vox", "50um", or a number in the unit of the volume or mesh.
+// How a surface is simplified. Lengths are texts: "0.2vox", "50um", "0.1%" of the diagonal of the
+// volume or of the box around the mesh, or a number in its unit.
 typedef struct iw_simplify_options {
   size_t struct_size;
   const char* error;         // NULL: "0.2vox" for volumes, unless one of the next four is given
@@ -219,6 +225,7 @@ typedef struct iw_simplify_options {
   int32_t drop_specks;       // 1: closed components that have shrunk to a tetrahedron within the error are dropped
   uint64_t min_component;    // components of fewer triangles before simplification are dropped
   int32_t largest;           // 1: all components but the largest are dropped
+  int32_t reserved;          // 0
 } iw_simplify_options;
 
 // Which surface of a volume, and what its vertices carry.
@@ -233,6 +240,7 @@ typedef struct iw_mesh_options {
   int32_t space;                        // IW_OUTPUT_AS_VOLUME ...
   const iw_volume* values;              // a volume of the same size, whose values the vertices get; NULL: none
   int32_t extractor;                    // IW_EXTRACTOR_CUBES ...: as ExtractorKind of mesh_options.hpp
+  int32_t reserved;                     // 0
 } iw_mesh_options;
 
 typedef struct iw_progress {
@@ -263,6 +271,7 @@ typedef struct iw_run {
   // 1: go on from the state in `checkpoint`, with the same volume, options and outputs, or begin where there is none.
   // 0: an unfinished run in it is refused. The report has `resumed_at`, the layers that were done before.
   int32_t resume;
+  int32_t reserved;  // 0
 } iw_run;
 
 // A piece of a mesh on its way to a sink, valid during the call only. Arrays without elements may be NULL.

@@ -1,6 +1,7 @@
 // Lengths in options: in voxels, or in the unit of the volume or mesh.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #pragma GCC visibility push(default)
@@ -17,10 +18,11 @@ struct Length {
 };
 
 // Parses "0.2vox", "0.05mm", "30um", "500nm", "0.01in" or "0.05", a length in `unit`. Units may be spelled as in volume
-// files. A length in another unit is converted to `unit`; an empty `unit` stands for "mm".
-// @throws std::invalid_argument naming the text, for a number that is negative or not finite, and for a unit that is
-//   not known
-Length parse_length(std::string_view text, std::string_view unit);
+// files. A length in another unit is converted to `unit`; an empty `unit` stands for "mm". "0.1%" is that part of
+// `diagonal`, which is in `unit`: that of a box_diagonal().
+// @throws std::invalid_argument naming the text, for a number that is negative or not finite, for a unit that is not
+//   known, and for a percentage where no diagonal is given
+Length parse_length(std::string_view text, std::string_view unit, std::optional<double> diagonal = std::nullopt);
 
 }  // namespace isoweave
 #pragma GCC visibility pop

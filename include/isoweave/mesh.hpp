@@ -184,8 +184,10 @@ struct MeshFileOptions {
   std::array<double, 3> offset{0, 0, 0};
 
   // .glb: positions rounded to 16 bits of the longest side of their box (KHR_mesh_quantization), packed by
-  // meshoptimizer (EXT_meshopt_compression). .precomputed: neuroglancer's multi-resolution format, one level of detail,
-  // rounded likewise and packed by Draco. Refused for other formats and by builds without the library.
+  // meshoptimizer (EXT_meshopt_compression). .precomputed: neuroglancer's multi-resolution format in one shard, one
+  // level of detail, cut along the sides of cubes, each a fragment that is rounded to 16 bits of its side and packed by
+  // Draco. The bytes do not depend on the order of pieces and triangles. Refused for other formats and by builds
+  // without the library.
   bool compress = false;
   std::uint64_t segment = 1;  // .precomputed: the number of the object
   bool values = false;        // PLY (as the property `quality`, which viewers colour by) and VTP only
@@ -204,8 +206,10 @@ struct MeshFileOptions {
 // @throws CannotWrite, also from the sink, when the ending is unknown, the folder is missing or read-only, the disk is
 //   full, or the format cannot hold the counts or options; when there are parts already and no mark, or a mark and no
 //   such parts
-// @cost Disk: all but STL and OBJ need room for the faces twice while finish() runs, .precomputed for all. Memory: with
-//   `compress` the whole mesh is in memory in finish(); see mesh_file_memory.
+// @cost Disk: all but STL and OBJ need room for the faces twice while finish() runs, .precomputed for all; with
+//   `compress` it needs 12 bytes for each vertex and 24 for each triangle from the beginning, and while finish() runs
+//   some 50 more for each triangle. Memory: .glb with `compress` has the whole mesh in memory in finish(), .precomputed
+//   one fragment; see mesh_file_memory.
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 // Writes several levels of detail into one file, finest first: returns a sink for each, in that order, for mesh_volume
@@ -213,10 +217,12 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
 // level has options of its own, of which `normals` and `compress` must be the same.
 //   .glb          a mesh for each level in the same data, as nodes of the extension MSFT_lod. Viewers without it, and
 //                 read_mesh, see the finest. At most 4 GiB in all
-//   .precomputed  with `compress`: a level of neuroglancer's each, rounded to steps twice as long from one to the next
+//   .precomputed  with `compress`: a level of neuroglancer's each, cut along cubes that are twice as wide from one to
+//                 the next, as are the steps of coordinates. A level of which nothing is left is left out, and all
+//                 behind it
 // @throws CannotWrite for other formats, and what open_mesh_file throws
-// @cost Disk: room for all levels twice while the last one finishes. Memory: with `compress`, one level at a time and
-//   everything that has been packed.
+// @cost Disk: room for all levels twice while the last one finishes. Memory: for .glb with `compress`, one level at a
+//   time and everything that has been packed; for .precomputed what open_mesh_file says.
 std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
                                                         std::span<const MeshFileOptions> levels);
 
@@ -260,7 +266,8 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
                               const MeshFileOptions& options = {});
 
 // The bytes, about, that writing such a file holds in memory beside some megabytes of buffers: 0 but for STL and with
-// `compress`.
+// `compress`. For .precomputed at most 56 MB, whatever the counts; more where most of a surface lies in a small part of
+// its box, as one fragment is as large then.
 // @throws CannotWrite when the ending is unknown
 std::uint64_t mesh_file_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                                const MeshFileOptions& options = {});

@@ -122,8 +122,12 @@ std::uint64_t count_triangles(SliceSource& volume, const SurfaceOptions& options
 ComponentChoice choose_components(SliceSource& volume, const SurfaceOptions& options, const ComponentRule& rule,
                                   const RunControl& control = {});
 
+// The diagonal of the volume, or of the box around the vertices of a mesh (0 where it has none), in its unit.
+double box_diagonal(const VolumeInfo& volume);
+double box_diagonal(const TriangleMesh& mesh);
+
 // The largest error that keeps the shape of a surface: the bound for runs to a number of triangles that are given no
-// error. It is a twentieth of the diagonal of the volume, or of the box around the mesh.
+// error. It is a twentieth of box_diagonal().
 double most_shape_error(const VolumeInfo& volume);
 double most_shape_error(const TriangleMesh& mesh);
 

@@ -38,6 +38,26 @@ struct BlockStage {
   std::uint64_t triangles = 0;  // taken in: extracted in the first stage, undecided ones later
 };
 
+// The work of a rank.
+struct RankWork {
+  std::uint64_t tasks = 0;      // blocks of all stages
+  std::uint64_t triangles = 0;  // taken in: extracted, or undecided ones
+  std::uint64_t messages = 0, bytes_sent = 0;
+  double seconds_waiting = 0;    // for messages, with nothing to do
+  std::uint64_t peak_bytes = 0;  // of the process, as the system counts it
+};
+
+// The cells of a preview (preview.hpp), and how far its vertices are from what they stand for.
+struct PreviewReport {
+  double cell = 0;  // side, in the volume's or mesh's unit
+  // The root of the mean square distance of the vertices from the planes of the triangles that had a corner in their
+  // cells, by area. It says nothing of parts that have vanished.
+  double plane_rms = 0;
+  std::uint64_t cells = 0;      // that the full surface has vertices in; those without a triangle have no vertex
+  std::uint64_t collapsed = 0;  // triangles that had two corners in one cell
+  std::uint64_t repeated = 0;   // triangles with the same three cells, in the same direction, as another one
+};
+
 // The report of a run, and of its mesh with the largest error.
 struct MeshReport : SurfaceReport {
   int threads = 0;
@@ -46,6 +66,9 @@ struct MeshReport : SurfaceReport {
   Device device = Device::kCpu;
   double min = 0, max = 0;  // values read; min > max when all were NaN
   std::uint64_t nan = 0;    // samples
+  // Of the crossed cells, about so many that belong to caps; nothing where it is not counted: in an open volume,
+  // without measuring, in blocks, and of one of several surfaces.
+  std::optional<std::uint64_t> cap_cells{};
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
   std::uint64_t specks = 0;  // components dropped
@@ -59,6 +82,8 @@ struct MeshReport : SurfaceReport {
   std::uint64_t peak_bytes = 0;             // of the process, as the system counts it
   std::optional<LeftOutReport> left_out{};  // where the run had an index
   std::vector<BlockStage> blocks;           // of a run in blocks; else none
+  std::vector<RankWork> ranks;              // of a run by ranks; else none
+  std::optional<PreviewReport> preview{};   // of a preview
   std::vector<SlabRecord> sweep;            // in blocks: one for each layer of blocks
   std::vector<std::string> warnings;        // one line each
 };

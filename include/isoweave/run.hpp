@@ -138,6 +138,17 @@ struct RunControl {
   // read anyway.
   // @throws std::invalid_argument from the run for the index of a volume of another size or type
   std::shared_ptr<const VolumeIndex> index{};
+  // mesh_volume to a number of triangles only: opens the volume once more. With it such a run takes little longer than
+  // one to the error that leaves as many: it decides from the beginning up to `head_start`. Where that leaves no more
+  // triangles than the number, nothing has been handed to the sinks yet, the volume is swept once more, and progress
+  // begins again. A volume that is held in memory needs no opening. Null: the volume can be read once only. A resumed
+  // run needs it where the run before it had it.
+  std::function<std::unique_ptr<SliceSource>()> reopen{};
+  // An error, in the unit of the volume, that is expected to leave clearly more triangles than the number
+  // (Forecast::head_start); 0: no such error is known. Without a value a run without a cap on memory makes a forecast
+  // of its own, where the volume is large.
+  // @throws std::invalid_argument from the run for one that is negative or not finite
+  std::optional<double> head_start{};
   // Whether to find the digest, the components, non-manifold edges and vertices, and the range of the samples. Without
   // it these stay empty in the report.
   bool measure = true;

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -72,10 +73,11 @@ struct VolumeInfo {
   std::array<std::int64_t, 3> dims{0, 0, 0};  // nx, ny, nz; each >= 1; the product fits in 63 bits
   SampleType type = SampleType::kUint8;
   Geometry geometry;
-  double slope = 1;                // value = slope * stored + intercept; slope is not 0
-  double intercept = 0;            // iso-values are given as values, samples stay as stored
-  std::vector<LabelName> labels;   // what the file says of labels, in its order (3D Slicer's segmentations)
-  std::vector<std::string> notes;  // things a user should know: "4-D: the first of 12 volumes is read"
+  double slope = 1;                    // value = slope * stored + intercept; slope is not 0
+  double intercept = 0;                // iso-values are given as values, samples stay as stored
+  std::vector<LabelName> labels;       // what the file says of labels, in its order (3D Slicer's segmentations)
+  std::vector<std::string> notes;      // things a user should know: "4-D: the first of 12 volumes is read"
+  std::vector<std::string> remarks{};  // the same of what is usual: "1 file of the folder is no slice ...: README.md"
 
   std::int64_t slice_samples() const { return dims[0] * dims[1]; }
   // @throws std::length_error for a slice larger than memory can be
@@ -107,6 +109,10 @@ class SliceSource {
   // Whether a part of a row costs next to nothing but its own samples. So it is where samples lie in a file or in
   // memory as they are, and not where rows are computed, or are parts of chunks that must be decoded.
   virtual bool reads_parts_of_rows() const { return !held().empty(); }
+
+  // Whether a box of samples (crop_volume) costs little more than its own samples: those of the chunks that it touches,
+  // and memory for its own slices.
+  virtual bool reads_boxes() const { return reads_parts_of_rows(); }
 
   // All slices as read() gives them, if the source has them in memory anyway, else nothing. A run uses such slices
   // where they are, and reads no others.
@@ -182,10 +188,16 @@ std::unique_ptr<SliceSource> crop_volume(std::unique_ptr<SliceSource> volume, co
 
 // A smaller volume: every sample is the mean of a block of step x step x step samples (fewer at the upper ends), and
 // lies in the middle of the block. NaN does not count; a block of nothing else is NaN. Means of 8- and 16-bit integers
-// and of float32 are float32, others float64: they are not rounded. For values, not for labels.
+// and of float32 are float32, others float64: they are not rounded. For values: thin_label_map is for labels.
 // @throws std::invalid_argument for a step below 1
 // @cost Holds one slice of sums, two of float64 samples, and one slice of the volume.
 std::unique_ptr<SliceSource> downsample_volume(std::unique_ptr<SliceSource> volume, std::int64_t step);
+
+// A smaller label map: every sample is the most frequent one of a block, of several the first in the block. Blocks lie
+// as those of downsample_volume.
+// @throws std::invalid_argument for a step below 1
+// @cost Holds `step` slices of the map.
+std::unique_ptr<SliceSource> thin_label_map(std::unique_ptr<SliceSource> map, std::int64_t step);
 
 inline constexpr int kUsualSmoothing = 4;  // passes; docs/labels.md has the measurements
 inline constexpr int kMostSmoothing = 64;
@@ -237,6 +249,18 @@ inline constexpr std::size_t kMostLabels = 4096;
 //   `stop` is set
 std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted = {},
                                      const std::atomic<bool>* stop = nullptr);
+
+// Opens a volume once more, from its beginning.
+using VolumeOpener = std::function<std::unique_ptr<SliceSource>()>;
+
+// The same as find_labels, from boxes of `size` samples along each axis: the volume is opened for each. A run that goes
+// on in the next box counts as two.
+// @throws what find_labels and `open` throw
+// @cost Memory: a slice of a box, and what the source holds for it. Chunks of Zarr and tiles are decoded once for each
+//   box along x and y that they touch.
+std::vector<LabelExtent> find_labels_in_blocks(const VolumeOpener& open, std::int64_t size,
+                                               std::span<const Label> wanted = {},
+                                               const std::atomic<bool>* stop = nullptr);
 
 // The number of labels that are spread like the grey values of an image: thin, and hardly filling their box. A volume
 // in which most labels are is no label map, as a rule; docs/labels.md has the measurements.

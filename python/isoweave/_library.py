@@ -76,6 +76,7 @@ class OpenOptions(Struct):
         ("channel", POINTER(c_int64)),
         ("time", POINTER(c_int64)),
         ("no_external", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -83,7 +84,7 @@ ReadSlices = ctypes.CFUNCTYPE(c_int32, c_void_p, c_int64, c_int64, c_void_p)
 
 
 class Source(Struct):
-    _fields_ = [("struct_size", c_size_t), ("context", c_void_p), ("read", ReadSlices)]
+    _fields_ = [("struct_size", c_size_t), ("context", c_void_p), ("read", ReadSlices), ("held_bytes", c_uint64)]
 
 
 class MeshArrays(Struct):
@@ -122,6 +123,7 @@ class SimplifyOptions(Struct):
         ("drop_specks", c_int32),
         ("min_component", c_uint64),
         ("largest", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -137,6 +139,7 @@ class MeshOptions(Struct):
         ("space", c_int32),
         ("values", c_void_p),
         ("extractor", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -169,6 +172,7 @@ class Run(Struct):
         ("checkpoint_seconds", c_double),
         ("checkpoint_layers", c_int64),
         ("resume", c_int32),
+        ("reserved", c_int32),
     ]
 
 

@@ -115,8 +115,8 @@ def mesh(
         level: the value at the surface. Several: a surface for each, from one reading of the volume, each the mesh of
             its own run. None: Otsu's threshold, from a pass over the volume of its own; the report's ``iso`` says which
             it was.
-        error: how far simplification may go: ``"0.2vox"``, ``"50um"``, or a number in the volume's unit; 0: the full
-            surface. None: "0.2vox", unless ``triangles``, ``ratio``, ``max_distance`` or ``lods`` says where to stop.
+        error: how far simplification may go: ``"0.2vox"``, ``"50um"``, ``"0.1%"`` of the volume's diagonal, or a
+            number in the volume's unit; 0: the full surface. None: "0.2vox", unless ``triangles``, ``ratio``, ``max_distance`` or ``lods`` says where to stop.
         triangles: stop at this number.
         ratio: stop at this part of the full surface's triangles, which takes a pass over the volume of its own.
         max_distance: a guarantee: no point of the mesh is farther than this from the full surface.
@@ -144,7 +144,7 @@ def mesh(
         threads: 0: one for each processor. Never changes the mesh.
         device: "cuda" for a CUDA device, where this build has one.
         checkpoint: a folder in which the state of the run is saved, with ``out`` a path: a run that is stopped by Ctrl-C,
-            or killed, can go on. It is made where it is missing, and a run that is done leaves it empty.
+            or killed, can go on. It is made where it is missing, and a run that is done leaves nothing in it.
         resume: go on from the state in that folder, with the same volume and options, or begin where there is none; the
             report's ``resumed_at`` says at which layer. Without it an unfinished run in the folder is refused.
         every: how often a state is saved: seconds, or as "5min", "2h" or "16layers".

@@ -34,18 +34,43 @@ class Progress:
     bytes: int
     """Bytes held by the slab and the undecided zone."""
 
+    def _steps(self) -> tuple[int, int, str]:
+        return self.layer, self.layers, "layer"
+
+    def _line(self) -> str:
+        return f"layer {self.layer} of {self.layers}, {self.final_triangles} triangles"
+
 
 ProgressLike = Union[bool, Callable[[Progress], Any], None]
 
 
-class _Teller(Protocol):
-    def tell(self, progress: Progress) -> Any: ...
+class _Told(Protocol):
+    """What a bar or a line shows."""
+
+    def _steps(self) -> tuple[int, int, str]:
+        """Steps that are done, steps in all, and what a step is called."""
+
+    def _line(self) -> str: ...
+
+
+class Teller(Protocol):
+    """Tells how far a run is."""
+
+    def tell(self, progress: Any) -> Any: ...
 
     def close(self) -> None: ...
 
 
+class _Silent:
+    def tell(self, progress: _Told) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
 class _Callback:
-    def __init__(self, callback: Callable[[Progress], Any]) -> None:
+    def __init__(self, callback: Callable[[Any], Any]) -> None:
         self.tell = callback
 
     def close(self) -> None:
@@ -55,8 +80,8 @@ class _Callback:
 class _Lines:
     """One line on standard error, rewritten."""
 
-    def tell(self, progress: Progress) -> None:
-        sys.stderr.write(f"\risoweave: layer {progress.layer} of {progress.layers}, {progress.final_triangles} triangles")
+    def tell(self, progress: _Told) -> None:
+        sys.stderr.write(f"\risoweave: {progress._line()}")
         sys.stderr.flush()
 
     def close(self) -> None:
@@ -70,19 +95,21 @@ class _Bar:
         self._tqdm = tqdm
         self._bar: Any = None
 
-    def tell(self, progress: Progress) -> None:
+    def tell(self, progress: _Told) -> None:
+        done, total, unit = progress._steps()
         if self._bar is None:
-            self._bar = self._tqdm(total=progress.layers, unit="layer", desc="isoweave")
-        self._bar.update(progress.layer - self._bar.n)
+            self._bar = self._tqdm(total=total, unit=unit, desc="isoweave")
+        self._bar.update(done - self._bar.n)
 
     def close(self) -> None:
         if self._bar is not None:
             self._bar.close()
 
 
-def _teller(progress: ProgressLike) -> _Teller | None:
+def teller(progress: bool | Callable[[Any], Any] | None) -> Teller:
+    """Who tells how far a run is: a function, a bar of tqdm, one line, or nobody."""
     if progress is None or progress is False:
-        return None
+        return _Silent()
     if callable(progress):
         return _Callback(progress)
     try:
@@ -258,20 +285,19 @@ class Runner:
         self, threads: int, device: str, memory: int | str | None, progress: ProgressLike, state: RunState | None = None
     ) -> None:
         self.state = RunState() if state is None else state
-        self._teller = _teller(progress)
+        self._teller = told = teller(progress)
         if device not in _DEVICES:
             raise ValueError(f"device: expected one of {', '.join(_DEVICES)}, found {device!r}")
         self.struct = c.Run(
             threads=threads, device=_DEVICES[device], memory=parse_bytes(memory), stop=self.state.stop_pointer
         )
-        teller = self._teller
-        if teller is None:
+        if progress is None or progress is False:
             return
 
-        def tell(_context: int | None, told: Any) -> int:
-            p = told.contents
+        def tell(_context: int | None, found: Any) -> int:
+            p = found.contents
             now = Progress(p.layer, p.layers, p.voxels, p.live_triangles, p.final_triangles, p.bytes)
-            return self.state.guarded(lambda: self.state.in_caller(lambda: teller.tell(now)))
+            return self.state.guarded(lambda: self.state.in_caller(lambda: told.tell(now)))
 
         self.struct.progress = c.TellProgress(tell)
 
@@ -290,8 +316,7 @@ class Runner:
         try:
             return self.state.call(name, *arguments)
         finally:
-            if self._teller is not None:
-                self._teller.close()
+            self._teller.close()
 
     def pointer(self) -> Any:
         return ctypes.byref(self.struct)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Literal, TypedDict
+from typing import Any, Callable, Literal, TypedDict
 
 import numpy.typing as npt
 
@@ -87,3 +87,4 @@ class PlanSettings(TypedDict, total=False):
     roi: Roi | None
     step: int | None
     compress: bool
+    progress: bool | Callable[[Any], Any] | None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, Callable, Protocol, Sequence
 
@@ -17,7 +17,8 @@ Array = npt.NDArray[Any]
 TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"]
 _CHANGED = {"bool": "uint8", "float16": "float32"}
 
-_ROW_BYTES = 1 << 25  # of rows that are read at a time, where the array has no chunks
+_ROW_BYTES = 1 << 25  # of a row, where the array has no chunks
+_ROWS_AHEAD = 2
 
 
 class ArrayLike(Protocol):
@@ -50,7 +51,8 @@ class Slices:
     shape: tuple[int, int, int]
     dtype: np.dtype[Any]  # of the samples that read() gives: one of TYPES
     read: Callable[[int, int], Array]  # slices [first, end), of any layout
-    chunk: int = 1  # slices that are best read together
+    chunk: int = 1  # slices that are best read together: a row
+    ahead: int = 0  # rows that are read before they are needed
     whole: Array | None = None  # all samples, where they are in memory in the very layout of the C interface
     geometry: Geometry = field(default_factory=Geometry)
     slope: float = 1.0
@@ -78,7 +80,7 @@ def to_numpy(block: Any) -> Array:
 
 def _sample_type(dtype: Any) -> np.dtype[Any]:
     """The sample type that holds all values of a dtype."""
-    name = str(dtype).removeprefix("torch.")
+    name = str(getattr(dtype, "numpy_dtype", dtype)).removeprefix("torch.")  # tensorstore's have names of their own
     try:
         native: np.dtype[Any] = np.dtype(name).newbyteorder("=")
     except TypeError:
@@ -135,6 +137,8 @@ def _from_numpy(array: Array, axes: str, channel: int | None, time: int | None) 
 
 def _chunk_of(array: Any, axis: int) -> int:
     """How many slices one row of chunks has along an axis."""
+    if _module(array) == "tensorstore":
+        return int(array.chunk_layout.read_chunk.shape[axis] or 0)
     chunks = getattr(array, "shards", None) or getattr(array, "chunks", None)
     if chunks is None:
         return 0
@@ -158,7 +162,7 @@ def _from_slices_of(array: ArrayLike, axes: str, channel: int | None, time: int 
     nz, ny, nx = (int(array.shape[axes.index(axis)]) for axis in "zyx")
     dtype = _sample_type(array.dtype)
     chunk = _chunk_of(array, z) or max(1, _ROW_BYTES // max(1, ny * nx * dtype.itemsize))
-    return Slices((nz, ny, nx), dtype, read, chunk)
+    return Slices((nz, ny, nx), dtype, read, chunk, _ROWS_AHEAD)
 
 
 def _from_callable(function: Any, shape: Any, dtype: Any) -> Slices:
@@ -319,6 +323,7 @@ def slices_of(
         return _from_xarray(volume, axes, channel, time)
     if hasattr(volume, "shape") and hasattr(volume, "dtype"):
         if hasattr(volume, "__dlpack_device__") and volume.__dlpack_device__()[0] == 1 and module not in ("dask", "zarr"):
+            _sample_type(volume.dtype)  # DLPack has types that numpy has not
             return _from_numpy(np.from_dlpack(volume), order, channel, time)
         if hasattr(volume, "__getitem__"):
             return _from_slices_of(volume, order, channel, time)
@@ -334,26 +339,29 @@ def slices_of(
 
 
 class SlabReader:
-    """Slices as the C interface asks for them, read by whole rows of chunks, the next row ahead."""
+    """Slices as the C interface asks for them, read by whole rows of chunks, some of them ahead.
+
+    A row is given up before the next one is waited for, so no more are held than one and those ahead.
+    """
 
     def __init__(self, slices: Slices) -> None:
         self._slices = slices
         self._lock = threading.Lock()
-        self._rows: dict[int, Array] = {}
+        self._rows: dict[int, Array] = {}  # the one that is copied from
         self._ahead: dict[int, Future[Array]] = {}
         self._pool: ThreadPoolExecutor | None = None
+
+    @property
+    def held_bytes(self) -> int:
+        """The most bytes of rows that are held."""
+        slices, (nz, ny, nx) = self._slices, self._slices.shape
+        return min(nz, (1 + slices.ahead) * slices.chunk) * ny * nx * slices.dtype.itemsize
 
     def copy(self, first: int, out: Array) -> None:
         """Copies slices from `first` on into `out`, as many as it has."""
         done = 0
         while done < len(out):
-            at = first + done
-            row = at // self._slices.chunk
-            block = self._row(row)
-            begin = at - row * self._slices.chunk
-            count = min(len(out) - done, len(block) - begin)
-            np.copyto(out[done : done + count], block[begin : begin + count], casting="unsafe")
-            done += count
+            done += self._copy_of_row(first + done, out[done:])
 
     def close(self) -> None:
         """Ends the thread that reads ahead, and forgets the rows."""
@@ -363,6 +371,15 @@ class SlabReader:
             self._ahead.clear()
         if pool is not None:
             pool.shutdown(wait=True, cancel_futures=True)
+
+    def _copy_of_row(self, first: int, out: Array) -> int:
+        """Copies slices of one row, and returns how many."""
+        row = first // self._slices.chunk
+        block = self._row(row)
+        begin = first - row * self._slices.chunk
+        count = min(len(out), len(block) - begin)
+        np.copyto(out[:count], block[begin : begin + count], casting="unsafe")
+        return count
 
     def _bounds(self, row: int) -> tuple[int, int]:
         return row * self._slices.chunk, min((row + 1) * self._slices.chunk, self._slices.shape[0])
@@ -377,25 +394,21 @@ class SlabReader:
 
     def _row(self, row: int) -> Array:
         with self._lock:
-            if self._slices.chunk == 1 or self._slices.whole is not None:
+            if self._slices.ahead == 0:
                 return self._read(row)
             if row not in self._rows:
-                self._rows = {row: self._read_or_wait(row)}
-                self._read_ahead(row + 1)
+                self._rows.clear()
+                self._ask_for(row)
+                self._rows[row] = self._ahead.pop(row).result()
             return self._rows[row]
 
-    def _read_or_wait(self, row: int) -> Array:
-        ahead = self._ahead.pop(row, None)
-        if ahead is None:
-            return self._read(row)
-        try:
-            return ahead.result()
-        except CancelledError:  # another run over the same volume has ended
-            return self._read(row)
-
-    def _read_ahead(self, row: int) -> None:
-        if row * self._slices.chunk >= self._slices.shape[0] or row in self._ahead:
-            return
+    def _ask_for(self, row: int) -> None:
+        """Has a row read, and those after it; a thread reads them one after the other."""
+        end = min(row + 1 + self._slices.ahead, -(-self._slices.shape[0] // self._slices.chunk))
+        for other in [other for other in self._ahead if not row <= other < end]:
+            self._ahead.pop(other).cancel()
         if self._pool is None:
             self._pool = ThreadPoolExecutor(1, "isoweave-read")
-        self._ahead = {row: self._pool.submit(self._read, row)}
+        for wanted in range(row, end):
+            if wanted not in self._ahead:
+                self._ahead[wanted] = self._pool.submit(self._read, wanted)

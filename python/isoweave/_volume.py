@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
+import re
+import threading
 from typing import Any, Iterable, Sequence, Union
 
 import numpy as np
@@ -59,7 +61,7 @@ class Volume:
         self._handle = handle
         self._keep = keep  # what the C interface refers to
         self._reader = reader
-        self._errors: list[BaseException] = keep.errors if isinstance(keep, _CallbackSource) else []
+        self._errors = keep.errors if isinstance(keep, _CallbackSource) else _SourceErrors()
         info = c.VolumeInfo()
         self._facts: dict[str, Any] = c.call("iw_get_volume_info", handle.pointer, ctypes.byref(info))
         self._stored = np.dtype(TYPES[info.type])
@@ -195,14 +197,17 @@ class Volume:
         return self._finish(lambda: state.call(name, self._handle.pointer, state.stop_pointer))
 
     def _finish(self, work: Any) -> Any:
-        """Does the work of a run over this volume. What its source raised comes out as it was."""
+        """Does the work of a run over this volume. What its source raised in this run comes out as it was."""
+        self._errors.begin_run()
         try:
             return work()
-        except c.Stopped:
-            if self._errors:
-                raise self._errors.pop() from None
+        except c.Stopped as stopped:
+            error = self._errors.behind(stopped)
+            if error is not None:
+                raise error from None
             raise
         finally:
+            self._errors.end_run()
             if self._reader is not None:
                 self._reader.close()
 
@@ -218,12 +223,49 @@ class Volume:
         return out * self._facts["slope"] + self._facts["intercept"] if self._scaled() else out
 
 
+class _SourceErrors:
+    """What a source raised in runs that go on, by numbers that the C interface hands from the callback to its run.
+
+    Runs over a volume may go on at the same time, and a run that a source has stopped may end with another error.
+    """
+
+    _lock = threading.Lock()
+    _last = 0  # the last number of all sources: a run may have two of them
+
+    def __init__(self) -> None:
+        self._raised: dict[int, BaseException] = {}
+        self._runs = 0
+
+    def begin_run(self) -> None:
+        with self._lock:
+            self._runs += 1
+
+    def end_run(self) -> None:
+        """Forgets what no run can ask for."""
+        with self._lock:
+            self._runs -= 1
+            if self._runs == 0:
+                self._raised.clear()
+
+    def keep(self, error: BaseException) -> int:
+        with self._lock:
+            _SourceErrors._last = number = _SourceErrors._last % 0x7FFFFFFF + 1
+            self._raised[number] = error
+        return number
+
+    def behind(self, stopped: c.Stopped) -> BaseException | None:
+        """What the source raised to stop this run, if it was the source."""
+        said = re.search(r"stopped by its source \((\d+)\)$", str(stopped))
+        with self._lock:
+            return None if said is None else self._raised.pop(int(said[1]), None)
+
+
 class _CallbackSource:
     """Slices for the C interface from an array that is not in memory as that wants it."""
 
     def __init__(self, slices: Slices) -> None:
         self.reader = SlabReader(slices)
-        self.errors: list[BaseException] = []
+        self.errors = _SourceErrors()
         shape, dtype = slices.shape[1:], slices.dtype
 
         def read(_context: int | None, first: int, count: int, out: int) -> int:
@@ -233,10 +275,9 @@ class _CallbackSource:
                 self.reader.copy(first, np.frombuffer(room, dtype).reshape(count, *shape))
                 return 0
             except BaseException as error:
-                self.errors.append(error)
-                return 1
+                return self.errors.keep(error)
 
-        self.struct = c.Source(read=c.ReadSlices(read))
+        self.struct = c.Source(read=c.ReadSlices(read), held_bytes=self.reader.held_bytes)
 
 
 def _volume_of_slices(slices: Slices, name: str) -> Volume:
@@ -312,7 +353,7 @@ def open_volume(
             tensorstore, xarray; an image of SimpleITK, ITK, nibabel, PyVista or VTK; a tensor of torch, cupy or jax; or
             any object with ``shape``, ``dtype`` and slicing, or that is called as ``f(z0, z1)``.
         dataset: path or name of an array in the file or folder (HDF5, Zarr, N5, VTK, NPZ).
-        level: of an image that the file has at several sizes, 0 being the full one.
+        level: of an image that the file has at several sizes; 0 is the full one.
         series: UID of a DICOM series.
         raw: layout of a headerless file, ``"512x512x300:int16[:big][:skip=N]"`` (x, y, z).
         channel, time: index along those axes, from 0; the first where they are not said.

@@ -10,9 +10,10 @@ import os
 import pathlib
 import shutil
 import tempfile
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass
 from time import sleep
-from typing import TYPE_CHECKING, Any, Iterator, Sequence, Union, overload
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Protocol, Sequence, Union, overload
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from ._options import Length, length
 from ._outputs import level_reports
 from ._program import run
 from ._report import Report
+from ._run import Teller, teller
 from ._volume import Roi, ranges_of
 
 try:
@@ -36,6 +38,32 @@ if TYPE_CHECKING:
 PathLike = Union[str, "os.PathLike[str]"]
 
 
+class Stored(Protocol):
+    """An array or a group of zarr, which lies in a store."""
+
+    @property
+    def store(self) -> Any: ...
+
+    @property
+    def path(self) -> str: ...
+
+
+@dataclass(frozen=True)
+class TaskProgress:
+    """How far the tasks of a run are."""
+
+    task: int
+    """Tasks that are done."""
+    tasks: int
+    """Tasks in all."""
+
+    def _steps(self) -> tuple[int, int, str]:
+        return self.task, self.tasks, "task"
+
+    def _line(self) -> str:
+        return f"task {self.task} of {self.tasks}"
+
+
 def _work_on(task: int, folder: str, threads: int) -> None:
     """Works on a task, in a worker of Dask, for as long as the client wants it."""
     worker = distributed.get_worker()
@@ -49,19 +77,21 @@ def _work_on(task: int, folder: str, threads: int) -> None:
     run("work", folder, f"--task={task}", "--wait", f"--threads={threads or 'all'}", "--quiet", wanted=wanted)
 
 
-def _work_on_all(client: Any, folder: str, threads: int) -> None:
+def _work_on_all(client: Any, folder: str, threads: int, told: Teller) -> None:
     """Works on all tasks. The ones of a stage take what the ones of the stage before have left."""
-    first = 0
-    for stage in json.loads(run("status", folder, "--json"))["stages"]:
-        end = first + stage["tasks"]
-        tasks = client.map(_work_on, range(first, end), folder=folder, threads=threads, pure=False)
+    stages = [stage["tasks"] for stage in json.loads(run("status", folder, "--json"))["stages"]]
+    done = 0
+    for count in stages:
+        tasks = client.map(_work_on, range(done, done + count), folder=folder, threads=threads, pure=False)
         try:
             for task in distributed.as_completed(tasks):
                 task.result()
+                done += 1
+                if told.tell(TaskProgress(done, sum(stages))) is False:
+                    raise c.Stopped("isoweave.distributed.mesh: stopped by progress")
         except BaseException:
             client.cancel(tasks)
             raise
-        first = end
 
 
 def _plan(options: Sequence[str], folder: str, scratch: str) -> None:
@@ -118,26 +148,51 @@ def _ranges(roi: Roi | None) -> str | None:
     return ",".join(":".join("" if end is None else str(end) for end in pair) for pair in ends)
 
 
-@overload
-def mesh(volume: PathLike, level: float | None = None, *, out: PathLike, **settings: Unpack[PlanSettings]) -> Report: ...
+# The stores of zarr 3 and 2 that are folders.
+_FOLDER_STORES = ("LocalStore", "DirectoryStore", "NestedDirectoryStore")
+
+
+def _path_of(volume: Any) -> str:
+    """The path at which all workers find a volume."""
+    if isinstance(volume, (str, os.PathLike)):
+        return os.path.abspath(volume)
+    store: Any = getattr(volume, "store", volume)
+    kind = type(store).__name__
+    if kind in _FOLDER_STORES:
+        root: str | os.PathLike[str] = store.root if hasattr(store, "root") else store.path
+        return os.path.abspath(pathlib.Path(root, str(volume.path)))
+    raise TypeError(f"volume: expected a path or a zarr array in a folder, which all workers see, found {kind}: save it first")
+
+
 @overload
 def mesh(
-    volume: PathLike, level: float | None = None, *, lods: Sequence[Length], out: PathLike, **settings: Unpack[PlanSettings]
+    volume: PathLike | Stored, level: float | None = None, *, out: PathLike, **settings: Unpack[PlanSettings]
+) -> Report: ...
+@overload
+def mesh(
+    volume: PathLike | Stored,
+    level: float | None = None,
+    *,
+    lods: Sequence[Length],
+    out: PathLike,
+    **settings: Unpack[PlanSettings],
 ) -> list[Report]: ...
 def mesh(
-    volume: PathLike, level: float | None = None, *, out: PathLike, client: Any = None, folder: PathLike | None = None,
+    volume: PathLike | Stored, level: float | None = None, *, out: PathLike, client: Any = None, folder: PathLike | None = None,
     blocks: int = 512, threads: int = 1, error: Length | None = None, lods: Sequence[Length] = (), quality: str = "normal",
     specks: str = "keep", inside: str = "above", closed: bool = True, smooth: int = 0, extractor: str = "cubes",
     normals: str | None = None, space: str | None = None, spacing: Any = None, origin: Any = None, raw: str | None = None,
     dataset: str | None = None, series: str | None = None, channel: int | None = None, time: int | None = None,
     external: bool = True, roi: Roi | None = None, step: int | None = None, compress: bool = False,
+    progress: bool | Callable[[TaskProgress], Any] | None = None,
 ) -> Any:
     """The mesh of :func:`isoweave.mesh`, bit for bit, by the workers of a Dask cluster.
 
     Workers need this package, and see the volume and the folder under the same paths as the client.
 
     Args:
-        volume: a path. Streams that are packed as a whole, such as ``.nii.gz``, are refused.
+        volume: a path, or an array or a group of zarr in a local folder, which is read by its path: spacing and origin are
+            those of its metadata (OME-Zarr). Streams that are packed as a whole, such as ``.nii.gz``, are refused.
         level: the value at the surface. None: Otsu's threshold.
         out: the mesh file, which the client writes; with ``lods``, ``a.ply`` becomes ``a_lod0.ply``, ...
         client: a ``distributed.Client``. None: the current one.
@@ -148,16 +203,16 @@ def mesh(
         raw, dataset, series, external: as :func:`isoweave.open_volume`.
         error, lods, quality, specks, inside, closed, smooth, extractor, normals, space, spacing, origin, channel, time, roi,
             step, compress: as :func:`isoweave.mesh`. There is no "dual" extractor, and nothing negative in ``roi``.
+        progress: True: a bar of tqdm, or one line on standard error. A function that gets a :class:`TaskProgress` after every
+            task; False from it stops the run.
 
     Returns:
         A :class:`Report`; a list of them with ``lods``, finest first.
 
     Raises:
-        As :func:`isoweave.mesh`; on Ctrl-C the tasks of all workers stop as well.
+        As :func:`isoweave.mesh`; on Ctrl-C, and where ``progress`` stops the run, the tasks of all workers stop as well.
         distributed.KilledWorker: where several workers have died of the same task.
     """
-    if not isinstance(volume, (str, os.PathLike)):
-        raise TypeError(f"volume: expected a path, which all workers see, found {type(volume).__name__}")
     values: dict[str, Any] = {
         "iso": _numbers(level) or "auto", "blocks": blocks, "error": _length(error),
         "lods": ",".join(_length(each) or "" for each in lods) or None, "quality": quality, "specks": specks,
@@ -165,7 +220,7 @@ def mesh(
         "spacing": _numbers(spacing), "origin": _numbers(origin), "raw": raw, "dataset": dataset, "series": series,
         "channel": channel, "time": time, "roi": _ranges(roi), "step": step,
     }
-    options = [os.path.abspath(volume), *(f"--{name}={value}" for name, value in values.items() if value is not None)]
+    options = [_path_of(volume), *(f"--{name}={value}" for name, value in values.items() if value is not None)]
     options += ["--open"] * (not closed) + ["--no-external"] * (not external)
     client = distributed.get_client() if client is None else client
     path = os.path.abspath(out)
@@ -175,6 +230,7 @@ def mesh(
         with suppress(c.BadInput):  # tasks are left; a wrong `out` is refused before any of them is done
             report = _collect(tasks, path, compress, scratch)
         if report is None:
-            _work_on_all(client, tasks, threads)
+            with closing(teller(progress)) as told:
+                _work_on_all(client, tasks, threads, told)
             report = _collect(tasks, path, compress, scratch)
     return level_reports(report, len(lods)) if lods else report

@@ -20,6 +20,7 @@ import isoweave
 
 distributed = pytest.importorskip("distributed")
 psutil = pytest.importorskip("psutil")
+zarr = pytest.importorskip("zarr")
 cluster_mesh = pytest.importorskip("isoweave.distributed").mesh
 
 
@@ -134,6 +135,31 @@ def test_options(client: Any, folder: pathlib.Path, volume: np.ndarray) -> None:
     assert [isoweave.check(folder / f"l_lod{n}.ply").digest for n in range(2)] == [mesh.digest for mesh in alone]
 
 
+def test_arrays_of_zarr_are_read_by_their_path(
+    client: Any, folder: pathlib.Path, volume: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    for format in (2, 3):
+        group = zarr.open_group(f"g{format}.zarr", mode="w", zarr_format=format)
+        array = group.create_array("scans/first", shape=volume.shape, chunks=(8, 16, 16), dtype="u1")
+        array[:] = volume
+        wanted = isoweave.mesh(array, 100, out="alone.ply").digest
+        assert cluster_mesh(array, 100, blocks=30, out="m.ply").digest == wanted
+        assert cluster_mesh(group["scans"], 100, blocks=30, dataset="first", out="m.ply").digest == wanted
+
+
+def test_progress(client: Any, folder: pathlib.Path, noise: str, capsys: pytest.CaptureFixture[str]) -> None:
+    told: list[Any] = []
+    cluster_mesh(noise, 0.5, blocks=40, out=folder / "m.ply", progress=told.append)
+    assert len(told) > 2 and [now.task for now in told] == list(range(1, len(told) + 1))
+    assert {now.tasks for now in told} == {len(told)}
+    cluster_mesh(noise, 0.5, blocks=40, out=folder / "m.ply", progress=True)
+    assert f"{len(told)}/{len(told)}" in capsys.readouterr().err  # tqdm's
+    with pytest.raises(isoweave.Stopped, match="stopped by progress"):
+        cluster_mesh(noise, 0.5, blocks=40, out=folder / "stopped.ply", progress=lambda now: now.task < 2)
+    assert os.listdir(folder) == ["m.ply"]
+
+
 def test_a_worker_that_is_killed(client: Any, folder: pathlib.Path, noise: str) -> None:
     """Its program outlives it, holds still, and dies later: the rerun of its task waits for that."""
     workers = client.run(os.getpid)
@@ -201,7 +227,8 @@ def test_errors(client: Any, folder: pathlib.Path, noise: str) -> None:
         (ValueError, {"extractor": "dual"}, "dual"),
         (ValueError, {"level": [0.4, 0.5]}, "--iso: expected one value"),
         (ValueError, {"roi": np.s_[1:2]}, "roi"),
-        (TypeError, {"volume": np.zeros((4, 4, 4))}, "volume: expected a path, which all workers see, found ndarray"),
+        (TypeError, {"volume": np.zeros((4, 4, 4))}, "volume: expected a path or a zarr array in a folder, .* found ndarray"),
+        (TypeError, {"volume": zarr.ones(shape=(4, 4, 4), store={})}, "found MemoryStore: save it first"),
         (isoweave.BadInput, {"volume": folder / "none.npy"}, "none.npy"),
         (isoweave.CannotWrite, {"out": folder / "none" / "m.ply"}, "m.ply: expected a folder"),
         (isoweave.CannotWrite, {"folder": pathlib.Path(noise).parent}, "expected a new or empty folder"),

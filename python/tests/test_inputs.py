@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pathlib
 import threading
+import time
+import weakref
 from typing import Any
 
 import numpy as np
@@ -88,11 +90,88 @@ class Counting:
         return self.array[key]
 
 
+class Tracked(Counting):
+    """An array that tells how many of the rows it gave are still held, and fails from a slice on."""
+
+    def __init__(self, array: np.ndarray, chunk: int, fail_at: int = 1 << 30) -> None:
+        super().__init__(array, chunk)
+        self.fail_at, self.held, self.most_held = fail_at, 0, 0
+        self.lock = threading.RLock()
+
+    def __getitem__(self, key: Any) -> np.ndarray:
+        row = super().__getitem__(key).copy()
+        if key[0].stop > self.fail_at:
+            raise ZeroDivisionError("row of zeros")
+        with self.lock:
+            self.held += 1
+            self.most_held = max(self.most_held, self.held)
+        weakref.finalize(row, self.given_up)
+        return row
+
+    def given_up(self) -> None:
+        with self.lock:
+            self.held -= 1
+
+    def reader(self) -> _slices.SlabReader:
+        return _slices.SlabReader(_slices.slices_of(self, axes=None, channel=None, time=None, scalars=None))
+
+
+def no_threads_are_left() -> bool:
+    return not [thread for thread in threading.enumerate() if thread.name.startswith("isoweave")]
+
+
+def test_two_rows_are_read_ahead(volume: np.ndarray) -> None:
+    tracked = Tracked(volume, chunk=4)
+    reader = tracked.reader()
+    reader.copy(0, np.empty((1, *volume.shape[1:]), np.uint8))
+    until = time.monotonic() + 60
+    while len(tracked.reads) < 3 and time.monotonic() < until:
+        time.sleep(0.01)
+    time.sleep(0.1)  # for a fourth one, which would be wrong
+    assert tracked.reads == [(0, 4), (4, 8), (8, 12)]
+    assert tracked.held == 3 and reader.held_bytes == 3 * 4 * volume[0].nbytes
+    reader.close()
+    assert tracked.held == 0 and no_threads_are_left()
+
+
+@pytest.mark.parametrize("chunk", [1, 4, 11, 30])
+def test_three_rows_are_held_at_most(volume: np.ndarray, wanted: str, chunk: int) -> None:
+    tracked = Tracked(volume, chunk)
+    assert digest(tracked) == wanted
+    assert tracked.reads == [(first, min(first + chunk, 30)) for first in range(0, 30, chunk)]
+    assert tracked.most_held <= 3 and tracked.held == 0 and no_threads_are_left()
+
+
+def test_rows_that_fail_ahead_fail_where_they_are_needed(volume: np.ndarray, folder: pathlib.Path) -> None:
+    tracked = Tracked(volume, chunk=4, fail_at=8)
+    reader = tracked.reader()
+    slices = np.empty((8, *volume.shape[1:]), np.uint8)
+    reader.copy(0, slices)
+    assert np.array_equal(slices, volume[:8])
+    with pytest.raises(ZeroDivisionError, match="row of zeros") as raised:
+        reader.copy(8, slices)
+    assert any(entry.name == "__getitem__" for entry in raised.traceback)
+    reader.close()
+    with pytest.raises(ZeroDivisionError, match="row of zeros"):
+        isoweave.mesh(Tracked(volume, chunk=4, fail_at=16), 100, out=folder / "m.ply")
+    assert list(folder.iterdir()) == [] and no_threads_are_left()
+    part = isoweave.mesh(Tracked(volume, chunk=4, fail_at=16), 100, roi=np.s_[:16, :, :])
+    assert part.digest == isoweave.mesh(volume, 100, roi=np.s_[:16, :, :]).digest
+
+
+def test_rows_count_in_memory_caps() -> None:
+    slices = np.broadcast_to(np.zeros((1, 2000, 2000), np.uint8), (600, 2000, 2000))
+    lazy = Counting(slices, chunk=100)
+    with pytest.raises(isoweave.OverMemory, match="expected --memory"):
+        isoweave.mesh(lazy, 1, memory="1200M")  # three rows are 1.2 GB
+    assert lazy.reads == []
+
+
 def test_chunks_are_read_once_and_in_order(volume: np.ndarray, wanted: str) -> None:
     counting = Counting(volume, chunk=7)
     assert digest(counting) == wanted
     assert counting.reads == [(0, 7), (7, 14), (14, 21), (21, 28), (28, 30)]
-    assert not [thread for thread in threading.enumerate() if thread.name.startswith("isoweave")]
+    assert no_threads_are_left()
 
 
 def test_arrays_without_chunks_are_read_in_bounded_parts(
@@ -129,12 +208,27 @@ def test_dask(volume: np.ndarray, wanted: str) -> None:
     assert sum(blocks) == 4 * volume.shape[0]  # every one of four columns of blocks once
 
 
-def test_zarr(volume: np.ndarray, wanted: str, folder: pathlib.Path) -> None:
-    zarr = pytest.importorskip("zarr")
-    array = zarr.open(str(folder / "v.zarr"), mode="w", shape=volume.shape, chunks=(8, 16, 16), dtype="u1")
+@pytest.mark.parametrize("options", [{"zarr_format": 2}, {"zarr_format": 3}, {"shards": (16, 16, 32)}])
+def test_zarr(volume: np.ndarray, wanted: str, folder: pathlib.Path, options: dict[str, Any]) -> None:
+    zarr = pytest.importorskip("zarr", minversion="3")
+    array = zarr.create_array(str(folder / "v.zarr"), shape=volume.shape, chunks=(8, 16, 16), dtype="u1", **options)
     array[:] = volume
     assert digest(array) == wanted
     assert digest(folder / "v.zarr") == wanted
+
+
+def test_tensorstore(volume: np.ndarray, wanted: str, folder: pathlib.Path) -> None:
+    tensorstore = pytest.importorskip("tensorstore")
+    spec = {"driver": "zarr", "kvstore": {"driver": "file", "path": str(folder / "t.zarr")}}
+    layout = tensorstore.ChunkLayout(chunk_shape=(8, 16, 16))
+    array = tensorstore.open(
+        spec, create=True, dtype=tensorstore.uint8, shape=volume.shape, chunk_layout=layout
+    ).result()
+    array[...] = volume
+    assert _slices.slices_of(array, axes=None, channel=None, time=None, scalars=None).chunk == 8
+    assert digest(array) == wanted
+    assert digest(array.T, axes="xyz") == wanted
+    assert digest(tensorstore.array(volume)) == wanted  # without chunks
 
 
 def test_h5py(volume: np.ndarray, wanted: str, folder: pathlib.Path) -> None:
@@ -178,6 +272,17 @@ def test_simpleitk_and_its_file(volume: np.ndarray, wanted: str, folder: pathlib
     sitk.WriteImage(image, str(folder / "v.nrrd"))
     mesh = isoweave.mesh(image, 100)
     assert mesh.digest == isoweave.mesh(folder / "v.nrrd", 100).digest != wanted
+    assert mesh.space == "LPS"
+
+
+def test_itk(volume: np.ndarray) -> None:
+    itk = pytest.importorskip("itk")
+    image = itk.image_view_from_array(volume)
+    image.SetSpacing(SPACING)
+    image.SetOrigin(ORIGIN)
+    image.SetDirection(itk.matrix_from_array(rotated()))
+    mesh = isoweave.mesh(image, 100)
+    assert mesh.digest == isoweave.mesh(volume, 100, **PLACE, direction=rotated(), space="lps").digest
     assert mesh.space == "LPS"
 
 
@@ -242,6 +347,12 @@ def test_dlpack(volume: np.ndarray, wanted: str) -> None:
             raise AssertionError("expected the memory itself to be taken, found slices")
 
     assert digest(Tensor()) == wanted
+
+    class Narrow(Tensor):
+        dtype = "bfloat16"  # type: ignore[assignment]
+
+    with pytest.raises(ValueError, match="found bfloat16"):
+        digest(Narrow())
 
 
 def test_what_is_no_volume(volume: np.ndarray) -> None:

@@ -64,6 +64,74 @@ def test_exceptions_of_progress_and_sinks_come_out_as_they_were(folder: pathlib.
     assert list(folder.iterdir()) == []
 
 
+class FailsOnce(Slow):
+    """A volume whose read of a slice fails once, and says so."""
+
+    def __init__(self, fail_at: int) -> None:
+        super().__init__(fail_at=fail_at)
+        self.failed = threading.Event()
+
+    def __call__(self, first: int, end: int) -> np.ndarray:
+        try:
+            return super().__call__(first, end)
+        except ZeroDivisionError:
+            self.fail_at = -1
+            self.failed.set()
+            raise
+
+
+def stop_by_sink_after_source(volume: isoweave.Volume, source: FailsOnce) -> None:
+    """A run that its sink ends once the source has failed in a slice that is read ahead."""
+
+    class Mine(Exception):
+        pass
+
+    class Sink:
+        def vertices(self, xyz: np.ndarray) -> None:
+            assert source.failed.wait(30)
+            raise Mine
+
+        faces = finish = vertices
+
+    with pytest.raises(Mine):
+        isoweave.mesh(volume, 0, error=0, out=Sink())
+
+
+def test_an_exception_of_a_source_stays_with_its_run() -> None:
+    source = FailsOnce(fail_at=14)
+    volume = isoweave.open_volume(source)
+    stop_by_sink_after_source(volume, source)
+    with pytest.raises(isoweave.Stopped):
+        isoweave.mesh(volume, 0, progress=lambda now: False)
+    assert isoweave.mesh(volume, 0).report.triangles > 0
+    assert not volume._errors._raised
+
+
+def test_an_exception_of_a_source_stays_with_its_run_beside_others() -> None:
+    source = FailsOnce(fail_at=14)
+    volume = isoweave.open_volume(source)
+    waits, may_stop = threading.Event(), threading.Event()
+    ends: list[BaseException] = []
+
+    def progress(now: isoweave.Progress) -> bool:
+        waits.set()
+        return not may_stop.wait(30)
+
+    def run() -> None:
+        try:
+            isoweave.mesh(volume.crop(np.s_[100:, :, :]), 0, progress=progress)
+        except BaseException as error:
+            ends.append(error)
+
+    other = threading.Thread(target=run)
+    other.start()
+    assert waits.wait(30)
+    stop_by_sink_after_source(volume, source)
+    may_stop.set()
+    other.join()
+    assert [type(error) for error in ends] == [isoweave.Stopped]
+
+
 def test_progress_can_stop_a_run(folder: pathlib.Path) -> None:
     told: list[isoweave.Progress] = []
 
@@ -97,6 +165,33 @@ def test_control_c_stops_a_run_and_leaves_no_file(folder: pathlib.Path) -> None:
     assert list(folder.iterdir()) == []
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("isoweave")]
     assert isoweave.mesh(Slow(), 0).report.triangles > 0  # the next one is not disturbed
+
+
+class SlowRows:
+    """A volume of chunks that are read ahead, and take their time."""
+
+    shape, chunks = Slow.shape, (4, 24, 24)
+    dtype = Slow.dtype
+
+    def __init__(self) -> None:
+        self.slow = Slow(seconds=0.05)
+
+    def __getitem__(self, key: tuple[slice, ...]) -> np.ndarray:
+        return self.slow(key[0].start, key[0].stop)
+
+
+def test_control_c_ends_reading_ahead(folder: pathlib.Path) -> None:
+    rows = SlowRows()
+    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        isoweave.mesh(rows, 0, out=folder / "m.ply")
+    timer.join()
+    read = rows.slow.read
+    assert 0 < read < rows.shape[0] and list(folder.iterdir()) == []
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("isoweave")]
+    time.sleep(0.3)
+    assert rows.slow.read == read
 
 
 def test_leaving_a_loop_stops_the_run() -> None:

@@ -6,6 +6,7 @@ import pathlib
 from typing import Any, Mapping
 
 import numpy.typing as npt
+import zarr
 from typing_extensions import assert_type
 
 import isoweave
@@ -32,4 +33,6 @@ def calls(volume: npt.NDArray[Any], path: pathlib.Path, sink: isoweave.Sink) -> 
     isoweave.mesh(volume, 100, eror=1)  # type: ignore[call-overload]
     assert_type(isoweave.distributed.mesh(path, 100, out="a.ply", blocks=128, error="0.2vox"), Report)
     assert_type(isoweave.distributed.mesh(path, 100, out=path, lods=["0.1vox", 0.5]), "list[Report]")
+    assert_type(isoweave.distributed.mesh(zarr.open_array(path), 100, out=path, progress=print), Report)
+    isoweave.distributed.mesh(volume, 100, out=path)  # type: ignore[call-overload]
     isoweave.distributed.mesh(path, 100, out=path, extractor="dual")  # type: ignore[call-overload]

@@ -1,7 +1,5 @@
 #include "capi/call_checkpoint.hpp"
 
-#include <memory>
-
 #include "isoweave/checkpoint_folder.hpp"
 #include "isoweave/error.hpp"
 
@@ -10,7 +8,7 @@ namespace isoweave::capi {
 CallCheckpoint::CallCheckpoint(const iw_run& given, std::size_t outputs, RunControl& control) {
   const std::string& folder = control.checkpoint.folder;
   if (folder.empty()) return;
-  control.checkpoint.lock = std::make_shared<CheckpointLock>(lock_checkpoint_folder(folder));
+  control.checkpoint.lock = lock_checkpoint_folder(folder);
   const bool unfinished = holds_state(folder);
   if (unfinished && given.resume == 0)
     throw CannotWrite(folder + ": holds an unfinished run: go on with resume, or remove it");
@@ -23,12 +21,6 @@ CallCheckpoint::CallCheckpoint(const iw_run& given, std::size_t outputs, RunCont
     if (!unfinished) make_part_folder(parts);
     meshes_.push_back({parts, unfinished ? control.resume->marks[meshes_.size()] : ""});
   }
-}
-
-void CallCheckpoint::finish() const {
-  std::vector<std::string> folders;
-  for (const UnfinishedMesh& mesh : meshes_) folders.push_back(mesh.parts);
-  remove_part_folders(folders);
 }
 
 }  // namespace isoweave::capi

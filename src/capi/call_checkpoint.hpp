@@ -27,9 +27,6 @@ class CallCheckpoint {
   // One for each output, or none where nothing is saved.
   const std::vector<UnfinishedMesh>& meshes() const { return meshes_; }
 
-  // Removes what is left of a run that is finished.
-  void finish() const;
-
  private:
   std::vector<UnfinishedMesh> meshes_;
 };

@@ -13,18 +13,18 @@
 namespace isoweave::capi {
 namespace {
 
-Length length(const char* name, const std::string& text, const std::string& unit) {
+Length length(const char* name, const std::string& text, const LengthBasis& basis) {
   try {
-    return parse_length(text, unit);
+    return parse_length(text, basis.unit, basis.diagonal);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(std::string(name) + ": " + error.what());
   }
 }
 
-std::vector<Length> lengths(const char* name, const std::string& texts, const std::string& unit) {
+std::vector<Length> lengths(const char* name, const std::string& texts, const LengthBasis& basis) {
   std::vector<Length> all;
   std::istringstream list(texts + ",");
-  for (std::string text; std::getline(list, text, ',');) all.push_back(length(name, text, unit));
+  for (std::string text; std::getline(list, text, ',');) all.push_back(length(name, text, basis));
   return all;
 }
 
@@ -41,13 +41,13 @@ Choice choice(const char* name, std::int32_t number, std::initializer_list<Choic
 bool has_number(const iw_simplify_options& given) { return given.triangles > 0 || given.ratio != 0; }
 
 // The error up to which a run goes.
-Length error_of(const iw_simplify_options& given, const std::string& unit, const std::string& usual) {
-  if (given.error != nullptr) return length("error", given.error, unit);
+Length error_of(const iw_simplify_options& given, const LengthBasis& basis, const std::string& usual) {
+  if (given.error != nullptr) return length("error", given.error, basis);
   if (has_number(given)) return Length::units(std::numeric_limits<double>::infinity());
-  if (given.max_distance != nullptr) return length("max_distance", given.max_distance, unit);
+  if (given.max_distance != nullptr) return length("max_distance", given.max_distance, basis);
   if (usual.empty())
     throw std::invalid_argument("expected one of error, levels, max_distance, triangles and ratio, found none");
-  return length("error", usual, unit);
+  return length("error", usual, basis);
 }
 
 CheckpointOptions checkpoint_options(const iw_run& given) {
@@ -64,7 +64,7 @@ CheckpointOptions checkpoint_options(const iw_run& given) {
 
 }  // namespace
 
-SimplifyOptions simplify_options(const iw_simplify_options& given, const std::string& unit, const std::string& usual) {
+SimplifyOptions simplify_options(const iw_simplify_options& given, const LengthBasis& basis, const std::string& usual) {
   if (given.levels != nullptr && (given.error != nullptr || has_number(given)))
     throw std::invalid_argument("levels do not go with error, triangles and ratio");
   if (given.triangles > 0 && given.ratio != 0) throw std::invalid_argument("triangles do not go with ratio");
@@ -73,13 +73,13 @@ SimplifyOptions simplify_options(const iw_simplify_options& given, const std::st
                                 std::to_string(given.ratio));
   SimplifyOptions options;
   if (given.levels != nullptr) {
-    options.levels = lengths("levels", given.levels, unit);
+    options.levels = lengths("levels", given.levels, basis);
     options.error = options.levels.back();
     options.levels.pop_back();
   } else {
-    options.error = error_of(given, unit, usual);
+    options.error = error_of(given, basis, usual);
   }
-  if (given.max_distance != nullptr) options.max_distance = length("max_distance", given.max_distance, unit);
+  if (given.max_distance != nullptr) options.max_distance = length("max_distance", given.max_distance, basis);
   options.triangles = given.triangles;
   options.quality = choice("quality", given.quality, {Quality::kNormal, Quality::kFast, Quality::kFine});
   options.drop_specks = given.drop_specks != 0;
@@ -96,7 +96,8 @@ ComponentRule component_rule(const iw_simplify_options& given) {
 
 MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options& simplify, const VolumeInfo& info) {
   MeshOptions options;
-  static_cast<SimplifyOptions&>(options) = simplify_options(simplify, info.geometry.unit, "0.2vox");
+  static_cast<SimplifyOptions&>(options) =
+      simplify_options(simplify, {info.geometry.unit, box_diagonal(info)}, "0.2vox");
   if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(info));
   options.iso = given.iso;
   options.inside_above = given.inside_below == 0;

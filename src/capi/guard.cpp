@@ -33,6 +33,11 @@ void require_size(std::size_t found, std::size_t largest) {
                               std::to_string(found));
 }
 
+void require_unused(std::int32_t reserved) {
+  if (reserved == 0) return;
+  throw std::invalid_argument("reserved: expected 0, found " + std::to_string(reserved));
+}
+
 void clear(iw_result* result) {
   if (result == nullptr) return;
   if (result->struct_size != sizeof(iw_result)) require_size(0, sizeof(iw_result));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <stdexcept>
@@ -15,6 +16,10 @@ namespace isoweave::capi {
 // @throws std::invalid_argument
 void require_size(std::size_t found, std::size_t largest);
 
+// Refuses a reserved member that a later library might read.
+// @throws std::invalid_argument
+void require_unused(std::int32_t reserved);
+
 // A struct of the caller with the members that its header does not have yet set to 0; all of them where it is null.
 template <class Struct>
 Struct taken(const Struct* given) {
@@ -22,6 +27,7 @@ Struct taken(const Struct* given) {
   if (given != nullptr) {
     require_size(given->struct_size, sizeof(Struct));
     std::memcpy(&all, given, given->struct_size);
+    if constexpr (requires { all.reserved; }) require_unused(all.reserved);
   }
   all.struct_size = sizeof(Struct);
   return all;

@@ -31,7 +31,9 @@ struct VolumeRun {
         simplify(taken(given.simplify)),
         way(taken(run)),
         options(mesh_options(given, simplify, info())),
-        control(run_control(way)) {}
+        control(run_control(way)) {
+    control.reopen = [&again = opener] { return again.open(); };
+  }
 
   const VolumeInfo& info() const { return opener.info(); }
 
@@ -98,7 +100,6 @@ void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result*
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
-  saved.finish();
 }
 
 Label label_of(const iw_output& output) {
@@ -163,7 +164,7 @@ void mesh_isos_into(const VolumeRun& run, iw_output* outputs, std::size_t count,
 
 void simplify_into(TriangleMesh mesh, const iw_simplify_options& given, const RunControl& control, iw_output* outputs,
                    std::size_t count, iw_result* result) {
-  SimplifyOptions options = simplify_options(given, mesh.unit, "");
+  SimplifyOptions options = simplify_options(given, {mesh.unit, box_diagonal(mesh)}, "");
   MeshFileOptions file;
   file.values = !mesh.values.empty();
   file.unit = mesh.unit;

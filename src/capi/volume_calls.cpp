@@ -1,5 +1,6 @@
 // The calls of the C interface that open volumes and read them.
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,8 @@
 #include "isoweave/error.hpp"
 #include "isoweave/histogram.hpp"
 #include "isoweave/volume.hpp"
+#include "volume/row_source.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave::capi {
 namespace {
@@ -16,19 +19,17 @@ namespace {
 constexpr std::array<double, 9> kAxes{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 // Slices from the caller's callback.
-class CallbackSource final : public SliceSource {
+class CallbackSource final : public BufferedSource {
  public:
   CallbackSource(VolumeInfo info, const iw_source& source) : info_(std::move(info)), source_(source) {}
 
   const VolumeInfo& info() const override { return info_; }
+  std::uint64_t held_bytes() const override { return source_.held_bytes; }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    if (first < next_ || count < 0 || count > info_.dims[2] - first) {
-      throw std::invalid_argument(info_.path + ": slices " + std::to_string(first) + " to " +
-                                  std::to_string(first + count) + " are behind or outside the volume");
-    }
-    if (count > 0 && source_.read(source_.context, first, count, out.data()) != 0)
-      throw Interrupted(info_.path + ": stopped by its source");
+    check_slice_range(info_, next_, first, count, out.size());
+    const std::int32_t answer = count > 0 ? source_.read(source_.context, first, count, out.data()) : 0;
+    if (answer != 0) throw Interrupted(info_.path + ": stopped by its source (" + std::to_string(answer) + ")");
     next_ = first + count;
   }
 
@@ -45,14 +46,13 @@ std::array<double, Size> numbers(const double (&given)[Size], const std::array<d
   return all == std::array<double, Size>{} ? usual : all;
 }
 
-// The largest number of samples that 63 bits hold, along all axes.
-void check_dims(const std::array<std::int64_t, 3>& dims, const std::string& path) {
-  std::int64_t left = std::numeric_limits<std::int64_t>::max();
+void check_dims(const std::array<std::int64_t, 3>& dims, SampleType type, const std::string& path) {
+  std::int64_t left = std::numeric_limits<std::int64_t>::max() / static_cast<std::int64_t>(sample_bytes(type));
   for (const std::int64_t size : dims) {
     if (size < 1 || size > left) {
-      throw std::invalid_argument(path + ": expected sides of at least 1, whose product is below 2^63, found " +
-                                  std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
-                                  std::to_string(dims[2]));
+      throw std::invalid_argument(
+          path + ": expected sides of at least 1, and fewer than 2^63 bytes of samples, found " +
+          std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " + std::to_string(dims[2]));
     }
     left /= size;
   }
@@ -63,10 +63,10 @@ VolumeInfo volume_info(const iw_volume_info& given) {
   info.path = given.path == nullptr ? "volume" : given.path;
   info.format = "memory";
   std::ranges::copy(given.dims, info.dims.begin());
-  check_dims(info.dims, info.path);
   if (given.type < IW_UINT8 || given.type > IW_FLOAT64)
     throw std::invalid_argument(info.path + ": expected a sample type, found " + std::to_string(given.type));
   info.type = static_cast<SampleType>(given.type);
+  check_dims(info.dims, info.type, info.path);
   if (given.space < IW_SPACE_UNKNOWN || given.space > IW_SPACE_RAS)
     throw std::invalid_argument(info.path + ": expected a space, found " + std::to_string(given.space));
   info.geometry.space = static_cast<Space>(given.space);
@@ -111,14 +111,7 @@ void open(iw_volume** volume, VolumeOpener::Open open) {
 const std::atomic<bool>* wish_of(const iw_stop* stop) { return stop == nullptr ? nullptr : stop->wish.get(); }
 
 void read_slices(const VolumeOpener& opener, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
-  const VolumeInfo& info = opener.info();
-  if (first < 0 || count < 0 || count > info.dims[2] - first)
-    throw std::invalid_argument(info.path + ": expected slices of the volume, found " + std::to_string(first) + " to " +
-                                std::to_string(first + count));
-  const std::size_t slice = info.slice_bytes();
-  if (out.size() / slice < static_cast<std::uint64_t>(count))
-    throw std::invalid_argument(info.path + ": expected room for " + std::to_string(count) + " slices of " +
-                                std::to_string(slice) + " bytes, found " + std::to_string(out.size()) + " bytes");
+  check_slice_range(opener.info(), 0, first, count, out.size());
   opener.open()->read(first, count, out);
 }
 
@@ -150,6 +143,8 @@ iw_status iw_volume_from_source(const iw_volume_info* info, const iw_source* sou
     const VolumeInfo all = volume_info(taken(&required(info, "info")));
     const iw_source given = taken(&required(source, "source"));
     if (given.read == nullptr) throw std::invalid_argument("source: expected a callback, found NULL");
+    if (given.held_bytes > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+      throw std::invalid_argument("source: expected held bytes below 2^63, found " + std::to_string(given.held_bytes));
     open(volume, [all, given] { return std::make_unique<CallbackSource>(all, given); });
   });
 }

@@ -1,10 +1,9 @@
 // A CUDA device, as a BulkEngine needs one (see simulated_device.hpp).
 //
 // All work runs on one stream, except uploads of slices, which have a stream of their own. The host waits where it
-// reads a count or a result, never within the rounds of a slab.
+// reads a count or a result, and once after several rounds.
 #pragma once
 
-#include <cooperative_groups.h>
 #include <cuda_runtime.h>
 
 #include <algorithm>
@@ -30,12 +29,15 @@ __global__ void for_each_kernel(std::int64_t count, Passes passes, Arguments... 
   for (std::int64_t n = first_item(); n < count; n += item_step()) (passes.*Pass)(n, arguments...);
 }
 
-// Adds the totals of all threads, field by field: integers, so the order means nothing.
+// Adds the totals of all threads of a warp, field by field, and then those of all warps: integers, so the order means
+// nothing.
 __device__ inline void add_fields(const void* own, void* sum, std::size_t count) {
   const auto* fields = static_cast<const std::uint64_t*>(own);
   auto* sums = static_cast<std::uint64_t*>(sum);
   for (std::size_t f = 0; f < count; ++f) {
-    if (fields[f] != 0) fetch_add(sums[f], fields[f]);
+    std::uint64_t field = fields[f];
+    for (unsigned other = 16; other > 0; other /= 2) field += __shfl_down_sync(0xffffffffu, field, other);
+    if (threadIdx.x % 32 == 0 && field != 0) fetch_add(sums[f], field);
   }
 }
 
@@ -49,7 +51,10 @@ __device__ void add_totals(const Totals& own, Totals* sum) {
 __device__ inline void add_totals(const DecisionCounts& own, DecisionCounts* sum) {
   static_assert(offsetof(DecisionCounts, dearest) == sizeof(DecisionCounts) - sizeof(std::uint64_t));
   add_fields(&own, sum, offsetof(DecisionCounts, dearest) / sizeof(std::uint64_t));
-  atomicMax(reinterpret_cast<unsigned long long*>(&sum->dearest), static_cast<unsigned long long>(own.dearest));
+  const unsigned dearest = __reduce_max_sync(0xffffffffu, static_cast<unsigned>(own.dearest));  // of type CostBits
+  if (threadIdx.x % 32 == 0 && dearest != 0) {
+    atomicMax(reinterpret_cast<unsigned long long*>(&sum->dearest), static_cast<unsigned long long>(dearest));
+  }
 }
 
 template <auto Pass, class Totals, class Passes>
@@ -68,45 +73,51 @@ __global__ void fill_bits_kernel(std::int64_t count, Passes passes, std::uint32_
   }
 }
 
-// The counts of a loop of rounds.
+// The counts of the rounds of a slab.
 struct RoundTotals {
   DecisionCounts decisions;
   std::uint64_t rounds = 0;
+  std::uint64_t candidates = 0;  // of the round that runs
 };
 
-__device__ inline void add_totals(const RoundTotals& own, RoundTotals* sum) {
-  add_totals(own.decisions, &sum->decisions);
-  fetch_add(sum->rounds, own.rounds);
+// The four passes of a round, one launch each. The size of a list is set to zero in a pass that neither reads that size
+// nor adds to the list. A round without changes does nothing, so rounds can be launched before the host knows how many
+// there are.
+using Rounds = RoundPasses<ScalarArithmetic>;
+
+__device__ inline std::int64_t size_of(const IndexList& list) { return std::int64_t{load_relaxed(*list.size)}; }
+
+static __global__ void __launch_bounds__(kThreads) candidates_kernel(Rounds passes, RoundTotals* totals) {
+  const std::int64_t changed = size_of(passes.changed);
+  if (first_item() == 0) {
+    *passes.minima.size = 0;
+    if (changed > 0) ++totals->rounds;
+  }
+  for (std::int64_t n = first_item(); n < changed; n += item_step()) passes.list_candidates(n);
 }
 
-// All rounds of a slab in one launch: a barrier of the whole grid stands between two passes. The size of a list is set
-// to zero in a pass that neither reads that size nor adds to the list.
-static __global__ void __launch_bounds__(kThreads)
-    rounds_kernel(RoundPasses<ScalarArithmetic> passes, RoundTotals* totals) {
-  const cooperative_groups::grid_group grid = cooperative_groups::this_grid();
-  const bool first = first_item() == 0;
-  const auto size = [](const IndexList& list) { return std::int64_t{load_relaxed(*list.size)}; };
-  RoundTotals own;
-  while (size(passes.changed) > 0) {
-    const std::int64_t changed = size(passes.changed);
-    if (first) *passes.minima.size = 0;
-    for (std::int64_t n = first_item(); n < changed; n += item_step()) passes.list_candidates(n);
-    grid.sync();
-    const std::int64_t candidates = size(passes.candidates);
-    if (first) *passes.changed.size = 0;
-    for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.pick_minimum(n);
-    grid.sync();
-    const std::int64_t minima = size(passes.minima);
-    if (first) *passes.candidates.size = 0;
-    for (std::int64_t n = first_item(); n < minima; n += item_step()) passes.decide(n, own.decisions);
-    grid.sync();
-    const std::int64_t touched = size(passes.changed);
-    for (std::int64_t n = first_item(); n < touched; n += item_step()) passes.renew(n);
-    for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.forget_candidate(n);
-    grid.sync();
-    if (first) ++own.rounds;
+static __global__ void __launch_bounds__(kThreads) minima_kernel(Rounds passes) {
+  const std::int64_t candidates = size_of(passes.candidates);
+  if (first_item() == 0) *passes.changed.size = 0;
+  for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.pick_minimum(n);
+}
+
+static __global__ void __launch_bounds__(kThreads) decisions_kernel(Rounds passes, RoundTotals* totals) {
+  const std::int64_t minima = size_of(passes.minima);
+  if (first_item() == 0) {
+    totals->candidates = *passes.candidates.size;
+    *passes.candidates.size = 0;
   }
-  add_totals(own, totals);
+  DecisionCounts own;
+  for (std::int64_t n = first_item(); n < minima; n += item_step()) passes.decide(n, own);
+  add_totals(own, &totals->decisions);
+}
+
+static __global__ void __launch_bounds__(kThreads) turns_kernel(Rounds passes, const RoundTotals* totals) {
+  const std::int64_t changed = size_of(passes.changed);
+  const auto candidates = static_cast<std::int64_t>(totals->candidates);
+  for (std::int64_t n = first_item(); n < changed; n += item_step()) passes.renew(n);
+  for (std::int64_t n = first_item(); n < candidates; n += item_step()) passes.forget_candidate(n);
 }
 
 // Host memory that the device copies from and to without the processor.
@@ -151,9 +162,6 @@ class Device {
     int device = 0;
     check(cudaGetDevice(&device), "device");
     check(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device), "device");
-    int cooperative = 0;
-    check(cudaDeviceGetAttribute(&cooperative, cudaDevAttrCooperativeLaunch, device), "device");
-    if (cooperative == 0) throw DeviceError("--device cuda: expected a device with cooperative launches, found none");
     keep_freed_memory(device);
     check(cudaStreamCreateWithFlags(&uploads_, cudaStreamNonBlocking), "stream");
     check(cudaEventCreateWithFlags(&uploaded_, cudaEventDisableTiming), "event");
@@ -268,19 +276,24 @@ class Device {
     check(cudaStreamWaitEvent(stream(), uploaded_, 0), "event");
   }
 
-  std::uint64_t run_rounds(RoundPasses<ScalarArithmetic> passes, DecisionCounts& counts) {
+  std::uint64_t run_rounds(const Rounds& passes, DecisionCounts& counts) {
     Buffer<RoundTotals> totals;
     totals.resize(1);
     RoundTotals sum;
     write(&sum, 1, totals.data());
-    int blocks_each = 0;
-    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks_each, rounds_kernel, kThreads, 0), "launch");
-    RoundTotals* out = totals.data();
-    void* arguments[] = {&passes, &out};
-    const dim3 grid(static_cast<unsigned>(std::max(blocks_each, 1) * processors_));
-    check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(rounds_kernel), grid, dim3(kThreads), arguments, 0,
-                                      stream()),
-          "launch");
+    const unsigned grids[4] = {filled_by(candidates_kernel), filled_by(minima_kernel), filled_by(decisions_kernel),
+                               filled_by(turns_kernel)};
+    std::uint32_t changed = 0;
+    do {
+      for (int n = 0; n < kRoundsAtOnce; ++n) {
+        candidates_kernel<<<grids[0], kThreads, 0, stream()>>>(passes, totals.data());
+        minima_kernel<<<grids[1], kThreads, 0, stream()>>>(passes);
+        decisions_kernel<<<grids[2], kThreads, 0, stream()>>>(passes, totals.data());
+        turns_kernel<<<grids[3], kThreads, 0, stream()>>>(passes, totals.data());
+      }
+      check(cudaGetLastError(), "launch");
+      read(passes.changed.size, 1, &changed);
+    } while (changed > 0);
     read(totals.data(), 1, &sum);
     counts += sum.decisions;
     return sum.rounds;
@@ -288,6 +301,17 @@ class Device {
 
  private:
   static constexpr std::size_t kStaging = std::size_t{8} << 20;
+
+  // Rounds between two looks of the host at what is left. A launch that finds nothing to do takes some microseconds.
+  static constexpr int kRoundsAtOnce = 16;
+
+  // The blocks of a kernel that the device runs at the same time.
+  template <class Kernel>
+  unsigned filled_by(Kernel* kernel) const {
+    int blocks_each = 0;
+    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks_each, kernel, kThreads, 0), "launch");
+    return static_cast<unsigned>(std::max(blocks_each, 1) * processors_);
+  }
 
   // Keeps freed memory with the process, as slabs want it again at once.
   void keep_freed_memory(int device) {

@@ -227,6 +227,8 @@ void OutputDescriptor::read_back(std::uint64_t offset, std::span<std::byte> byte
   }
 }
 
+void OutputDescriptor::free(std::uint64_t first, std::uint64_t count) const { system::free_bytes(fd_, first, count); }
+
 void OutputDescriptor::append(OutputDescriptor& source) {
   is_checked_ = false;
   source.flush();
@@ -356,8 +358,19 @@ void OutputDescriptor::close() {
 AtomicFile::AtomicFile(const std::string& path)
     : path_(path), target_(checked_target(path)), file_(open_temporary(path_, target_, temporary_), path_) {}
 
+namespace {
+
+// The target of a part, which lies elsewhere: that a file can be made beside the target is found now, and not when the
+// part is complete.
+std::string target_of_part(const std::string& path) {
+  const AtomicFile other(path);
+  return checked_target(path);
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(const std::string& path, const PartFile& part)
-    : path_(path), target_(checked_target(path)), temporary_(part.path), kept_(true), file_(open_part(part)) {}
+    : path_(path), target_(target_of_part(path)), temporary_(part.path), kept_(true), file_(open_part(part)) {}
 
 AtomicFile::~AtomicFile() {
   if (!temporary_.empty() && !kept_) system::remove_name(temporary_);

@@ -31,6 +31,9 @@ class OutputDescriptor {
   void overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
   void read_back(std::uint64_t offset, std::span<std::byte> bytes);
 
+  // Gives the room of bytes written before back to the system, where it can do that. Nobody reads them any more.
+  void free(std::uint64_t first, std::uint64_t count) const;
+
   // Appends everything written to `source`.
   void append(OutputDescriptor& source);
 

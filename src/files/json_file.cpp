@@ -7,14 +7,12 @@
 
 namespace isoweave {
 
-Json read_json(const std::string& path) {
-  constexpr std::uint64_t kLargest = 16 << 20;
+namespace {
+
+constexpr std::uint64_t kLargest = 16 << 20;
+
+Json parse_json(std::string_view text, const std::string& path) {
   constexpr int kDeepest = 100;
-  const auto file = open_file(path);
-  if (file->size() > kLargest) {
-    bad_input(path, "at most " + std::to_string(kLargest) + " bytes of metadata", std::to_string(file->size()));
-  }
-  const std::string text = file->head(static_cast<std::size_t>(file->size()));
   bool too_deep = false;
   const auto look = [&too_deep](int depth, Json::parse_event_t, const Json&) {
     too_deep = too_deep || depth > kDeepest;
@@ -24,6 +22,16 @@ Json read_json(const std::string& path) {
   if (too_deep) bad_input(path, "JSON of at most " + std::to_string(kDeepest) + " levels", "more");
   if (json.is_discarded()) bad_input(path, "JSON", "other text, or a damaged file");
   return json;
+}
+
+}  // namespace
+
+ObjectPart json_object(const std::string& path) { return {path, 0, kLargest, true}; }
+
+std::optional<Json> look_for_json(ObjectStore& store, const std::string& path) {
+  const std::optional<std::vector<std::byte>> bytes = store.look_for(json_object(path));
+  if (!bytes) return std::nullopt;
+  return parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
 }
 
 const Json* member(const Json& json, std::string_view key) {

@@ -8,12 +8,18 @@
 #include <string_view>
 #include <vector>
 
+#include "files/object_store.hpp"
+
 namespace isoweave {
 
 using Json = nlohmann::json;
 
-// Throws BadInput when the file cannot be read, is larger than any metadata should be, or is no JSON.
-Json read_json(const std::string& path);
+// The JSON of an object; nothing where the store has none of this path. Throws BadInput when it cannot be read, is
+// larger than any metadata should be, or is no JSON.
+std::optional<Json> look_for_json(ObjectStore& store, const std::string& path);
+
+// The object whose JSON look_for_json() looks for, for ObjectStore::expect.
+ObjectPart json_object(const std::string& path);
 
 // The member of an object; nullptr when there is none, or `json` is no object.
 const Json* member(const Json& json, std::string_view key);

@@ -1,5 +1,6 @@
-// The file that the state of a run is saved in: fields one after another, little-endian, and a CRC-32 of all that
-// stands before it. Anyone may have written such a file: what is read is checked before it is used.
+// The file that the state of a run is saved in, or a message with a part of one: fields one after another,
+// little-endian, and a CRC-32 of all that stands before it. Anyone may have written it: what is read is checked before
+// it is used.
 //
 // A class with a state has members serialize(StateWriter&) and serialize(StateReader&), or one template for both where
 // nothing has to be checked.
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -26,8 +28,11 @@ static_assert(std::endian::native == std::endian::little, "a state has the bytes
 
 class StateWriter {
  public:
+  // Writes into memory: take() has the bytes.
+  StateWriter() = default;
+
   // The file appears on commit(). Throws CannotWrite, as all members do.
-  explicit StateWriter(const std::string& path) : file_(path) {}
+  explicit StateWriter(const std::string& path) : file_(std::in_place, path) {}
 
   template <class T>
   void value(const T& value) {
@@ -57,10 +62,15 @@ class StateWriter {
 
   void commit();
 
+  // Ends what is written into memory.
+  std::vector<std::byte> take();
+
  private:
   void put(std::span<const std::byte> bytes);
+  void write(std::span<const std::byte> bytes);
 
-  AtomicFile file_;
+  std::optional<AtomicFile> file_;
+  std::vector<std::byte> bytes_;  // without a file
   std::uint32_t crc_ = 0;
 };
 
@@ -69,6 +79,9 @@ class StateReader {
   // Reads the whole file once, for its CRC. Throws BadInput, as all members do. `kind`: the noun for such a file in
   // messages.
   explicit StateReader(const std::string& path, const char* kind = "saved state");
+
+  // Reads bytes in memory. `name` stands for the file in messages.
+  StateReader(std::vector<std::byte> bytes, const std::string& name, const char* kind);
 
   template <class T>
   void value(T& value) {
@@ -115,6 +128,8 @@ class StateReader {
 
  private:
   void check_crc();
+  void read(std::span<std::byte> bytes);
+  void rewind();
   void require_left(std::uint64_t count, std::uint64_t bytes_each) const;
   [[noreturn]] void refuse(const char* expected) const;
   void get(std::span<std::byte> bytes);
@@ -122,7 +137,9 @@ class StateReader {
   std::string path_;
   const char* kind_;
   std::ifstream file_;
-  std::uint64_t left_ = 0;  // bytes of fields not read yet
+  std::vector<std::byte> bytes_;  // without a file
+  std::size_t at_ = 0;            // bytes read of them
+  std::uint64_t left_ = 0;        // bytes of fields not read yet
 };
 
 }  // namespace isoweave

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "files/state_file.hpp"
 #include "isoweave/report.hpp"
@@ -24,6 +25,10 @@ class BackEnd {
   // Hands the final triangles to the sinks. Fills in the counts of what is still held, and in the report the counts of
   // what has been written so far.
   virtual void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) = 0;
+
+  // After the last piece: nothing, or the head start of a run with the same result, where this run has handed nothing
+  // over and is of no use, as its own head start was too high (CountTarget).
+  virtual std::optional<CostBits> overshot() const { return std::nullopt; }
 
   // The parts of the zone and the output that are in the memory of the process.
   virtual Held held() const = 0;

@@ -1,12 +1,15 @@
 #include "pipeline/host_back_end.hpp"
 
+#include <algorithm>
+
 #include "output/sweep_view.hpp"
 #include "pipeline/run_report.hpp"
 
 namespace isoweave {
 
 HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks,
-                         const Executor& executor, const RunControl& control, const std::atomic<bool>* stop)
+                         const Executor& executor, const RunControl& control, const std::atomic<bool>* stop,
+                         CostBits head_start)
     : task_(task),
       world_(world),
       executor_(executor),
@@ -16,7 +19,7 @@ HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span
     SweepObserver* const observer = simplifier_.is_last(level) ? control.observer.get() : nullptr;
     outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, observer));
   }
-  if (task.triangles > 0) target_.emplace(simplifier_, executor, task.triangles);
+  if (task.triangles > 0) target_.emplace(simplifier_, executor, task.triangles, head_start);
 }
 
 void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) {
@@ -30,12 +33,25 @@ void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord&
     outputs_[level]->take(simplifier_.final_source(level));
   }
   simplifier_.decide(simplifier_.levels() - 1);
-  if (target_) complete ? target_->finish() : target_->thin_out();
+  if (target_) decide_to_number(complete);
+}
+
+void HostBackEnd::decide_to_number(bool complete) {
+  if (!complete) {
+    target_->thin_out();
+    hands_out_ = target_->leaves_enough();
+    waiting_ = waiting_triangles();
+    return;
+  }
+  hands_out_ = !target_->has_overshot();
+  if (hands_out_) return target_->finish();
+  overshot_ = target_->safe_head_start();
 }
 
 void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) {
   if (task_.needed) {
-    outputs_.back()->take(simplifier_.final_source(simplifier_.levels() - 1));
+    if (hands_out_) outputs_.back()->take(simplifier_.final_source(simplifier_.levels() - 1));
+    if (!hands_out_) simplifier_.close_gaps();
     outputs_.back()->report(report);
     record.undecided_triangles = simplifier_.live_triangles();
   } else {
@@ -46,7 +62,16 @@ void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshRepor
 
 Held HostBackEnd::held() const {
   if (!task_.needed) return {};
-  return {simplifier_.live_triangles(), zone_bytes_, 0};
+  return {simplifier_.live_triangles(), zone_bytes_, 0, waiting_};
+}
+
+// The triangles at vertices all of whose edges wait for a higher limit; about, as a vertex stands for two triangles.
+std::uint64_t HostBackEnd::waiting_triangles() const {
+  if (target_->head_start() == kUnknownCost) return 0;
+  const Zone& zone = simplifier_.zone();
+  const auto waits = [&](Key turn) { return cost_of(turn) > zone.limit; };
+  return std::min(2 * static_cast<std::uint64_t>(std::ranges::count_if(zone.turn_keys, waits)),
+                  simplifier_.live_triangles());
 }
 
 void HostBackEnd::view_undecided(const SweepObserver::Visitor& visitor) const {
@@ -70,7 +95,7 @@ void HostBackEnd::finish(MeshReport& report) const {
     }
     if (report.locked_vertices > 0) outputs_[level]->report_locked(mesh);
   }
-  if (target_) report_target(simplifier_, task_, report);
+  if (target_) report_target(simplifier_.counts(), task_, report);
 }
 
 std::uint64_t HostBackEnd::inherited() const {
@@ -82,6 +107,9 @@ void HostBackEnd::serialize(StateWriter& state) const {
   if (!task_.needed) return full_output_.serialize(state);
   for (const auto& output : outputs_) output->serialize(state);
   simplifier_.serialize(state);
+  if (!target_) return;
+  state.value(target_->head_start());
+  simplifier_.serialize_removed(state);
 }
 
 void HostBackEnd::serialize(StateReader& state) {
@@ -93,6 +121,11 @@ void HostBackEnd::serialize(StateReader& state) {
     shape.ends.push_back(output->end());
   }
   simplifier_.serialize(state, shape);
+  if (!target_) return;
+  CostBits head_start = kUnknownCost;
+  state.value(head_start);
+  simplifier_.serialize_removed(state);
+  target_->begin_with(head_start);
 }
 
 }  // namespace isoweave

@@ -17,12 +17,15 @@ namespace isoweave {
 class HostBackEnd final : public BackEnd {
  public:
   // Takes a sink for each level of the task. World, sinks and executor must outlive the back end. stop: unless null,
-  // simplify() throws Interrupted once it is set. Of the control, schedule, measure and observer count.
+  // simplify() throws Interrupted once it is set. Of the control, schedule, measure and observer count. head_start: a
+  // cost up to which edges may be decided at once in a run to a number of triangles; overshot() tells where it was too
+  // high.
   HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks, const Executor& executor,
-              const RunControl& control, const std::atomic<bool>* stop);
+              const RunControl& control, const std::atomic<bool>* stop, CostBits head_start = kUnknownCost);
 
   void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
   void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
+  std::optional<CostBits> overshot() const override { return overshot_; }
   Held held() const override;
   void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sinks() override;
@@ -32,14 +35,20 @@ class HostBackEnd final : public BackEnd {
   void serialize(StateReader& state) override;
 
  private:
+  void decide_to_number(bool complete);
+  std::uint64_t waiting_triangles() const;
+
   const SimplifyTask task_;
   const World& world_;
   const Executor& executor_;
   Simplifier simplifier_;
   std::optional<CountTarget> target_;
+  bool hands_out_ = true;                              // final triangles
+  std::optional<CostBits> overshot_{};                 // see overshot()
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
   FullOutput full_output_;
   std::uint64_t zone_bytes_ = 0;  // with the last piece
+  std::uint64_t waiting_ = 0;     // triangles, see Held
 };
 
 }  // namespace isoweave

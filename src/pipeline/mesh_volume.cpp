@@ -3,11 +3,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "device/cuda_engine.hpp"
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
+#include "isoweave/forecast.hpp"
 #include "isoweave/pipeline.hpp"
 #include "output/world.hpp"
 #include "parallel/float_environment.hpp"
@@ -22,17 +25,19 @@
 namespace isoweave {
 namespace {
 
+constexpr std::int64_t kLargeVolume = 1 << 22;  // samples: a forecast takes a small part of the time of the run
+
 class VolumeRun final : public SavedRun::State {
  public:
   VolumeRun(SliceSource& source, std::span<MeshSink* const> sinks, const MeshOptions& options,
-            const RunControl& control)
+            const RunControl& control, CostBits head_start)
       : task_(resolve(source.info(), options, control, common_offset(sinks))),
         control_(control),
         identity_(identity_of(task_)),
         sinks_(sinks.begin(), sinks.end()),
         sweep_(source, task_, control_, report_),
         world_(task_.volume.geometry, task_.space, task_.offset) {
-    make_back_end();
+    make_back_end(head_start);
     std::vector<PieceStage*> stages;
     if (const auto& components = task_.surface.components) {
       check_components(*components);
@@ -45,8 +50,8 @@ class VolumeRun final : public SavedRun::State {
     sweep_.open();
   }
 
-  MeshReport run() {
-    Stopwatch total;
+  // The report; or the head start of the run that has to take the place of this one, as its own was too high.
+  std::variant<MeshReport, CostBits> run() {
     start_report();
     if (saved_->saves()) saved_->save();
     while (!sweep_.complete()) {
@@ -54,16 +59,16 @@ class VolumeRun final : public SavedRun::State {
       step();
       if (!sweep_.complete()) saved_->save_if_due();
     }
+    if (const std::optional<CostBits> lower = back_end_->overshot()) return *lower;
     finish_report();
     require_unchanged(task_, identity_);
     finish_sinks();
-    total.lap(report_.seconds_total);
     report_.peak_bytes = system::peak_bytes();
     return std::move(report_);
   }
 
  private:
-  void make_back_end() {
+  void make_back_end(CostBits head_start) {
     const Executor& executor = sweep_.executor();
     if (control_.device == Device::kCuda) {
       engine_ =
@@ -77,7 +82,7 @@ class VolumeRun final : public SavedRun::State {
     // A zone that was left in the middle of a decision cannot be saved.
     const bool saves = !control_.checkpoint.folder.empty();
     back_end_ = std::make_unique<HostBackEnd>(task_.simplify, world_, sinks_, executor, control_,
-                                              saves ? nullptr : control_.stop.get());
+                                              saves ? nullptr : control_.stop.get(), head_start);
   }
 
   void check_components(const ComponentChoice& components) const {
@@ -199,6 +204,38 @@ class VolumeRun final : public SavedRun::State {
   std::optional<SavedRun> saved_;
 };
 
+// Whether a run to a number of triangles may be made twice.
+bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  const bool has_values = options.values == nullptr || !options.values->held().empty();
+  return options.triangles > 0 && has_values && (control.reopen || !volume.held().empty());
+}
+
+std::unique_ptr<SliceSource> open_again(const SliceSource& volume, const RunControl& control) {
+  if (control.reopen) return control.reopen();
+  return volume_in_memory(volume.info(), volume.held());
+}
+
+// The cost up to which a run may decide everything at once, by an error that is known or by a forecast.
+CostBits head_start_of(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  if (control.resume || !can_repeat(volume, options, control)) return kUnknownCost;
+  const VolumeInfo& info = volume.info();
+  const bool worthwhile = info.slice_samples() * info.dims[2] >= kLargeVolume && control.memory == 0;
+  std::optional<double> error = control.head_start;
+  if (!error && worthwhile) error = forecast_mesh(*open_again(volume, control), options, control).head_start;
+  return head_start_cost(error.value_or(0), info);
+}
+
+// Makes the run in the place of one whose head start was too high. The sinks have got nothing yet.
+std::variant<MeshReport, CostBits> repeat(const SliceSource& volume, std::span<MeshSink* const> sinks,
+                                          const MeshOptions& options, const RunControl& control, CostBits head_start) {
+  if (!can_repeat(volume, options, control)) {
+    throw std::invalid_argument("resume: expected RunControl::reopen, as the saved run has a head start");
+  }
+  RunControl again = control;
+  again.resume.reset();
+  return VolumeRun(*open_again(volume, control), sinks, options, again, head_start).run();
+}
+
 }  // namespace
 
 MeshReport mesh_volume(SliceSource& volume, MeshSink& sink, const MeshOptions& options, const RunControl& control) {
@@ -210,7 +247,15 @@ MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, co
                        const RunControl& control) {
   const StandardFloats floats;
   check_sinks(sinks, options.levels.size());
-  return VolumeRun(volume, sinks, options, control).run();
+  Stopwatch total;
+  const CostBits head_start = head_start_of(volume, options, control);
+  std::variant<MeshReport, CostBits> made = VolumeRun(volume, sinks, options, control, head_start).run();
+  while (const CostBits* const lower = std::get_if<CostBits>(&made)) {
+    made = repeat(volume, sinks, options, control, *lower);
+  }
+  MeshReport& report = std::get<MeshReport>(made);
+  total.lap(report.seconds_total);
+  return std::move(report);
 }
 
 }  // namespace isoweave

@@ -13,6 +13,7 @@ struct Held {
   std::uint64_t triangles = 0;    // undecided
   std::uint64_t zone_bytes = 0;   // of the zone, with the last piece; 0: not known
   std::uint64_t other_bytes = 0;  // besides, and growing
+  std::uint64_t waiting = 0;      // of the triangles, about: those that the next piece leaves as they are
 };
 
 class PieceSource {

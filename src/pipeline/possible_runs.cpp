@@ -7,21 +7,25 @@ namespace isoweave {
 namespace {
 
 // The kinds of runs that refuse a feature.
-constexpr unsigned kDevice = 1;      // a CUDA device
-constexpr unsigned kLabels = 2;      // meshes of labels
-constexpr unsigned kComponents = 4;  // the choice of components
-constexpr unsigned kSimplify = 8;    // a mesh from a mesh
-constexpr unsigned kIsoValues = 16;  // meshes of several iso-values
-constexpr unsigned kBlocks = 32;     // a mesh in blocks
+constexpr unsigned kDevice = 1;       // a CUDA device
+constexpr unsigned kLabels = 2;       // meshes of labels
+constexpr unsigned kComponents = 4;   // the choice of components
+constexpr unsigned kSimplify = 8;     // a mesh from a mesh
+constexpr unsigned kIsoValues = 16;   // meshes of several iso-values
+constexpr unsigned kBlocks = 32;      // a mesh in blocks
+constexpr unsigned kPreview = 64;     // a preview
+constexpr unsigned kProcesses = 128;  // a mesh in blocks by several processes
 
 struct Refuser {
   unsigned bit;
   const char* name;
   const char* reason;
 };
-constexpr std::array<Refuser, 6> kRefusers{{{kLabels, "labels", "which takes one surface"},
+constexpr std::array<Refuser, 8> kRefusers{{{kLabels, "labels", "which takes one surface"},
                                             {kBlocks, "blocks", "which takes slabs"},
+                                            {kProcesses, "several processes", "which takes one process"},
                                             {kIsoValues, "several iso-values", "which takes one surface"},
+                                            {kPreview, "a preview", "which takes the simplifier"},
                                             {kComponents, "a choice of components", "which takes processors"},
                                             {kSimplify, "a mesh", "which takes a volume"},
                                             {kDevice, "a CUDA device", "which takes processors"}}};
@@ -35,25 +39,25 @@ struct Feature {
   bool (*asked)(const MeshOptions& options, const RunControl& control);
 };
 constexpr std::array<Feature, 14> kFeatures{{
-    {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify | kBlocks,
+    {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify | kBlocks | kPreview,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
-    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kBlocks,
+    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kProcesses | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0; }},
-    {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues,
+    {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues | kPreview,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},
-    {RunFeature::kMaxDistance, "a guaranteed distance", kDevice | kBlocks,
+    {RunFeature::kMaxDistance, "a guaranteed distance", kDevice | kBlocks | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.max_distance.value > 0; }},
-    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels | kIsoValues | kBlocks,
+    {RunFeature::kComponents, "components to be dropped", kDevice | kLabels | kIsoValues | kBlocks | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.components != nullptr; }},
-    {RunFeature::kQuadricNormals, "normals by quadrics", kDevice,
+    {RunFeature::kQuadricNormals, "normals by quadrics", kDevice | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.normals == Normals::kQuadric; }},
-    {RunFeature::kValues, "values of another volume", kDevice | kLabels | kIsoValues | kBlocks,
+    {RunFeature::kValues, "values of another volume", kDevice | kLabels | kIsoValues | kBlocks | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.values != nullptr; }},
-    {RunFeature::kStates, "states to be saved or resumed", kLabels | kIsoValues | kSimplify | kBlocks,
+    {RunFeature::kStates, "states to be saved or resumed", kLabels | kIsoValues | kSimplify | kBlocks | kPreview,
      [](const MeshOptions&, const RunControl& control) { return saves(control); }},
-    {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify | kBlocks,
+    {RunFeature::kObserver, "an observer", kDevice | kLabels | kIsoValues | kSimplify | kBlocks | kPreview,
      [](const MeshOptions&, const RunControl& control) { return control.observer != nullptr; }},
-    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify,
+    {RunFeature::kMemoryCap, "a cap on memory", kLabels | kIsoValues | kSimplify | kPreview,
      [](const MeshOptions&, const RunControl& control) { return control.memory > 0; }},
     {RunFeature::kExtractor, "an extractor other than marching cubes", kDevice | kSimplify,
      [](const MeshOptions& options, const RunControl&) { return options.extractor != ExtractorKind::kCubes; }},
@@ -72,7 +76,9 @@ unsigned refusers_of(RunKind kind, const RunControl& control) {
   if (kind == RunKind::kLabels) return kLabels | device;
   if (kind == RunKind::kIsoValues) return kIsoValues | device;
   if (kind == RunKind::kBlocks) return kBlocks | device;
+  if (kind == RunKind::kProcesses) return kBlocks | kProcesses | device;
   if (kind == RunKind::kComponents) return kComponents | device;
+  if (kind == RunKind::kPreview) return kPreview | device;
   return (kind == RunKind::kSimplify ? kSimplify : 0) | device;
 }
 

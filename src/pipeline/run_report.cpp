@@ -62,9 +62,9 @@ void report_errors(const SimplifyTask& task, MeshReport& report) {
   for (std::size_t n = 0; n < task.level_errors.size(); ++n) report.levels[n].error = task.level_errors[n];
 }
 
-void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report) {
+void report_target(const DecisionCounts& counts, const SimplifyTask& task, MeshReport& report) {
   const double most_error = report.error;
-  const auto dearest = static_cast<CostBits>(simplifier.counts().dearest);
+  const auto dearest = static_cast<CostBits>(counts.dearest);
   // All costs up to the floor are the same.
   const bool none = dearest <= cost_bits(kCostFloor);
   report.error = none ? 0 : task.side * std::sqrt(static_cast<double>(cost_value(dearest)));

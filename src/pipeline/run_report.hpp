@@ -59,7 +59,7 @@ void warn_of_border(const Task& task, MeshReport& report);
 // Reports the outcome of a run to a number of triangles: `report.error`, the error that was asked for, becomes the
 // largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all else is in
 // the report.
-void report_target(const Simplifier& simplifier, const SimplifyTask& task, MeshReport& report);
+void report_target(const DecisionCounts& counts, const SimplifyTask& task, MeshReport& report);
 
 // Adds the counts of a slab.
 void add_extracted(const SlabCounts& slab, MeshReport& report);

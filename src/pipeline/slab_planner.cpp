@@ -24,7 +24,8 @@ SlabPlanner::SlabPlanner(const Task& task, const RunControl& control, const Volu
       layers_(extractor.layers_left()) {}
 
 SlabPlan SlabPlanner::next(const Held& held, std::int64_t ring) const {
-  const SlabGoal goal = beside_zone(slab_goal(task_.simplify.needed, on_device_), static_cast<double>(held.triangles));
+  const SlabGoal goal =
+      beside_zone(slab_goal(task_.simplify.needed, on_device_), static_cast<double>(held.triangles - held.waiting));
   SlabPlan plan;
   plan.layers = std::min({next_slab(field_, goal, asked_, recent_layers_, per_layer()), extractor_.most_layers(),
                           extractor_.layers_left()});

@@ -25,7 +25,7 @@ std::int64_t StrandPieces::layers_ready() const {
 
 void StrandPieces::read(const Held& held, MeshReport& report) {
   Stopwatch clock;
-  const SlabGoal goal = beside_zone(slab_goal(simplifies_), static_cast<double>(held.triangles));
+  const SlabGoal goal = beside_zone(slab_goal(simplifies_), static_cast<double>(held.triangles - held.waiting));
   most_vertices_ = slab_ > 0 ? ~std::uint64_t{0} : goal.most_vertices;
   layers_ = slab_ > 0 ? std::min(layers_ready(), slab_) : layers_ready();
   const auto [first, end] = extractor_.slices_for(layers_);

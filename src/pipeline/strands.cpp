@@ -29,7 +29,8 @@ void add_to(MeshReport& total, const MeshReport& mesh) {
 
 StrandsSweep::StrandsSweep(SliceSource& volume, const Task& task, const RunControl& control, const StrandGuide& guide,
                            MeshReport& total)
-    : task_(task),
+    : slices_(volume.info()),
+      task_(task),
       control_(control),
       guide_(guide),
       total_(total),
@@ -39,7 +40,7 @@ StrandsSweep::StrandsSweep(SliceSource& volume, const Task& task, const RunContr
 
 void StrandsSweep::run() {
   start_report();
-  while (done_ < task_.volume.dims[2]) {
+  while (done_ < slices_.dims[2]) {
     check_stop(control_);
     read_slab();
     sweep_slab();
@@ -69,7 +70,7 @@ void StrandsSweep::read_slab() {
   window_.advance(next.kept, done_ + next.count, next.ahead);
   if (control_.measure) {
     for (std::int64_t k = done_; k < done_ + next.count; ++k) {
-      range_.merge(sample_range(window_.slice(k), task_.volume.type, task_.volume.slice_samples()));
+      range_.merge(sample_range(window_.slice(k), slices_.type, slices_.slice_samples()));
     }
   }
   recent_layers_ = next.count;
@@ -105,8 +106,8 @@ void StrandsSweep::record_slab() {
   for (StrandState& state : strands_) record(state, sum);
   total_.sweep.push_back(sum);
   if (!control_.progress) return;
-  const auto voxels = static_cast<std::uint64_t>(done_ * task_.volume.slice_samples());
-  control_.progress({done_, task_.volume.dims[2], voxels, sum.live_triangles, sum.final_triangles, sum.bytes});
+  const auto voxels = static_cast<std::uint64_t>(done_ * slices_.slice_samples());
+  control_.progress({done_, slices_.dims[2], voxels, sum.live_triangles, sum.final_triangles, sum.bytes});
 }
 
 void StrandsSweep::record(StrandState& state, SlabRecord& record) const {

@@ -54,7 +54,8 @@ class StrandGuide {
 
 class StrandsSweep {
  public:
-  // All arguments must outlive the sweep. total: gets the sums over all strands.
+  // volume: that of the task, or a box of it. All arguments must outlive the sweep. total: gets the sums over all
+  // strands.
   StrandsSweep(SliceSource& volume, const Task& task, const RunControl& control, const StrandGuide& guide,
                MeshReport& total);
 
@@ -81,6 +82,7 @@ class StrandsSweep {
   void record_slab();
   void record(StrandState& state, SlabRecord& record) const;
 
+  const VolumeInfo& slices_;
   const Task& task_;
   const RunControl& control_;
   const StrandGuide& guide_;

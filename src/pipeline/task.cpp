@@ -21,6 +21,9 @@
 namespace isoweave {
 namespace {
 
+// Whether the surface of a run is cut, so that all of it goes through the simplifier.
+bool takes_blocks(RunKind kind) { return kind == RunKind::kBlocks || kind == RunKind::kProcesses; }
+
 double length_in(const Length& length, double side) { return length.value * (length.in_voxels ? side : 1); }
 
 double most_distance(const Length& length, double side) {
@@ -106,7 +109,7 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
   task.offset = offset;
   task.rule = stored_rule(volume, options);
   task.simplify = resolve_simplification(options, measure_of(volume, options.extractor));
-  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options) || kind == RunKind::kBlocks;
+  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options) || takes_blocks(kind);
   task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
   task.simplify.normals = task.has_normals();
   task.simplify.values = options.values != nullptr;
@@ -168,6 +171,14 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   }
   // An edge whose key is not known yet has cost 0. It must stay live, also when nothing is simplified.
   return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
+}
+
+CostBits head_start_cost(double error, const VolumeInfo& volume) {
+  if (!(error >= 0) || std::isinf(error)) {
+    throw std::invalid_argument("head start: expected a length of 0 or more, found " + std::to_string(error));
+  }
+  const double voxel = mean_voxel(volume.geometry);
+  return retire_cost(error, voxel * voxel);
 }
 
 void require_different(std::span<MeshSink* const> sinks) {

@@ -83,6 +83,9 @@ bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
 // The cost, in units of a0, above which edges are retired.
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 
+// RunControl::head_start as a cost. Throws std::invalid_argument for one that is negative or no number.
+CostBits head_start_cost(double error, const VolumeInfo& volume);
+
 // Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
 void require_different(std::span<MeshSink* const> sinks);
 

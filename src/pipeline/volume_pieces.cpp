@@ -7,6 +7,7 @@
 #include "extract/values.hpp"
 #include "files/atomic_file.hpp"
 #include "isoweave/error.hpp"
+#include "pipeline/cap_samples.hpp"
 #include "pipeline/run_report.hpp"
 
 namespace isoweave {
@@ -19,6 +20,7 @@ void VolumePieces::open() {
   const std::int64_t first = extractor_.slices_for(1).first;
   const SliceWindow::Reading reading = SliceWindow::reading_with(executor_.threads());
   window_.emplace(field_.source(), first, reading);
+  read_.caps = caps_;
   if (task_.attributes.values != nullptr) values_window_.emplace(*task_.attributes.values, first, reading);
 }
 
@@ -39,6 +41,7 @@ void VolumePieces::read_slices() {
   check_expected();
   read_.voxels += static_cast<std::uint64_t>(read * task_.volume.slice_samples());
   if (task_.measured) measure_samples(read);
+  if (task_.measured && counts_caps_) measure_caps(read);
 }
 
 void VolumePieces::expect_next_slice(std::uint32_t crc, const std::string& state) {
@@ -59,7 +62,8 @@ void VolumePieces::make(SurfacePiece& piece, MeshReport& report) {
   const SlabCounts slab = extractor_.extract(*window_, plan_.layers, plan_.most_vertices, piece);
   planner_.note_extracted(slab);
   range_.merge(read_.range);
-  voxels_ += std::exchange(read_, {}).voxels;
+  caps_ = read_.caps;
+  voxels_ += std::exchange(read_, {{}, 0, caps_}).voxels;
   add_extracted(slab, report);
   if (values_window_) {
     sample_values(*values_window_, extractor_.numbering(), field_.info().geometry.spacing, executor_, piece);
@@ -80,6 +84,15 @@ void VolumePieces::measure_samples(std::int64_t slices) {
         known != nullptr ? *known : sample_range(window_->slice(k), volume.type, volume.slice_samples());
   });
   for (const SampleRange& range : ranges) read_.range.merge(range);
+}
+
+// Counts the samples on caps in the slices just read.
+void VolumePieces::measure_caps(std::int64_t slices) {
+  CapSamples& caps = read_.caps;
+  for (std::int64_t k = std::max(window_->end() - slices, caps.end); k < window_->end(); ++k) {
+    caps.samples += count_cap_samples(window_->slice(k), k, field_.info(), field_.rule());
+  }
+  caps.end = window_->end();
 }
 
 std::optional<std::uint32_t> VolumePieces::crc_of_next_slice() const {

@@ -40,6 +40,10 @@ class VolumePieces final : public PieceSource {
   const SampleRange& range() const { return range_; }
   void set_range(const SampleRange& range) { range_ = range; }
 
+  // Counts the samples on caps from now on, where samples are measured. Must be called before the first piece.
+  void count_caps() { counts_caps_ = true; }
+  std::uint64_t cap_samples() const { return caps_.samples; }
+
   // Sets the checksum that the next slice must have: an earlier run was cut off there. Another slice is refused with
   // the name of the state. Must be called before open().
   void expect_next_slice(std::uint32_t crc, const std::string& state);
@@ -57,11 +61,19 @@ class VolumePieces final : public PieceSource {
     planner_.serialize(state);
     state.value(range_);
     state.value(voxels_);
+    state.value(caps_);
   }
 
  private:
+  // The samples on caps in the slices below `end`: a run that is resumed reads some slices again.
+  struct CapSamples {
+    std::uint64_t samples = 0;
+    std::int64_t end = 0;
+  };
+
   void read_slices();
   void measure_samples(std::int64_t slices);
+  void measure_caps(std::int64_t slices);
   void check_expected();
 
   const Task& task_;
@@ -75,9 +87,12 @@ class VolumePieces final : public PieceSource {
   struct {
     SampleRange range;
     std::uint64_t voxels = 0;
-  } read_;  // for the next piece
+    CapSamples caps;  // with those of the pieces made so far
+  } read_;            // for the next piece
   SampleRange range_;
   std::uint64_t voxels_ = 0;
+  CapSamples caps_;
+  bool counts_caps_ = false;
   std::optional<std::uint32_t> expected_crc_;
   std::string state_;  // that told it
   bool failed_reading_ = false;

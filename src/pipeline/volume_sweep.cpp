@@ -28,6 +28,7 @@ void VolumeSweep::begin(Extractor& extractor, std::vector<PieceStage*> stages, B
   layers_ = extractor.layers_left();
   planner_.emplace(task_, control_, field_.info(), extractor, executor_.threads(), reader_bytes_);
   pieces_.emplace(task_, field_, extractor, *planner_, executor_);
+  if (task_.surface.closed) pieces_->count_caps();
   loop_.emplace(*pieces_, std::move(stages), back_end, report_);
   find_constant();
 }
@@ -61,6 +62,7 @@ void VolumeSweep::tell(const SlabRecord& record) {
 void VolumeSweep::finish() {
   loop_->finish();
   report_samples(task_.volume, pieces_->range(), report_);
+  if (task_.surface.closed && task_.measured) report_.cap_cells = pieces_->cap_samples();
   if (!indexed_) return;
   const LeftOut left_out = indexed_->left_out();
   report_.left_out = {left_out.chunks, left_out.chunks_left_out, left_out.bytes_left_out};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace isoweave::render {
 namespace {
@@ -18,6 +19,52 @@ struct Largest {
   void add(double x) { value = std::max(value, x); }
 };
 
+// Where the camera of View{0, 0} looks, and what is at the right of its picture.
+struct Front {
+  Vec3 right, forward;
+};
+
+// x and y of RAS are those of LPS with the other sign.
+constexpr Vec3 other_space(const Vec3& direction) { return {-direction.x, -direction.y, direction.z}; }
+
+constexpr Axis other_space(Axis axis) {
+  switch (axis) {
+    case Axis::kX:
+      return Axis::kMinusX;
+    case Axis::kY:
+      return Axis::kMinusY;
+    case Axis::kMinusX:
+      return Axis::kX;
+    case Axis::kMinusY:
+      return Axis::kY;
+    default:
+      return axis;
+  }
+}
+
+constexpr Front front_of(Axis up) {
+  switch (up) {
+    case Axis::kX:
+      return {{0, 0, -1}, {0, 1, 0}};
+    case Axis::kY:
+      return {{1, 0, 0}, {0, 0, -1}};
+    case Axis::kMinusX:
+      return {{0, 0, 1}, {0, 1, 0}};
+    case Axis::kMinusY:
+      return {{1, 0, 0}, {0, 0, 1}};
+    case Axis::kMinusZ:
+      return {{-1, 0, 0}, {0, 1, 0}};
+    default:
+      return {{1, 0, 0}, {0, 1, 0}};
+  }
+}
+
+Front front_of(Axis up, const std::string& space) {
+  if (space != "RAS") return front_of(up);
+  const Front lps = front_of(other_space(up));
+  return {other_space(lps.right), other_space(lps.forward)};
+}
+
 }  // namespace
 
 Camera::Camera(const TriangleMesh& mesh, const RenderOptions& options)
@@ -25,13 +72,17 @@ Camera::Camera(const TriangleMesh& mesh, const RenderOptions& options)
   const double shorter = std::min(options.width, options.height);
   width_ = std::tan(kHalfAngle) * options.width / shorter;
   height_ = std::tan(kHalfAngle) * options.height / shorter;
-  // RAS is LPS turned by half a circle about z: the front of a patient is on the other side.
-  const double azimuth = (options.view.azimuth + (mesh.space == "RAS" ? 180 : 0)) * kDegree;
+  const double azimuth = options.view.azimuth * kDegree;
   const double elevation = options.view.elevation * kDegree;
-  right_ = {std::cos(azimuth), std::sin(azimuth), 0};
-  forward_ = {-std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation)};
+  const Front front = front_of(options.up, mesh.space);
+  const Vec3 level = std::cos(azimuth) * front.forward - std::sin(azimuth) * front.right;
+  right_ = std::cos(azimuth) * front.right + std::sin(azimuth) * front.forward;
+  forward_ = std::cos(elevation) * level - std::sin(elevation) * cross(front.right, front.forward);
   up_ = cross(right_, forward_);
   fit(mesh);
+  width_ /= options.zoom;
+  height_ /= options.zoom;
+  reach_ /= options.zoom;
 }
 
 // A point is inside the frame when |x - eye.x| <= a (z - eye.z), where a is the frame's filled half width, and likewise

@@ -8,6 +8,7 @@
 
 #include "lattice/triangles.hpp"
 #include "parallel/float_environment.hpp"
+#include "render/axis_marks.hpp"
 #include "render/colours.hpp"
 #include "render/shading.hpp"
 
@@ -18,19 +19,16 @@ using render::Visibility;
 
 constexpr int kMostPixels = 16384;
 constexpr int kMostSamples = 8;
+constexpr double kMostZoom = 100;
 
-void check_arguments(const TriangleMesh& mesh, const RenderOptions& options, std::span<const float> quality) {
-  if (mesh.triangles.empty()) throw std::invalid_argument("expected a mesh with triangles, found none");
-  measure::require_finite_mesh(mesh);
-  if (!quality.empty() && quality.size() != mesh.vertices.size()) {
-    throw std::invalid_argument("quality: expected one number for each vertex");
-  }
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
-    throw std::invalid_argument("normals: expected one for each vertex, or none");
-  }
-  const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
+bool within(double x, double low, double high) { return x >= low && x <= high; }
+
+void check_options(const RenderOptions& options) {
   if (!within(options.width, 1, kMostPixels) || !within(options.height, 1, kMostPixels)) {
     throw std::invalid_argument("expected a picture of 1 to 16384 pixels a side");
+  }
+  if (options.axes && std::min(options.width, options.height) < render::kLeastSideWithAxes) {
+    throw std::invalid_argument("axes: expected a picture of 72 pixels or more a side");
   }
   if (!within(options.samples, 1, kMostSamples)) {
     throw std::invalid_argument("expected 1 to 8 samples a side of a pixel");
@@ -38,9 +36,21 @@ void check_arguments(const TriangleMesh& mesh, const RenderOptions& options, std
   if (!std::isfinite(options.view.azimuth) || !within(options.view.elevation, -90, 90)) {
     throw std::invalid_argument("expected a finite azimuth and an elevation from -90 to 90");
   }
+  if (!within(options.zoom, 1 / kMostZoom, kMostZoom)) throw std::invalid_argument("expected a zoom of 0.01 to 100");
   if (options.range &&
       !((*options.range)[0] < (*options.range)[1] && std::isfinite((*options.range)[1] - (*options.range)[0]))) {
     throw std::invalid_argument("expected a range from a finite number to a larger one");
+  }
+}
+
+void check_mesh(const TriangleMesh& mesh, std::span<const float> quality) {
+  if (mesh.triangles.empty()) throw std::invalid_argument("expected a mesh with triangles, found none");
+  measure::require_finite_mesh(mesh);
+  if (!quality.empty() && quality.size() != mesh.vertices.size()) {
+    throw std::invalid_argument("quality: expected one number for each vertex");
+  }
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    throw std::invalid_argument("normals: expected one for each vertex, or none");
   }
 }
 
@@ -80,7 +90,8 @@ std::array<double, 2> finite_range(std::span<const float> numbers) {
 
 Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options, std::span<const float> quality) {
   const StandardFloats floats;
-  check_arguments(mesh, options, quality);
+  check_options(options);
+  check_mesh(mesh, quality);
   const Executor executor(options.threads);
   const render::Camera camera(mesh, options);
   const render::CornerNormals normals =
@@ -95,6 +106,7 @@ Picture render_mesh(const TriangleMesh& mesh, const RenderOptions& options, std:
           pixel_at(column, row, options, visibility, shader);
     }
   });
+  if (options.axes) render::draw_axes(picture, camera, mesh.space, options.background);
   return picture;
 }
 

@@ -34,6 +34,27 @@ Json blocks_of(std::span<const BlockStage> stages) {
   return list;
 }
 
+Json ranks_of(std::span<const RankWork> ranks) {
+  Json list = Json::array();
+  for (const RankWork& rank : ranks) {
+    list.push_back({{"tasks", rank.tasks},
+                    {"triangles", rank.triangles},
+                    {"messages", rank.messages},
+                    {"bytes_sent", rank.bytes_sent},
+                    {"seconds_waiting", rank.seconds_waiting},
+                    {"peak_bytes", rank.peak_bytes}});
+  }
+  return list;
+}
+
+Json preview_of(const PreviewReport& preview) {
+  return {{"cell", preview.cell},
+          {"plane_rms", preview.plane_rms},
+          {"cells", preview.cells},
+          {"triangles_collapsed", preview.collapsed},
+          {"triangles_repeated", preview.repeated}};
+}
+
 Json surface_of(const SurfaceReport& surface) {
   return {{"error", number_or_null(surface.error)},
           {"triangles", surface.triangles},
@@ -82,6 +103,8 @@ Json distance_of(double mean, double rms, double max, double unit) {
 }  // namespace
 
 std::string volume_json(const VolumeInfo& info) {
+  std::vector<std::string> notes = info.notes;
+  notes.insert(notes.end(), info.remarks.begin(), info.remarks.end());
   return text_of({{"path", info.path},
                   {"format", info.format},
                   {"part", info.part},
@@ -94,7 +117,7 @@ std::string volume_json(const VolumeInfo& info) {
                   {"unit", info.geometry.unit},
                   {"slope", info.slope},
                   {"intercept", info.intercept},
-                  {"notes", info.notes}});
+                  {"notes", notes}});
 }
 
 std::string range_json(double min, double max, std::uint64_t nan) {
@@ -129,7 +152,10 @@ std::string run_json(const MeshReport& report) {
                {"sweep", sweep_of(report.sweep)},
                {"warnings", report.warnings}};
   json.update(surface_of(report));
+  if (report.cap_cells) json["cap_cells"] = *report.cap_cells;
   if (!report.blocks.empty()) json["blocks"] = blocks_of(report.blocks);
+  if (!report.ranks.empty()) json["ranks"] = ranks_of(report.ranks);
+  if (report.preview) json["preview"] = preview_of(*report.preview);
   return text_of(json);
 }
 

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include "simplify/cost_histogram.hpp"
 #include "simplify/turns.hpp"
 
 namespace isoweave {
@@ -11,40 +12,7 @@ namespace {
 
 constexpr std::int64_t kBlock = 8192;
 constexpr std::uint64_t kInOrder = 4000;  // the last triangles are left to one queue
-
-// A histogram of the costs of items, in steps of a 256th.
-class CostHistogram {
- public:
-  CostHistogram() : counts_(kSteps, 0) {}
-
-  void add(CostBits cost) { ++counts_[cost >> kShift]; }
-
-  void merge(const CostHistogram& other) {
-    for (std::size_t n = 0; n < kSteps; ++n) counts_[n] += other.counts_[n];
-  }
-
-  // The highest cost with no more than `most` items up to it; kUnknownCost if there is none.
-  CostBits highest_with_below(std::uint64_t most) const {
-    std::uint64_t sum = 0;
-    std::size_t step = 0;
-    while (step < kSteps && sum + counts_[step] <= most) sum += counts_[step++];
-    return step == 0 ? kUnknownCost : static_cast<CostBits>(step << kShift) - 1;
-  }
-
-  // The highest cost with at least `least` items beyond it; kUnknownCost if there is none.
-  CostBits highest_with_beyond(std::uint64_t least) const {
-    std::uint64_t sum = 0;
-    std::size_t step = kSteps;
-    while (step > 0 && sum < least) sum += counts_[--step];
-    return sum < least || step == 0 ? kUnknownCost : static_cast<CostBits>(step << kShift) - 1;
-  }
-
- private:
-  static constexpr int kShift = 16;
-  static constexpr std::size_t kSteps = std::size_t{1} << (31 - kShift);  // costs have no sign
-
-  std::vector<std::uint64_t> counts_;
-};
+constexpr std::uint64_t kShown = 32'000;  // edges that the queue is shown first
 
 // The histogram of all live triangles: add(triangle, histogram) adds the costs of one of them.
 template <class Add>
@@ -65,9 +33,18 @@ CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add
 }  // namespace
 
 CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles,
-                         std::uint64_t most_held)
+                         std::uint64_t most_held, CostBits head_start)
     : simplifier_(simplifier), executor_(executor), target_(triangles), most_held_(most_held) {
   simplifier_.zone().limit = kUnknownCost;
+  begin_with(head_start);
+}
+
+void CountTarget::begin_with(CostBits head_start) {
+  if (head_start == kUnknownCost) return;
+  Zone& zone = simplifier_.zone();
+  head_start_ = std::min(head_start, zone.options.retire);
+  zone.limit = std::max(zone.limit, head_start_);
+  simplifier_.count_removed();
 }
 
 void CountTarget::thin_out() {
@@ -81,7 +58,23 @@ void CountTarget::thin_out() {
   }
 }
 
+bool CountTarget::leaves_enough() {
+  const Zone& zone = simplifier_.zone();
+  if (!enough_) enough_ = zone.limit == zone.options.retire && limit_that_leaves(target_) == zone.options.retire;
+  return enough_;
+}
+
+bool CountTarget::has_overshot() {
+  return simplifier_.triangles() <= target_ && simplifier_.counts().removed > 0 && !leaves_enough();
+}
+
+CostBits CountTarget::safe_head_start() const {
+  const std::uint64_t all = simplifier_.triangles() + simplifier_.counts().removed;
+  return all <= target_ ? kUnknownCost : simplifier_.removed_by_key().highest_with_below(all - target_ - 1);
+}
+
 void CountTarget::finish() {
+  simplifier_.close_gaps();
   while (simplifier_.triangles() > target_ + kInOrder) {
     const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
     const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each);
@@ -89,9 +82,19 @@ void CountTarget::finish() {
     raise_limit(limit);
     simplifier_.close_gaps();
   }
-  simplifier_.zone().limit = simplifier_.zone().options.retire;
-  simplifier_.decide_in_order(target_);
+  decide_last();
   simplifier_.zone().retire_all();
+}
+
+// Decides the last edges in order. The queue is shown those up to a cost that is likely to do, then those up to more.
+void CountTarget::decide_last() {
+  Zone& zone = simplifier_.zone();
+  for (std::uint64_t edges = kShown; simplifier_.triangles() > target_; edges *= 8) {
+    const CostBits limit = limit_within(edges);
+    zone.limit = limit > zone.limit ? limit : zone.options.retire;
+    simplifier_.decide_in_order(target_);
+    if (zone.limit == zone.options.retire) return;
+  }
 }
 
 // The highest limit that leaves so many triangles: the final ones and those that are held.
@@ -99,13 +102,8 @@ CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
   const Zone& zone = simplifier_.zone();
   const std::uint64_t gone = simplifier_.triangles() - simplifier_.live_triangles();
   if (triangles <= gone) return zone.options.retire;
-  const CostHistogram histogram = histogram_of(zone, executor_, [&](Index t, CostHistogram& own) {
-    CostBits least = kRetiredCost;
-    for (const HalfEdge& side : zone.triangles[t].sides) {
-      least = std::min(least, cost_of(zone.turn_keys[side.vertex]));
-    }
-    own.add(least);
-  });
+  const CostHistogram histogram =
+      histogram_of(zone, executor_, [&](Index t, CostHistogram& own) { own.add(least_cost(zone, t)); });
   return std::min(histogram.highest_with_beyond(triangles - gone), zone.options.retire);
 }
 

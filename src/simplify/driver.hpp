@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "parallel/parallel.hpp"
+#include "simplify/cost_histogram.hpp"
 #include "simplify/decide.hpp"
 #include "simplify/zone.hpp"
 
@@ -25,6 +27,37 @@ class Driver {
 
   // The number of passes over lists of vertices or edges so far.
   virtual std::uint64_t rounds() const = 0;
+
+  // Counts the triangles that are removed, by the keys of the decisions, from now on.
+  virtual void count_removed() = 0;
+
+  // Adds these counts to a histogram.
+  virtual void add_removed(CostHistogram& sum) const = 0;
+};
+
+// Removed triangles by the keys of decisions. Counts nothing before it begins.
+class RemovedByKey {
+ public:
+  void begin() { histogram_.emplace(); }
+  void add_to(CostHistogram& sum) const {
+    if (histogram_) sum.merge(*histogram_);
+  }
+
+  void add(CostBits key, std::uint64_t removed) {
+    if (histogram_) histogram_->add(key, removed);
+  }
+
+  // Lets decide() decide an edge of that key, and notes what it adds to the counts of a decider.
+  template <class Decide>
+  void around(CostBits key, const DecisionCounts& counts, const Decide& decide) {
+    if (!histogram_) return decide();
+    const std::uint64_t before = counts.removed;
+    decide();
+    histogram_->add(key, counts.removed - before);
+  }
+
+ private:
+  std::optional<CostHistogram> histogram_;
 };
 
 // Gives all vertices their turns.

@@ -34,6 +34,7 @@ class LocalMinima::Worker {
   Worker(Zone& zone, std::uint16_t number) : zone_(zone), decider_(zone), number_(number) {}
 
   const DecisionCounts& counts() const { return decider_.counts(); }
+  RemovedByKey& removed_by_key() { return removed_by_key_; }
 
   // owners: nullptr when there is only this worker.
   void begin(std::vector<std::uint16_t>* owners, WorkPool& pool) {
@@ -130,7 +131,7 @@ class LocalMinima::Worker {
       wait(pair, before);
       return true;
     }
-    decider_.decide();
+    removed_by_key_.around(cost_of(zone_.turn_keys[v]), counts(), [&] { decider_.decide(); });
     settle();
     return true;
   }
@@ -235,6 +236,7 @@ class LocalMinima::Worker {
       const auto place = static_cast<std::size_t>(n);
       const Index w = decider_.changed_end(place);
       if (zone_.turn_keys[w] != decider_.key_before(place)) continue;
+      if (!exists(zone_.vertices[w].half_edge)) continue;  // w is beyond the limit, and has lost triangles
       renew_turn(zone_, w);
       follow(w);
     }
@@ -280,6 +282,7 @@ class LocalMinima::Worker {
   std::vector<Index> later_;  // vertices to be tried again: another worker held one of their stars
   std::vector<Index> held_;
   std::vector<Index> unkeyed_;
+  RemovedByKey removed_by_key_;
 };
 
 LocalMinima::LocalMinima(Zone& zone, const Executor& executor) : zone_(zone), executor_(executor) {
@@ -294,6 +297,14 @@ DecisionCounts LocalMinima::counts() const {
   DecisionCounts sum;
   for (const auto& worker : workers_) sum += worker->counts();
   return sum;
+}
+
+void LocalMinima::count_removed() {
+  for (const auto& worker : workers_) worker->removed_by_key().begin();
+}
+
+void LocalMinima::add_removed(CostHistogram& sum) const {
+  for (const auto& worker : workers_) worker->removed_by_key().add_to(sum);
 }
 
 void LocalMinima::run(const std::atomic<bool>* stop) {

@@ -25,6 +25,8 @@ class LocalMinima final : public Driver {
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override;
   std::uint64_t rounds() const override { return rounds_; }
+  void count_removed() override;
+  void add_removed(CostHistogram& sum) const override;
 
  private:
   class Worker;

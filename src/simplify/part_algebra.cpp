@@ -6,22 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "simplify/part_copy.hpp"
 #include "simplify/part_linker.hpp"
 
 namespace isoweave {
 namespace {
-
-// Calls visit(array of one part, array of the other part) for each array of facts about vertices.
-template <class From, class To, class Visit>
-void for_vertex_arrays(From& from, To& to, const Visit& visit) {
-  visit(from.vertices, to.vertices);
-  visit(from.states, to.states);
-  visit(from.normals, to.normals);
-  visit(from.normal_quadrics, to.normal_quadrics);
-  visit(from.values, to.values);
-  to.levels.resize(from.levels.size());
-  for (std::size_t level = 0; level < from.levels.size(); ++level) visit(from.levels[level], to.levels[level]);
-}
 
 // The owner of each triangle of a part.
 std::vector<std::size_t> owners_of(const ZonePart& part, const std::function<std::size_t(std::uint64_t)>& owner) {
@@ -32,29 +21,6 @@ std::vector<std::size_t> owners_of(const ZonePart& part, const std::function<std
     owners[t] = owner(least);
   }
   return owners;
-}
-
-// Some triangles of a part, with copies of their vertices. place: per vertex of the part, all kNone before and after.
-ZonePart copy_some(const ZonePart& part, const std::vector<Index>& triangles, std::vector<Index>& place) {
-  std::vector<Index> vertices;
-  for (const Index t : triangles) {
-    for (const HalfEdge& side : part.triangles[t].sides) {
-      if (std::exchange(place[side.vertex], 0) == kNone) vertices.push_back(side.vertex);
-    }
-  }
-  for (std::size_t n = 0; n < vertices.size(); ++n) place[vertices[n]] = static_cast<Index>(n);
-  ZonePart some;
-  for_vertex_arrays(part, some, [&](const auto& from, auto& to) {
-    to.resize(from.empty() ? 0 : vertices.size());
-    for (std::size_t n = 0; n < to.size(); ++n) to[n] = from[vertices[n]];
-  });
-  some.triangles.resize(triangles.size());
-  for (std::size_t n = 0; n < triangles.size(); ++n) {
-    some.triangles[n] = part.triangles[triangles[n]];
-    for (HalfEdge& side : some.triangles[n].sides) side.vertex = place[side.vertex];
-  }
-  for (const Index v : vertices) place[v] = kNone;
-  return some;
 }
 
 // Where each vertex of each part lies in the glued one.
@@ -143,7 +109,7 @@ std::vector<SplitPart> split_part(ZonePart part, const std::function<std::size_t
   return split;
 }
 
-ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire, const Executor& executor) {
+ZonePart glue_parts(std::vector<ZonePart> parts, CostBits within, const Executor& executor) {
   const Places places(parts);
   ZonePart glued;
   glued.vertices.resize(places.vertices());
@@ -155,7 +121,7 @@ ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire, const Executor
     parts[n] = {};
   }
   for (Vertex& vertex : glued.vertices) vertex.half_edge = kNone;
-  link_part(glued, retire, PartScope::kSome, executor, require_whole);
+  link_part(glued, within, PartScope::kSome, executor, require_whole);
   return glued;
 }
 

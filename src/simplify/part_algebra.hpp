@@ -33,7 +33,7 @@ class UnfitParts : public std::logic_error {
 };
 
 // Glues parts that are not linked, and links what they are together. Vertices are in ascending order of their ids.
-// retire: the cost above which edges are retired. Throws UnfitParts.
-ZonePart glue_parts(std::vector<ZonePart> parts, CostBits retire, const Executor& executor);
+// within: final vertices have no edge up to that cost. Throws UnfitParts.
+ZonePart glue_parts(std::vector<ZonePart> parts, CostBits within, const Executor& executor);
 
 }  // namespace isoweave

@@ -22,8 +22,8 @@ enum class PartScope : std::uint8_t { kAll, kSome };
 template <class Require>
 class PartLinker {
  public:
-  PartLinker(ZonePart& part, CostBits retire, PartScope scope, const Executor& executor, const Require& require)
-      : part_(part), retire_(retire), scope_(scope), executor_(executor), require_(require), zone_(part.view()) {}
+  PartLinker(ZonePart& part, CostBits within, PartScope scope, const Executor& executor, const Require& require)
+      : part_(part), within_(within), scope_(scope), executor_(executor), require_(require), zone_(part.view()) {}
 
   void link() {
     list_leaving();
@@ -101,7 +101,7 @@ class PartLinker {
     }
     require_(zone_.cost(h) != kUnknownCost, "keys of edges");
     for (const Index v : ends) {
-      const bool live = zone_.cost(h) <= retire_;
+      const bool live = zone_.cost(h) <= within_;
       require_(!live || zone_.states[v] != VertexState::kFinal, "no edge to decide at a final vertex");
     }
   }
@@ -159,7 +159,7 @@ class PartLinker {
   }
 
   ZonePart& part_;
-  const CostBits retire_;
+  const CostBits within_;
   const PartScope scope_;
   const Executor& executor_;
   const Require& require_;
@@ -168,10 +168,11 @@ class PartLinker {
   std::vector<Index> leaving_;
 };
 
-// Links a part. require(holds, what): is told what a part must have, and does not return where it does not hold.
+// Links a part. within: final vertices have no edge up to that cost. require(holds, what): is told what a part must
+// have, and does not return where it does not hold.
 template <class Require>
-void link_part(ZonePart& part, CostBits retire, PartScope scope, const Executor& executor, const Require& require) {
-  PartLinker<Require>(part, retire, scope, executor, require).link();
+void link_part(ZonePart& part, CostBits within, PartScope scope, const Executor& executor, const Require& require) {
+  PartLinker<Require>(part, within, scope, executor, require).link();
 }
 
 }  // namespace isoweave

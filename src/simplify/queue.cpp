@@ -47,7 +47,7 @@ void Queue::decide_group() {
       flags_[zone_.destination(h)] = 1;
       continue;
     }
-    decider_.decide();
+    removed_by_key_.around(cost, decider_.counts(), [&] { decider_.decide(); });
     if (decider_.deferred()) {
       flags_[zone_.origin(h)] = 1;
       flags_[zone_.destination(h)] = 1;

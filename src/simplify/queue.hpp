@@ -21,6 +21,8 @@ class Queue final : public Driver {
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override { return decider_.counts(); }
   std::uint64_t rounds() const override { return rounds_; }
+  void count_removed() override { removed_by_key_.begin(); }
+  void add_removed(CostHistogram& sum) const override { removed_by_key_.add_to(sum); }
 
  private:
   void offer_live_edges();
@@ -35,6 +37,7 @@ class Queue final : public Driver {
   std::vector<RadixHeap::Entry> group_;
   std::vector<std::uint8_t> flags_;  // per vertex
   std::uint64_t rounds_ = 0;
+  RemovedByKey removed_by_key_;
 };
 
 }  // namespace isoweave

@@ -36,9 +36,7 @@ struct RoundPasses {
     const Index v = changed[n];
     list(v, kCandidate, candidates);
     if (is_unknown(zone.turn_keys[v]) || !zone.walkable(v)) return;
-    Star star;
-    star.gather(zone, v);
-    star.each_neighbour(zone, [&](Index w) {
+    each_neighbour(zone, v, [&](Index w) {
       list(w, kCandidate, candidates);
       return true;
     });
@@ -99,9 +97,7 @@ struct RoundPasses {
 
   // Whether no neighbour of `end` has a turn that comes before v's.
   ISOWEAVE_HD bool comes_first(Index v, Index end) const {
-    Star star;
-    star.gather(zone, end);
-    return star.each_neighbour(zone, [&](Index w) { return !earlier(zone, w, v); });
+    return each_neighbour(zone, end, [&](Index w) { return !earlier(zone, w, v); });
   }
 };
 

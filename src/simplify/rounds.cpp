@@ -1,6 +1,7 @@
 #include "simplify/rounds.hpp"
 
 #include <mutex>
+#include <utility>
 
 namespace isoweave {
 namespace {
@@ -31,9 +32,16 @@ void Rounds::run_round(const RoundPasses<VectorArithmetic>& passes) {
   std::mutex counting;
   executor_.for_blocks(minima_.size, kBlock / 16, [&](std::int64_t begin, std::int64_t end) {
     DecisionCounts counts;
-    for (std::int64_t n = begin; n < end; ++n) passes.decide(n, counts);
+    std::vector<std::pair<CostBits, std::uint64_t>> removed;  // by the decision of each key, and those before it
+    for (std::int64_t n = begin; n < end; ++n) {
+      const CostBits key = zone_.cost(minima_.items[static_cast<std::size_t>(n)]);
+      passes.decide(n, counts);
+      removed.emplace_back(key, counts.removed);
+    }
     const std::lock_guard guard(counting);
     counts_ += counts;
+    std::uint64_t before = 0;
+    for (const auto& [key, with] : removed) removed_by_key_.add(key, with - std::exchange(before, with));
   });
   executor_.for_each(changed_.size, kBlock, [&](std::int64_t n) { passes.renew(n); });
   executor_.for_each(candidates_.size, kBlock, [&](std::int64_t n) { passes.forget_candidate(n); });

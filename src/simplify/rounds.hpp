@@ -16,6 +16,8 @@ class Rounds final : public Driver {
   void run(const std::atomic<bool>* stop) override;
   DecisionCounts counts() const override { return counts_; }
   std::uint64_t rounds() const override { return rounds_; }
+  void count_removed() override { removed_by_key_.begin(); }
+  void add_removed(CostHistogram& sum) const override { removed_by_key_.add_to(sum); }
 
  private:
   // A list of a round, with room for every vertex.
@@ -35,6 +37,7 @@ class Rounds final : public Driver {
   DecisionCounts counts_;
   CostBits limit_ = kRetiredCost;  // of the last run: turns beyond it have not been kept
   std::uint64_t rounds_ = 0;
+  RemovedByKey removed_by_key_;
 };
 
 }  // namespace isoweave

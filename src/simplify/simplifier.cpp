@@ -9,6 +9,7 @@
 #include "simplify/local_minima.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/rounds.hpp"
+#include "simplify/turns.hpp"
 
 namespace isoweave {
 
@@ -35,7 +36,7 @@ class Simplifier::Source final : public FinalSource {
       : simplifier_(simplifier), level_(level), hand_over_(simplifier.zone_, level, cut, simplifier.executor_) {}
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
-    const std::vector<Index> triangles = simplifier_.final_triangles(level_);
+    const std::vector<Index> triangles = simplifier_.final_triangles(level_, simplifier_.limit_of(level_));
     hand_over_.fill(triangles, first, piece);
     if (simplifier_.is_last(level_)) simplifier_.drop(triangles);
   }
@@ -72,7 +73,7 @@ void Simplifier::decide() {
 }
 
 void Simplifier::decide(std::size_t level) {
-  if (levels() > 1) zone_.limit = is_last(level) ? zone_.options.retire : finer_[level];
+  if (levels() > 1) zone_.limit = limit_of(level);
   decide();
 }
 
@@ -84,9 +85,26 @@ void Simplifier::decide_in_order(std::uint64_t triangles) {
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
 }
 
-// Finds the triangles of a level whose vertices are all final there, in memory order, each once. Makes vertices final.
-std::vector<Index> Simplifier::final_triangles(std::size_t level) {
-  const std::vector<Index> vertices = name_final_vertices(level);
+ZonePart Simplifier::take_settled(CostHistogram& least) {
+  // Triangles of a vertex that was final before may have gone, and with them its least edge.
+  std::vector<std::uint8_t> was_final(zone_.vertices.size());
+  std::ranges::transform(zone_.states, was_final.begin(),
+                         [](VertexState state) { return state == VertexState::kFinal; });
+  const std::vector<Index> triangles = final_triangles(finer_.size(), zone_.limit);
+  for (const Index t : triangles) {
+    const bool known = std::ranges::none_of(zone_.triangles[t].sides,
+                                            [&](const HalfEdge& side) { return was_final[side.vertex] != 0; });
+    least.add(known ? least_cost(zone_, t) : zone_.limit);
+  }
+  ZonePart part = zone_.copy_settled(triangles);
+  drop(triangles);
+  return part;
+}
+
+// Finds the triangles of a level whose vertices are all final there, in memory order, each once. Makes vertices final:
+// those at which all edges cost more than `within`.
+std::vector<Index> Simplifier::final_triangles(std::size_t level, CostBits within) {
+  const std::vector<Index> vertices = name_final_vertices(level, within);
   std::vector<std::uint32_t> corners(inspects_ ? zone_.vertices.size() : 0, 0);
   std::vector<Index> triangles;
   collect(
@@ -109,8 +127,7 @@ std::vector<Index> Simplifier::final_triangles(std::size_t level) {
 }
 
 // Makes vertices final in a level. Returns those of them that are inspected, as their star can be walked.
-std::vector<Index> Simplifier::name_final_vertices(std::size_t level) {
-  const CostBits within = is_last(level) ? zone_.options.retire : finer_[level];
+std::vector<Index> Simplifier::name_final_vertices(std::size_t level, CostBits within) {
   undecided_.resize(zone_.vertices.size());
   std::vector<Index> walkable;
   collect(
@@ -144,6 +161,13 @@ void Simplifier::drop(const std::vector<Index>& triangles) {
 void Simplifier::close_gaps() {
   const std::uint64_t gone = zone_.triangle_count() - live_triangles();
   if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
+}
+
+CostHistogram Simplifier::removed_by_key() const {
+  CostHistogram sum;
+  if (removed_before_) sum.merge(*removed_before_);
+  driver_->add_removed(sum);
+  return sum;
 }
 
 void Simplifier::serialize(StateWriter& state) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,11 @@ class Simplifier {
     return zone_.take_part(is_border, executor_);
   }
 
+  // For a surface that is cut, after decide(): takes out the triangles at whose vertices all edges cost more than the
+  // limit, as a part by itself, for a run with a higher limit. least: gets a cost for each of them, below which no edge
+  // of its vertices lies.
+  ZonePart take_settled(CostHistogram& least);
+
   // The number of meshes that come out: one for each finer level, and the last one.
   std::size_t levels() const { return finer_.size() + 1; }
   bool is_last(std::size_t level) const { return level == finer_.size(); }
@@ -84,6 +90,11 @@ class Simplifier {
     sum += driver_->counts();
     return sum;
   }
+  // Counts removed triangles by the keys of the decisions, from now on.
+  void count_removed() { driver_->count_removed(); }
+
+  // The counts of removed triangles, with those of the process that saved the state.
+  CostHistogram removed_by_key() const;
   Schedule schedule() const { return schedule_; }  // never automatic
   std::uint64_t rounds() const { return rounds_before_ + driver_->rounds(); }
   const SurfaceDefects& defects(std::size_t level) const { return defects_[level]; }
@@ -93,12 +104,17 @@ class Simplifier {
   void serialize(StateWriter& state) const;
   void serialize(StateReader& state, const PartShape& shape);
 
+  // The counts of removed triangles by key, likewise.
+  void serialize_removed(StateWriter& state) const { removed_by_key().serialize(state); }
+  void serialize_removed(StateReader& state) { removed_before_.emplace().serialize(state); }
+
  private:
   class Source;
 
-  std::vector<Index> final_triangles(std::size_t level);
+  CostBits limit_of(std::size_t level) const { return is_last(level) ? zone_.options.retire : finer_[level]; }
+  std::vector<Index> final_triangles(std::size_t level, CostBits within);
   void drop(const std::vector<Index>& triangles);
-  std::vector<Index> name_final_vertices(std::size_t level);
+  std::vector<Index> name_final_vertices(std::size_t level, CostBits within);
   bool make_final(Index v, std::size_t level);
   SurfaceDefects inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) const;
   std::uint32_t list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const;
@@ -114,8 +130,9 @@ class Simplifier {
   std::vector<std::uint8_t> undecided_;                // per vertex
   std::uint64_t appended_ = 0;                         // triangles
   std::uint64_t dropped_ = 0;
-  std::vector<SurfaceDefects> defects_;  // per level
-  DecisionCounts counts_before_;         // by the process that saved the state
+  std::vector<SurfaceDefects> defects_;          // per level
+  DecisionCounts counts_before_;                 // by the process that saved the state
+  std::optional<CostHistogram> removed_before_;  // likewise, by key
   std::uint64_t rounds_before_ = 0;
 };
 

@@ -8,6 +8,21 @@
 
 namespace isoweave {
 
+// Calls visit(w) for every neighbour of v until visit() answers false. Returns whether it never answered false. Keeps
+// nothing, where a Star would be read once.
+template <class Visit>
+ISOWEAVE_HD bool each_neighbour(const ZoneView& zone, Index v, const Visit& visit) {
+  const HalfEdge* const halves = &zone.half(0);
+  const Index start = zone.vertices[v].half_edge;
+  Index h = start;
+  do {
+    const HalfEdge& from_next = halves[previous(h)];
+    if (!visit(from_next.vertex)) return false;
+    h = from_next.twin;
+  } while (h != start && exists(h));
+  return exists(h) || visit(halves[next(start)].vertex);
+}
+
 // The faces and neighbours of a vertex, counter-clockwise. Face n lies between neighbours n and n + 1 (modulo the
 // number of neighbours in a closed star; an open star has one neighbour more than faces).
 struct Star {
@@ -72,14 +87,7 @@ struct Star {
     for (int n = 0; n < neighbours; ++n) {
       if (!visit(neighbour[static_cast<std::size_t>(n)])) return false;
     }
-    if (!overflow) return true;
-    const Index first = zone.vertices[vertex].half_edge;
-    Index h = first;
-    do {
-      if (!visit(zone.destination(h)) || !visit(zone.origin(previous(h)))) return false;
-      h = zone.rotate(h);
-    } while (h != first && exists(h));
-    return true;
+    return !overflow || isoweave::each_neighbour(zone, vertex, visit);
   }
 
  private:

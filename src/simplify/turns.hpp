@@ -2,6 +2,8 @@
 // edge of every neighbour.
 #pragma once
 
+#include <algorithm>
+
 #include "parallel/atomics.hpp"
 #include "simplify/star.hpp"
 #include "simplify/zone_view.hpp"
@@ -81,6 +83,15 @@ ISOWEAVE_HD inline void give_turn(const ZoneView& zone, Index v) {
   } else {
     renew_turn(zone, v);
   }
+}
+
+// The least cost of an edge at a vertex of a triangle.
+inline CostBits least_cost(const ZoneView& zone, Index triangle) {
+  CostBits least = kRetiredCost;
+  for (const HalfEdge& side : zone.triangles[triangle].sides) {
+    least = std::min(least, cost_of(zone.turn_keys[side.vertex]));
+  }
+  return least;
 }
 
 ISOWEAVE_HD inline bool is_unknown(Key turn) { return cost_of(turn) == kUnknownCost; }

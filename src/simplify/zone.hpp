@@ -93,6 +93,10 @@ class Zone : public ZoneView {
   // edge between two incomplete vertices, with one triangle here, lies on a border of the surface.
   ZonePart take_part(const std::function<bool(std::uint64_t, std::uint64_t)>& is_border, const Executor& executor);
 
+  // Copies some triangles, to be removed, as a part by itself. Vertices of it are not final, and the triangles beside
+  // them that stay are told that they are gone.
+  ZonePart copy_settled(const std::vector<Index>& gone);
+
   // Puts a part that is linked into an empty zone. Vertices that it completes get their quadrics, their edges get keys,
   // and all undecided vertices count as settled.
   void put_part(ZonePart part, const Executor& executor);

@@ -1,6 +1,8 @@
 // The zone of a surface that is cut: what it holds becomes a part, and a part becomes what it holds.
+#include <algorithm>
 #include <utility>
 
+#include "simplify/part_copy.hpp"
 #include "simplify/zone.hpp"
 #include "simplify/zone_rules.hpp"
 
@@ -32,6 +34,19 @@ ZonePart Zone::take_part(const std::function<bool(std::uint64_t, std::uint64_t)>
   part.values = std::move(value_array_);
   part.triangles = std::move(triangle_array_);
   part.levels = std::move(levels);
+  return part;
+}
+
+ZonePart Zone::copy_settled(const std::vector<Index>& gone) {
+  std::vector<Index> place(vertices.size(), kNone);
+  ZonePart part = copy_some(*this, gone, place);
+  std::fill(part.states.begin(), part.states.end(), VertexState::kComplete);
+  for (Triangle& triangle : part.triangles) {
+    for (HalfEdge& side : triangle.sides) {
+      if (exists(side.twin)) set_twin(side.twin, kWritten);
+      if (side.twin != kNone) side.twin = kWritten;
+    }
+  }
   return part;
 }
 

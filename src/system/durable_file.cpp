@@ -78,6 +78,14 @@ bool cut_off(int descriptor, std::uint64_t end) {
   return ::ftruncate(descriptor, place) == 0 && ::lseek(descriptor, place, SEEK_SET) == place;
 }
 
+void free_bytes([[maybe_unused]] int descriptor, [[maybe_unused]] std::uint64_t first,
+                [[maybe_unused]] std::uint64_t count) {
+#ifdef __linux__
+  ::fallocate(descriptor, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(first),
+              static_cast<off_t>(count));
+#endif
+}
+
 std::uint64_t copy_within_system([[maybe_unused]] int from, [[maybe_unused]] int to,
                                  [[maybe_unused]] std::uint64_t bytes) {
 #ifdef __linux__

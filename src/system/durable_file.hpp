@@ -42,6 +42,9 @@ bool sync_names(const std::string& folder);
 // Makes the file end, and stand, at `end`.
 bool cut_off(int descriptor, std::uint64_t end);
 
+// Gives the room of bytes of a file back to the system, where it can do that. They must not be read any more.
+void free_bytes(int descriptor, std::uint64_t first, std::uint64_t count);
+
 // Copies from the beginning of one file to the place where the other stands, as far as the system does so by itself.
 // Returns the number of bytes copied.
 std::uint64_t copy_within_system(int from, int to, std::uint64_t bytes);

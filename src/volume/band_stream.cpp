@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "parallel/size.hpp"
 
@@ -20,6 +21,28 @@ void BandStream::fill_band(std::span<std::byte> band) {
   fill(first, std::min(depth_, slices_ - first), band);
 }
 
+void BandStream::fill_buffer() {
+  if (filled_) return;
+  buffer_.resize(to_size(band_bytes(band_) / slice_bytes_ * kept_slice()));
+  fill_band(buffer_);
+  filled_ = true;
+}
+
+std::size_t BandStream::read_in_window(std::span<std::byte> out) {
+  if (band_bytes(band_) == 0) return 0;
+  fill_buffer();
+  const std::uint64_t slice = used_ / slice_bytes_;
+  const std::uint64_t row = used_ % slice_bytes_ / window_->row_bytes - window_->first_row;
+  const std::uint64_t byte = used_ % window_->row_bytes - window_->first_byte;
+  if (row >= window_->rows || byte > window_->bytes || out.size() > window_->bytes - byte) {
+    throw std::logic_error("samples beside the box that is kept of a volume");
+  }
+  const std::uint64_t from = slice * window_->slice_bytes() + row * window_->bytes + byte;
+  std::memcpy(out.data(), buffer_.data() + from, out.size());
+  advance(out.size());
+  return out.size();
+}
+
 void BandStream::advance(std::uint64_t bytes) {
   used_ += bytes;
   if (used_ < band_bytes(band_)) return;
@@ -29,6 +52,7 @@ void BandStream::advance(std::uint64_t bytes) {
 }
 
 std::size_t BandStream::read(std::span<std::byte> out) {
+  if (window_) return read_in_window(out);
   std::size_t done = 0;
   while (done < out.size() && band_bytes(band_) > 0) {
     const std::size_t whole = to_size(band_bytes(band_));
@@ -36,11 +60,7 @@ std::size_t BandStream::read(std::span<std::byte> out) {
     if (!filled_ && step == whole) {
       fill_band(out.subspan(done, whole));
     } else {
-      if (!filled_) {
-        buffer_.resize(whole);
-        fill_band(buffer_);
-        filled_ = true;
-      }
+      fill_buffer();
       std::memcpy(out.data() + done, buffer_.data() + used_, step);
     }
     done += step;

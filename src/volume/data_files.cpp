@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/header_text.hpp"
+#include "files/part_file.hpp"
 #include "files/quoted.hpp"
 #include "volume/text_streams.hpp"
 
@@ -179,7 +180,9 @@ std::unique_ptr<ByteStream> open_samples(VolumeInfo& info, const DataFiles& file
               std::to_string(files.count) + " files");
   }
   const std::uint64_t each = bytes / count;
-  const auto open = [=](std::int64_t n) { return open_samples(open_file(files.name(n)), 0, layout, each); };
+  const auto open = [=, path = info.path](std::int64_t n) {
+    return open_samples(open_part(path, "its samples in", files.name(n)), 0, layout, each);
+  };
   for (std::int64_t n = 0; n < files.count; ++n) {
     open(n);
     info.data_files.push_back(files.name(n));

@@ -28,12 +28,12 @@ class SphereField final : public CentredField {
   explicit SphereField(const Dims& dims)
       : CentredField(dims), radius_(0.4 * static_cast<double>(std::min({dims[0], dims[1], dims[2]}))) {}
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     const double y = offset(1, j);
     const double z = offset(2, k);
     const double rest = y * y + z * z;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const double x = static_cast<double>(static_cast<std::int64_t>(i)) - centre_[0];
+      const double x = offset(0, first + static_cast<std::int64_t>(i));
       row[i] = radius_ - std::sqrt(x * x + rest);
     }
   }
@@ -50,11 +50,11 @@ class TorusField final : public CentredField {
     tube_ = std::min(0.12 * width, 0.4 * static_cast<double>(dims[2]));
   }
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     const double y = offset(1, j);
     const double z = offset(2, k);
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const double x = static_cast<double>(static_cast<std::int64_t>(i)) - centre_[0];
+      const double x = offset(0, first + static_cast<std::int64_t>(i));
       const double from_ring = std::sqrt(x * x + y * y) - ring_;
       row[i] = tube_ - std::sqrt(from_ring * from_ring + z * z);
     }
@@ -95,14 +95,15 @@ class GyroidField final : public Field {
     }
   }
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     const std::size_t y = static_cast<std::size_t>(j) % kPeriod;
     const std::size_t z = static_cast<std::size_t>(k) % kPeriod;
     std::array<double, kPeriod> wave;
     for (std::size_t x = 0; x < kPeriod; ++x) {
       wave[x] = sine_[0][x] * cosine_[1][y] + sine_[1][y] * cosine_[2][z] + sine_[2][z] * cosine_[0][x];
     }
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = wave[i % kPeriod];
+    const auto from = static_cast<std::size_t>(first);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = wave[(from + i) % kPeriod];
   }
 
  private:
@@ -122,10 +123,10 @@ class BoxField final : public Field {
     }
   }
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     const double rest = std::min(depth(1, static_cast<double>(j)), depth(2, static_cast<double>(k)));
     for (std::size_t i = 0; i < row.size(); ++i) {
-      row[i] = std::min(rest, depth(0, static_cast<double>(static_cast<std::int64_t>(i))));
+      row[i] = std::min(rest, depth(0, static_cast<double>(first + static_cast<std::int64_t>(i))));
     }
   }
 
@@ -141,12 +142,12 @@ class ShellsField final : public CentredField {
  public:
   explicit ShellsField(const Dims& dims) : CentredField(dims) {}
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     const double y = offset(1, j);
     const double z = offset(2, k);
     const double rest = y * y + z * z;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const double x = static_cast<double>(static_cast<std::int64_t>(i)) - centre_[0];
+      const double x = offset(0, first + static_cast<std::int64_t>(i));
       const double distance = std::sqrt(x * x + rest);
       row[i] = 1 - std::abs(distance - 4 * std::floor(distance * 0.25) - 2);
     }
@@ -156,24 +157,24 @@ class ShellsField final : public CentredField {
 // Two octaves of value noise, and where `roughness` is not 0 white noise on top.
 class NoiseField final : public Field {
  public:
-  NoiseField(const Dims& dims, std::uint64_t seed, double roughness)
-      : coarse_(dims[0], dims[1], 12, seed), fine_(dims[0], dims[1], 6, seed), seed_(seed), roughness_(roughness) {}
+  NoiseField(std::uint64_t seed, double roughness)
+      : coarse_(12, seed), fine_(6, seed), seed_(seed), roughness_(roughness) {}
 
   void begin_slice(std::int64_t k) override {
     coarse_.begin_slice(k);
     fine_.begin_slice(k);
   }
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     std::fill(row.begin(), row.end(), 0.0);
-    coarse_.add_row(j, 0.75, row);
-    fine_.add_row(j, 0.25, row);
-    if (roughness_ > 0) roughen(row_bits(seed_, j, k), row);
+    coarse_.add_row(j, first, 0.75, row);
+    fine_.add_row(j, first, 0.25, row);
+    if (roughness_ > 0) roughen(row_bits(seed_, j, k) + static_cast<std::uint64_t>(first), row);
   }
 
  private:
   void roughen(std::uint64_t bits, std::span<double> row) const {
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] += roughness_ * (unit_value(mix_bits(bits + i)) - 0.5);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] += roughness_ * (unit_value(scramble_bits(bits + i)) - 0.5);
   }
 
   ValueNoise coarse_;
@@ -186,9 +187,9 @@ class WhiteField final : public Field {
  public:
   explicit WhiteField(std::uint64_t seed) : seed_(seed) {}
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
-    const std::uint64_t bits = row_bits(seed_, j, k);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = unit_value(mix_bits(bits + i));
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
+    const std::uint64_t bits = row_bits(seed_, j, k) + static_cast<std::uint64_t>(first);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = unit_value(scramble_bits(bits + i));
   }
 
  private:
@@ -201,14 +202,15 @@ class SpecksField final : public Field {
  public:
   explicit SpecksField(std::uint64_t seed) : seed_(seed) {}
 
-  void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) override {
+  void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) override {
     std::fill(row.begin(), row.end(), 0.0);
     const std::uint64_t blocks = row_bits(seed_, j / kBlock, k / kBlock);
-    for (std::size_t block = 0; block * kBlock < row.size(); ++block) {
-      const std::uint64_t bits = mix_bits(blocks + block);
+    const std::int64_t end = first + static_cast<std::int64_t>(row.size());
+    for (std::int64_t block = first / kBlock; block * kBlock < end; ++block) {
+      const std::uint64_t bits = scramble_bits(blocks + static_cast<std::uint64_t>(block));
       const bool here = (bits >> 60) < 8 && place(bits, 8) == j % kBlock && place(bits, 16) == k % kBlock;
-      const std::size_t i = block * kBlock + static_cast<std::size_t>(place(bits, 0));
-      if (here && i < row.size()) row[i] = 1;
+      const std::int64_t i = block * kBlock + place(bits, 0);
+      if (here && i >= first && i < end) row[static_cast<std::size_t>(i - first)] = 1;
     }
   }
 
@@ -233,13 +235,11 @@ std::unique_ptr<Field> make_of_seed(const Dims&, std::uint64_t seed) {
 
 std::unique_ptr<Field> make_gyroid(const Dims&, std::uint64_t) { return std::make_unique<GyroidField>(); }
 
-std::unique_ptr<Field> make_smooth(const Dims& dims, std::uint64_t seed) {
-  return std::make_unique<NoiseField>(dims, seed, 0.0);
-}
+std::unique_ptr<Field> make_smooth(const Dims&, std::uint64_t seed) { return std::make_unique<NoiseField>(seed, 0.0); }
 
-std::unique_ptr<Field> make_noise(const Dims& dims, std::uint64_t seed) {
+std::unique_ptr<Field> make_noise(const Dims&, std::uint64_t seed) {
   constexpr double kRoughness = 0.2;
-  return std::make_unique<NoiseField>(dims, seed, kRoughness);
+  return std::make_unique<NoiseField>(seed, kRoughness);
 }
 
 // Distances are shown 16 samples to each side of the surface, whatever the dims, so that one iso-value fits all.

@@ -14,8 +14,8 @@ class Field {
  public:
   virtual ~Field() = default;
   virtual void begin_slice(std::int64_t) {}
-  // Fills row j of slice k, whose begin_slice was called last.
-  virtual void fill_row(std::int64_t j, std::int64_t k, std::span<double> row) = 0;
+  // Fills samples of row j of slice k, from sample `first` on. begin_slice was called for that slice last.
+  virtual void fill_row(std::int64_t j, std::int64_t k, std::int64_t first, std::span<double> row) = 0;
 };
 
 struct FieldKind {

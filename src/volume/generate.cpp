@@ -87,10 +87,7 @@ void store_row_as(SampleType type, std::span<const double> row, const Mapping& m
 class GeneratedSource final : public RowSource {
  public:
   GeneratedSource(VolumeInfo info, const FieldKind& kind, std::uint64_t seed)
-      : info_(std::move(info)),
-        field_(kind.make(info_.dims, seed)),
-        mapping_(mapping_of(kind, info_.type)),
-        row_(to_size(info_.dims[0])) {}
+      : info_(std::move(info)), field_(kind.make(info_.dims, seed)), mapping_(mapping_of(kind, info_.type)) {}
 
   const VolumeInfo& info() const override { return info_; }
 
@@ -98,26 +95,42 @@ class GeneratedSource final : public RowSource {
     check_slice_range(info_, next_, first, count, out.size());
     if (count == 0) return;
     for (std::int64_t k = first; k < first + count; ++k) {
-      field_->begin_slice(k);
+      begin(k);
       fill_rows(k, 0, info_.dims[1], out.subspan(static_cast<std::size_t>(k - first) * info_.slice_bytes()));
     }
-    next_ = first + count;
+  }
+
+  bool reads_parts_of_rows() const override { return true; }
+  std::size_t long_row() const override { return 0; }
+
+  void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override {
+    begin(k);
+    fill_part(k, j, i, to_size(out.size() / sample_bytes(info_.type)), out.data());
   }
 
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    if (k != begun_) field_->begin_slice(k);
-    begun_ = k;
+    begin(k);
     fill_rows(k, first, count, out);
-    next_ = k + 1;
   }
 
  private:
+  void begin(std::int64_t k) {
+    if (k != begun_) field_->begin_slice(k);
+    begun_ = k;
+    next_ = k + 1;
+  }
+
+  void fill_part(std::int64_t k, std::int64_t j, std::int64_t first, std::size_t count, std::byte* out) {
+    row_.resize(count);
+    field_->fill_row(j, k, first, row_);
+    store_row_as(info_.type, row_, mapping_, out);
+  }
+
   void fill_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) {
     std::byte* to = out.data();
     for (std::int64_t j = first; j < first + count; ++j) {
-      field_->fill_row(j, k, row_);
-      store_row_as(info_.type, row_, mapping_, to);
-      to += row_.size() * sample_bytes(info_.type);
+      fill_part(k, j, 0, to_size(info_.dims[0]), to);
+      to += info_.slice_bytes() / to_size(info_.dims[1]);
     }
   }
 

@@ -1,6 +1,7 @@
 #include "isoweave/histogram.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "isoweave/error.hpp"
@@ -40,6 +41,15 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
   return counter.histogram(info.slope, info.intercept);
 }
 
+namespace {
+
+// The value at a part of the range, above its least one, which as an iso-value would have all samples inside.
+double value_at(const Histogram& histogram, double part) {
+  return std::max(histogram.min * (1 - part) + histogram.max * part, std::nextafter(histogram.min, histogram.max));
+}
+
+}  // namespace
+
 std::optional<double> otsu_threshold(const Histogram& histogram) {
   if (histogram.empty() || histogram.min == histogram.max) return std::nullopt;
   double total = 0;
@@ -67,7 +77,7 @@ std::optional<double> otsu_threshold(const Histogram& histogram) {
     if (variance >= best) last_best = n;
   }
   const double edge = (static_cast<double>(first_best + last_best) / 2 + 1) / static_cast<double>(Histogram::kBins);
-  return histogram.min * (1 - edge) + histogram.max * edge;
+  return value_at(histogram, edge);
 }
 
 namespace {
@@ -128,7 +138,7 @@ std::vector<double> otsu_thresholds(const Histogram& histogram, std::size_t clas
   for (std::size_t n = thresholds.size(); n > 0; --n) {
     end = rows[n].from[end];
     const double edge = static_cast<double>(end) / static_cast<double>(Histogram::kBins);
-    thresholds[n - 1] = histogram.min * (1 - edge) + histogram.max * edge;
+    thresholds[n - 1] = value_at(histogram, edge);
   }
   return thresholds;
 }

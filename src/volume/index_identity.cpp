@@ -84,7 +84,7 @@ bool add_folder(const std::string& folder, FileSum& sum) {
 // The facts of all files that hold the volume; nothing where one is missing, or where there is none.
 std::optional<FileSum> sum_of_files(const VolumeInfo& volume) {
   FileSum sum;
-  if (volume.format == "zarr" || volume.format == "n5") {
+  if (volume.format == "zarr" || volume.format == "n5" || volume.format == "precomputed") {
     if (!add_folder(fs::path(volume.header).parent_path().string(), sum)) return std::nullopt;
     add_content(volume.header, sum);
     return sum;

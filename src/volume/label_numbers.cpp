@@ -32,7 +32,8 @@ VolumeInfo info_of(const VolumeInfo& volume) {
 // Makes labels of the samples of one slice.
 class Converter {
  public:
-  Converter(const VolumeInfo& volume, std::int64_t k) : volume_(volume), k_(k) {}
+  // first: the place of the slice's first sample in the whole map.
+  Converter(const VolumeInfo& volume, const std::array<std::int64_t, 3>& first) : volume_(volume), first_(first) {}
 
   template <class T>
   void convert(const T* samples, std::int64_t* labels) const {
@@ -65,16 +66,18 @@ class Converter {
   [[noreturn]] void refuse(const std::string& expected, const std::string& found, std::int64_t n) const {
     const std::int64_t nx = volume_.dims[0];
     bad_input(volume_.path, expected,
-              found + " in sample " + std::to_string(n % nx) + "," + std::to_string(n / nx) + "," + std::to_string(k_));
+              found + " in sample " + std::to_string(first_[0] + n % nx) + "," + std::to_string(first_[1] + n / nx) +
+                  "," + std::to_string(first_[2]));
   }
 
   const VolumeInfo& volume_;
-  std::int64_t k_;
+  std::array<std::int64_t, 3> first_;
 };
 
 }  // namespace
 
-LabelNumbers::LabelNumbers(SliceSource& volume) : volume_(volume), info_(info_of(volume.info())) {
+LabelNumbers::LabelNumbers(SliceSource& volume, const std::array<std::int64_t, 3>& first)
+    : volume_(volume), first_(first), info_(info_of(volume.info())) {
   if (!is_plain()) slice_.resize(volume.info().slice_bytes());
 }
 
@@ -89,7 +92,8 @@ void LabelNumbers::read(std::int64_t first, std::int64_t count, std::span<std::b
   for (std::int64_t k = first; k < first + count; ++k, labels += info_.slice_samples()) {
     volume_.read(k, 1, slice_);
     visit_sample_type(volume_.info().type, [&]<class T>() {
-      Converter(volume_.info(), k).convert(reinterpret_cast<const T*>(slice_.data()), labels);
+      Converter(volume_.info(), {first_[0], first_[1], first_[2] + k})
+          .convert(reinterpret_cast<const T*>(slice_.data()), labels);
     });
   }
 }

@@ -10,6 +10,7 @@
 #include "files/input_file.hpp"
 #include "isoweave/error.hpp"
 #include "parallel/float_environment.hpp"
+#include "parallel/size.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
@@ -24,30 +25,69 @@ bool is_of_type(Label label) {
   return std::is_signed_v<T> && Label(std::numeric_limits<T>::lowest()) <= label;
 }
 
-class LabelVolume final : public SliceSource {
+// The mask of a label. Boxes and rows of it are those of the map, where the map has integers.
+class LabelVolume final : public RowSource {
  public:
   LabelVolume(std::unique_ptr<SliceSource> map, Label label)
-      : map_(std::move(map)), numbers_(*map_), info_(numbers_.info()), label_(label), slice_(info_.slice_bytes()) {
+      : map_(std::move(map)),
+        numbers_(*map_),
+        rows_(numbers_.info().type == map_->info().type ? dynamic_cast<RowSource*>(map_.get()) : nullptr),
+        reader_(rows_ != nullptr ? *map_ : static_cast<SliceSource&>(numbers_)),
+        info_(numbers_.info()),
+        label_(label) {
     info_.type = SampleType::kUint8;
   }
 
   const VolumeInfo& info() const override { return info_; }
   bool skips() const override { return map_->skips(); }
+  bool reads_parts_of_rows() const override { return rows_ != nullptr && rows_->reads_parts_of_rows(); }
+  bool reads_boxes() const override { return rows_ != nullptr && rows_->reads_boxes(); }
+  bool narrow(const Region& box) override { return rows_ != nullptr && rows_->narrow(box); }
+  Gaps* gaps() override { return rows_ != nullptr ? rows_->gaps() : nullptr; }
+  std::uint64_t held_bytes() const override {
+    const std::uint64_t held = rows_ != nullptr ? held_by_rows(*map_) : held_by_rows(numbers_);
+    return held + to_size(info_.slice_samples(), sample());
+  }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    auto* mask = reinterpret_cast<std::uint8_t*>(out.data());
-    for (std::int64_t k = first; k < first + count; ++k, mask += info_.slice_samples()) {
-      numbers_.read(k, 1, slice_);
-      mask_row(slice_.data(), numbers_.info().type, info_.slice_samples(), label_, mask);
-    }
+    const auto slice = to_size(info_.slice_samples());
+    for (std::int64_t k = first; k < first + count; ++k, out = out.subspan(slice)) read_rows(k, 0, info_.dims[1], out);
+  }
+
+  void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
+    labels_.resize(to_size(count * info_.dims[0], sample()));
+    reader_.read(k, first, count, labels_);
+    mask(count * info_.dims[0], out);
+  }
+
+  void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override {
+    labels_.resize(out.size() * sample());
+    rows_->read_part_of_row(k, j, i, labels_);
+    mask(static_cast<std::int64_t>(out.size()), out);
+  }
+
+  std::optional<SampleBytes> constant() const override {
+    const std::optional<SampleBytes> label = rows_ != nullptr ? rows_->constant() : std::nullopt;
+    if (!label) return label;
+    SampleBytes sample{};
+    mask_row(label->data(), numbers_.info().type, 1, label_, reinterpret_cast<std::uint8_t*>(sample.data()));
+    return sample;
   }
 
  private:
+  std::size_t sample() const { return sample_bytes(numbers_.info().type); }
+
+  void mask(std::int64_t samples, std::span<std::byte> out) const {
+    mask_row(labels_.data(), numbers_.info().type, samples, label_, reinterpret_cast<std::uint8_t*>(out.data()));
+  }
+
   std::unique_ptr<SliceSource> map_;
   LabelNumbers numbers_;
+  RowSource* rows_;  // the map, where it has integers and rows
+  RowReader reader_;
   VolumeInfo info_;
   Label label_;
-  std::vector<std::byte> slice_;  // of the map
+  std::vector<std::byte> labels_;  // of the map
 };
 
 // Finds extents, run by run of equal samples. Labels of one map differ in their bits.
@@ -63,13 +103,20 @@ class ExtentFinder {
     });
   }
 
-  template <class T>
-  void add_row(const T* row, std::int64_t j, std::int64_t k) {
-    const std::int64_t nx = volume_.dims[0];
-    for (std::int64_t begin = 0, end = 0; begin < nx; begin = end) {
-      end = begin + 1;
-      while (end < nx && row[end] == row[begin]) ++end;
-      if constexpr (std::is_integral_v<T>) add_run(row[begin], {begin, j, k}, end);
+  // Adds the samples of a part of the map, which begins at a place of the whole.
+  void add(SliceSource& part, const std::array<std::int64_t, 3>& first, const std::atomic<bool>* stop) {
+    LabelNumbers numbers(part, first);
+    const VolumeInfo& info = numbers.info();
+    std::vector<std::byte> slice(info.slice_bytes());
+    for (std::int64_t k = 0; k < info.dims[2]; ++k) {
+      if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
+      numbers.read(k, 1, slice);
+      visit_sample_type(info.type, [&]<class T>() {
+        const T* row = reinterpret_cast<const T*>(slice.data());
+        for (std::int64_t j = 0; j < info.dims[1]; ++j, row += info.dims[0]) {
+          add_row(std::span(row, to_size(info.dims[0])), {first[0], first[1] + j, first[2] + k});
+        }
+      });
     }
   }
 
@@ -91,6 +138,18 @@ class ExtentFinder {
   }
 
  private:
+  template <class T>
+  void add_row(std::span<const T> row, const std::array<std::int64_t, 3>& first) {
+    for (std::size_t begin = 0, end = 0; begin < row.size(); begin = end) {
+      end = begin + 1;
+      while (end < row.size() && row[end] == row[begin]) ++end;
+      if constexpr (std::is_integral_v<T>) {
+        const std::int64_t at = first[0] + static_cast<std::int64_t>(begin);
+        add_run(row[begin], {at, first[1], first[2]}, at + static_cast<std::int64_t>(end - begin));
+      }
+    }
+  }
+
   void add_run(Label label, const std::array<std::int64_t, 3>& first, std::int64_t end) {
     LabelExtent* const extent = find(label);
     if (extent == nullptr) return;
@@ -145,25 +204,43 @@ std::unique_ptr<SliceSource> label_volume(std::unique_ptr<SliceSource> volume, L
   return std::make_unique<LabelVolume>(std::move(volume), label);
 }
 
-std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted,
-                                     const std::atomic<bool>* stop) {
-  const StandardFloats floats;
-  LabelNumbers numbers(volume);
-  const VolumeInfo& info = numbers.info();
-  ExtentFinder finder(info, wanted);
-  std::vector<std::byte> slice(info.slice_bytes());
-  for (std::int64_t k = 0; k < info.dims[2]; ++k) {
-    if (stop != nullptr && stop->load()) throw Interrupted("interrupted, nothing was written");
-    numbers.read(k, 1, slice);
-    visit_sample_type(info.type, [&]<class T>() {
-      const T* row = reinterpret_cast<const T*>(slice.data());
-      for (std::int64_t j = 0; j < info.dims[1]; ++j, row += info.dims[0]) finder.add_row(row, j, k);
-    });
-  }
+namespace {
+
+std::vector<LabelExtent> extents_in(const ExtentFinder& finder, std::span<const Label> wanted) {
   if (wanted.empty()) return finder.all();
   std::vector<LabelExtent> extents;
   for (const Label label : wanted) extents.push_back(finder.extent(label));
   return extents;
+}
+
+}  // namespace
+
+std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted,
+                                     const std::atomic<bool>* stop) {
+  const StandardFloats floats;
+  const VolumeInfo info = LabelNumbers(volume).info();
+  ExtentFinder finder(info, wanted);
+  finder.add(volume, {0, 0, 0}, stop);
+  return extents_in(finder, wanted);
+}
+
+std::vector<LabelExtent> find_labels_in_blocks(const VolumeOpener& open, std::int64_t size,
+                                               std::span<const Label> wanted, const std::atomic<bool>* stop) {
+  const StandardFloats floats;
+  const std::unique_ptr<SliceSource> whole = open();
+  require_skipping(*whole);
+  const VolumeInfo info = LabelNumbers(*whole).info();
+  ExtentFinder finder(info, wanted);
+  Region box;
+  for (box.first[2] = 0; box.first[2] < info.dims[2]; box.first[2] += size) {
+    for (box.first[1] = 0; box.first[1] < info.dims[1]; box.first[1] += size) {
+      for (box.first[0] = 0; box.first[0] < info.dims[0]; box.first[0] += size) {
+        for (std::size_t axis = 0; axis < 3; ++axis) box.end[axis] = std::min(box.first[axis] + size, info.dims[axis]);
+        finder.add(*crop_volume(open(), box), box.first, stop);
+      }
+    }
+  }
+  return extents_in(finder, wanted);
 }
 
 std::size_t count_scattered(std::span<const LabelExtent> labels) {

@@ -8,11 +8,15 @@
 
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
+#include "files/part_file.hpp"
 #include "files/quoted.hpp"
+#include "files/remote_store.hpp"
 #include "files/whole_input.hpp"
 #include "isoweave/error.hpp"
 #include "parallel/float_environment.hpp"
+#include "system/file_facts.hpp"
 #include "volume/axes.hpp"
+#include "volume/formats/chunked/open_array.hpp"
 #include "volume/formats/dicom/dicom_file.hpp"
 #include "volume/formats/dicom/dicom_series.hpp"
 #include "volume/formats/formats.hpp"
@@ -52,8 +56,7 @@ std::string_view format_of_name(std::string_view name) {
   if (is_mrc_name(name)) return "an MRC header with dimensions, mode and axes";
   if (name.ends_with(".h5") || name.ends_with(".hdf5")) return "the magic of HDF5";
   return "NRRD, MetaImage, NIfTI, Analyze, MGH, MRC, AmiraMesh, FITS, SLC, PVM, TIFF, PNG, DICOM, VTK, HDF5, NPY, NPZ, "
-         "or "
-         "raw with a layout";
+         "Zarr, N5 or raw with a layout";
 }
 
 // "scan.hdr" for "scan.img" or "scan.img.gz": the samples of a pair do not say what they are.
@@ -63,6 +66,16 @@ std::string header_of_image(const std::string& path) {
   if (!capitals && !stem.ends_with(".img")) return {};
   stem.resize(stem.size() - 4);
   return stem + (capitals ? ".HDR" : ".hdr");
+}
+
+// Where a file of samples has a header beside it, names that one.
+std::string header_beside(const std::string& path) {
+  const std::string stem = path.substr(0, path.find_last_of('.'));
+  for (const std::string_view ending : {".mhd", ".nhdr", ".MHD", ".NHDR"}) {
+    const std::string header = stem + std::string(ending);
+    if (header != path && system::facts_of_file(header)) return "; open its header instead, " + header;
+  }
+  return {};
 }
 
 // Opens formats without a magic, or with one that other data may begin with by chance.
@@ -81,14 +94,14 @@ OpenedVolume open_by_name(const FilePtr& file, std::string_view head, const Open
   const std::string header = header_of_image(path);
   if (!header.empty()) {
     check_external(options, path, header);
-    const FilePtr described = unpacked(open_file(header));
+    const FilePtr described = unpacked(open_part(path, "its header in", header));
     const bool nifti = is_nifti(described->head(kNiftiHeadBytes));
     OpenedVolume volume = nifti ? open_nifti(described, options) : open_analyze(described, options);
     volume.info.path = path;
     volume.info.data_files = {header};
     return volume;
   }
-  bad_input(path, format_of_name(name), what_else(head, path));
+  bad_input(path, format_of_name(name), what_else(head, path) + header_beside(path));
 }
 
 OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
@@ -144,7 +157,7 @@ bool is_one_of(std::string_view format, std::initializer_list<std::string_view> 
 // Refuses options that choose among parts which the format does not have. Readers of formats that have such parts
 // refuse a part that is not in the file.
 void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
-  const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5"});
+  const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5", "precomputed"});
   // The files of VTK and NumPy have arrays with names, and no levels.
   const bool named = array || is_one_of(info.format, {"vti", "vtr", "vtk", "npz"});
   if ((!named && !options.dataset.empty()) || (!array && options.level)) {
@@ -193,17 +206,31 @@ OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
   return volume;
 }
 
-}  // namespace
-
-std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
-  const StandardFloats floats;
-  OpenedVolume volume = open_any(path, options);
+std::unique_ptr<SliceSource> source_of(OpenedVolume volume, const OpenOptions& options) {
   refuse_array_options(volume.info, options);
   if (!volume.unit_conflict.empty() && !options.spacing) {
     bad_input(volume.info.path, "units of length that can be made one, or --spacing", volume.unit_conflict);
   }
   apply_overrides(volume.info, options);
   return std::make_unique<StreamSource>(std::move(volume));
+}
+
+}  // namespace
+
+std::unique_ptr<SliceSource> open_volume(const std::string& path, const OpenOptions& options) {
+  const StandardFloats floats;
+  if (is_url(path)) return open_remote_volume(path, options, remote_options());
+  return source_of(open_any(path, options), options);
+}
+
+std::unique_ptr<SliceSource> open_remote_volume(const std::string& url, const OpenOptions& options,
+                                                const RemoteOptions& remote) {
+  const StandardFloats floats;
+  const std::string shown = shown_url(url);
+  if (!is_url(url)) bad_input(url, "a URL that begins with http://, https://, s3:// or gs://", "another path");
+  refuse_series(shown, options.series);
+  if (options.raw) bad_input(shown, "a file, which --raw describes", "a URL");
+  return source_of(open_array(open_remote_store(url, remote), shown, options), options);
 }
 
 }  // namespace isoweave

@@ -13,34 +13,32 @@
 #include "parallel/size.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
+#include "volume/smaller.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 namespace {
 
-// Moves the origin to the place of sample `at`, or to a place between samples.
-void move_origin(Geometry& geometry, const std::array<double, 3>& at) {
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      geometry.origin[row] += geometry.direction[3 * row + axis] * (geometry.spacing[axis] * at[axis]);
-    }
-  }
-}
+class SamplesOfBox final : public NeededSamples {
+ public:
+  explicit SamplesOfBox(const Region& box) : box_(box) {}
 
-void check_range(const VolumeInfo& info, std::int64_t first, std::int64_t count) {
-  if (first < 0 || count < 0 || first > info.dims[2] - count) {
-    throw std::invalid_argument(info.path + ": slices " + std::to_string(first) + " to " +
-                                std::to_string(first + count) + " are not all in the volume");
+  bool any_in(const Region& box) const override {
+    bool meets = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      meets = meets && box.first[axis] < box_.end[axis] && box.end[axis] > box_.first[axis];
+    }
+    return meets;
   }
-}
+
+ private:
+  Region box_;
+};
 
 class CroppedVolume final : public RowSource {
  public:
   CroppedVolume(std::unique_ptr<SliceSource> whole, const Region& region)
-      : whole_(std::move(whole)),
-        parts_(whole_->reads_parts_of_rows() ? dynamic_cast<RowSource*>(whole_.get()) : nullptr),
-        reader_(*whole_),
-        info_(whole_->info()),
-        region_(region) {
+      : whole_(std::move(whole)), reader_(*whole_), info_(whole_->info()), region_(region), needed_(region) {
     std::array<double, 3> first{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (region.first[axis] < 0 || region.first[axis] >= region.end[axis] || region.end[axis] > info_.dims[axis]) {
@@ -52,13 +50,18 @@ class CroppedVolume final : public RowSource {
       first[axis] = static_cast<double>(region.first[axis]);
     }
     move_origin(info_.geometry, first);
+    auto* const rows = dynamic_cast<RowSource*>(whole_.get());
+    if (rows == nullptr) return;
+    if (rows->gaps() != nullptr) rows->gaps()->needed = &needed_;
+    narrowed_ = rows->narrow(region);
+    if (narrowed_ || rows->reads_parts_of_rows()) parts_ = rows;
   }
 
   const VolumeInfo& info() const override { return info_; }
   bool skips() const override { return whole_->skips(); }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    check_range(info_, first, count);
+    check_slice_range(info_, 0, first, count, out.size());
     for (std::int64_t k = first; k < first + count; ++k) {
       read_rows(k, 0, info_.dims[1], out.subspan(static_cast<std::size_t>(k - first) * info_.slice_bytes()));
     }
@@ -69,7 +72,18 @@ class CroppedVolume final : public RowSource {
                            : copy_rows(k, first, count, out);
   }
 
-  bool reads_parts_of_rows() const override { return parts_ != nullptr; }
+  bool reads_parts_of_rows() const override { return parts_ != nullptr && !narrowed_; }
+  bool reads_boxes() const override { return parts_ != nullptr; }
+
+  bool narrow(const Region& box) override {
+    if (!narrowed_) return false;
+    Region inner = box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      inner.first[axis] += region_.first[axis];
+      inner.end[axis] += region_.first[axis];
+    }
+    return parts_->narrow(inner);
+  }
 
   void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override {
     parts_->read_part_of_row(region_.first[2] + k, region_.first[1] + j, region_.first[0] + i, out);
@@ -80,12 +94,13 @@ class CroppedVolume final : public RowSource {
 
  private:
   static constexpr std::size_t kBlockBytes = 1 << 20;
-  static constexpr std::size_t kLongRow = 1 << 14;  // bytes: parts of shorter rows take as long as the rows
 
   std::size_t sample() const { return sample_bytes(info_.type); }
   std::size_t row() const { return to_size(info_.dims[0], sample()); }
   std::size_t whole_row() const { return to_size(whole_->info().dims[0], sample()); }
-  bool reads_parts() const { return parts_ != nullptr && whole_row() >= kLongRow && row() <= whole_row() / 2; }
+  bool reads_parts() const {
+    return narrowed_ || (parts_ != nullptr && whole_row() >= parts_->long_row() && row() <= whole_row() / 2);
+  }
 
   void copy_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) const {
     const std::int64_t slice = (region_.first[2] + k) * whole_->info().dims[1];
@@ -115,26 +130,24 @@ class CroppedVolume final : public RowSource {
   }
 
   std::unique_ptr<SliceSource> whole_;
-  RowSource* parts_;  // the same, where parts of its rows can be read
+  RowSource* parts_ = nullptr;  // the same, where parts of its rows can be read
+  bool narrowed_ = false;       // they alone can be
   RowReader reader_;
   VolumeInfo info_;
   Region region_;
+  SamplesOfBox needed_;           // of the whole: chunks beside the box are not read
   std::vector<std::byte> block_;  // rows of the whole
 };
 
 bool means_are_float32(SampleType type) { return sample_bytes(type) <= 2 || type == SampleType::kFloat32; }
 
-class SmallerVolume final : public SliceSource {
+class SmallerVolume final : public BufferedSource {
  public:
   SmallerVolume(std::unique_ptr<SliceSource> whole, std::int64_t step)
-      : whole_(std::move(whole)), info_(whole_->info()), step_(step), slice_(info_.slice_bytes()) {
-    if (step < 1) throw std::invalid_argument("step: expected at least 1, found " + std::to_string(step));
-    const double middle = static_cast<double>(step - 1) / 2;
-    move_origin(info_.geometry, {middle, middle, middle});
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      info_.dims[axis] = (info_.dims[axis] - 1) / step + 1;
-      info_.geometry.spacing[axis] *= static_cast<double>(step);
-    }
+      : whole_(std::move(whole)),
+        info_(smaller_info(whole_->info(), step)),
+        step_(step),
+        slice_(whole_->info().slice_bytes()) {
     info_.type = means_are_float32(info_.type) ? SampleType::kFloat32 : SampleType::kFloat64;
     sums_.resize(to_size(info_.slice_samples()));
     counts_.resize(sums_.size());
@@ -143,9 +156,13 @@ class SmallerVolume final : public SliceSource {
 
   const VolumeInfo& info() const override { return info_; }
   bool skips() const override { return whole_->skips(); }
+  std::uint64_t held_bytes() const override {
+    return held_by_slices(*whole_) + slice_.size() + (sums_.size() + small_sums_.size()) * sizeof(double) +
+           counts_.size() * sizeof(std::uint32_t);
+  }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    check_range(info_, first, count);
+    check_slice_range(info_, 0, first, count, out.size());
     for (std::int64_t k = first; k < first + count; ++k) {
       add_slices(k * step_, std::min((k + 1) * step_, whole_->info().dims[2]));
       std::byte* const slice = out.data() + static_cast<std::size_t>(k - first) * info_.slice_bytes();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "isoweave/error.hpp"
+
 namespace isoweave {
 
 void RowSource::read_part_of_row(std::int64_t, std::int64_t, std::int64_t, std::span<std::byte>) {
@@ -26,13 +28,20 @@ void RowReader::read(std::int64_t k, std::int64_t first, std::int64_t count, std
 }
 
 std::uint64_t held_by_rows(const SliceSource& volume) {
-  const auto* rows = dynamic_cast<const RowSource*>(&volume);
-  return rows != nullptr ? rows->held_bytes() : volume.held().empty() ? volume.info().slice_bytes() : 0;
+  const bool holds_slice = dynamic_cast<const RowSource*>(&volume) == nullptr && volume.held().empty();
+  return held_by_slices(volume) + (holds_slice ? volume.info().slice_bytes() : 0);
 }
 
 std::uint64_t held_by_slices(const SliceSource& volume) {
-  const auto* rows = dynamic_cast<const RowSource*>(&volume);
-  return rows != nullptr ? rows->held_bytes() : 0;
+  const auto* buffered = dynamic_cast<const BufferedSource*>(&volume);
+  return buffered != nullptr ? buffered->held_bytes() : 0;
+}
+
+void require_skipping(const SliceSource& volume) {
+  if (volume.skips()) return;
+  throw BadInput(volume.info().path +
+                 ": expected a volume that can be read anywhere, for blocks, found one that has "
+                 "to be read from its beginning: unpack it first");
 }
 
 std::optional<SampleBytes> constant_sample(const SliceSource& volume) {

@@ -1,4 +1,5 @@
-// Sources that can hand out rows of slices, as a slice may be larger than the memory there is.
+// Sources that tell what they hold, and that can hand out rows of slices, as a slice may be larger than the memory
+// there is.
 #pragma once
 
 #include <array>
@@ -17,7 +18,14 @@ namespace isoweave {
 // One sample as it is in memory; those of fewer bytes leave the rest alone.
 using SampleBytes = std::array<std::byte, 8>;
 
-class RowSource : public SliceSource {
+class BufferedSource : public SliceSource {
+ public:
+  // The most bytes that reading holds beside the memory it is given: a band of slices, a strip, a decoded slice. A
+  // source of another source adds what that one holds.
+  virtual std::uint64_t held_bytes() const { return 0; }
+};
+
+class RowSource : public BufferedSource {
  public:
   // Reads `count` rows of slice k, from row `first` on. As read() does for slices, it goes forward only: once a row of
   // a slice has been read, the slices before it are behind.
@@ -27,8 +35,12 @@ class RowSource : public SliceSource {
   // reads_parts_of_rows() says so.
   virtual void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out);
 
-  // The most bytes that reading holds beside the memory it is given: a band of slices, a strip, a decoded slice.
-  virtual std::uint64_t held_bytes() const { return 0; }
+  // Says that no samples beside a box will be read, before any is. Returns whether the source holds no others then, and
+  // has to be read by parts of rows.
+  virtual bool narrow(const Region&) { return false; }
+
+  // The bytes of a row from which on a part of it is read faster than all of it, where parts can be read.
+  virtual std::size_t long_row() const { return std::size_t{1} << 14; }
 
   // The value of every sample, where it is known without reading any.
   virtual std::optional<SampleBytes> constant() const { return std::nullopt; }
@@ -57,11 +69,14 @@ class RowReader {
   std::int64_t held_ = -1;  // the slice that is held
 };
 
-// The bytes that a source holds (RowSource::held_bytes), and those that a RowReader adds.
+// The bytes that a source holds (BufferedSource::held_bytes), and those that a RowReader adds.
 std::uint64_t held_by_rows(const SliceSource& volume);
 
-// The bytes that a source holds (RowSource::held_bytes); 0 for sources without rows.
+// The bytes that a source holds (BufferedSource::held_bytes).
 std::uint64_t held_by_slices(const SliceSource& volume);
+
+// Refuses a volume that has to be read from its beginning, for blocks. Throws BadInput.
+void require_skipping(const SliceSource& volume);
 
 // The value of every sample (RowSource::constant); nothing for sources without rows.
 std::optional<SampleBytes> constant_sample(const SliceSource& volume);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "parallel/size.hpp"
+#include "volume/row_source.hpp"
 #include "volume/threshold.hpp"
 #include "volume/volume_sizes.hpp"
 
@@ -36,13 +37,17 @@ void add_along(const float* sums, std::size_t size, const Finish& finish) {
 }
 
 // A smoothed mask that owns its source.
-class OwningSmoothedMask final : public SliceSource {
+class OwningSmoothedMask final : public BufferedSource {
  public:
   OwningSmoothedMask(std::unique_ptr<SliceSource> source, const SmoothedMaskOptions& options, int threads)
-      : source_(std::move(source)), executor_(threads), field_(*source_, options, executor_) {}
+      : source_(std::move(source)),
+        executor_(threads),
+        field_(*source_, options, executor_),
+        field_bytes_(SmoothedMask::memory(source_->info(), options.passes)) {}
 
   const VolumeInfo& info() const override { return field_.info(); }
   bool skips() const override { return field_.skips(); }
+  std::uint64_t held_bytes() const override { return held_by_slices(*source_) + field_bytes_; }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     field_.read(first, count, out);
   }
@@ -51,6 +56,7 @@ class OwningSmoothedMask final : public SliceSource {
   std::unique_ptr<SliceSource> source_;
   Executor executor_;
   SmoothedMask field_;
+  std::uint64_t field_bytes_;
 };
 
 }  // namespace

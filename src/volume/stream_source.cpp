@@ -84,6 +84,14 @@ void StreamSource::read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t
   read_from(place, out);
 }
 
+bool StreamSource::narrow(const Region& box) {
+  if (volume_.bands == nullptr) return false;
+  volume_.held_bytes -= volume_.bands->held_bytes();
+  volume_.bands->narrow(box);
+  volume_.held_bytes += volume_.bands->held_bytes();
+  return true;
+}
+
 void StreamSource::read_from(std::uint64_t place, std::span<std::byte> wanted) {
   const VolumeInfo& info = volume_.info;
   const std::uint64_t all = static_cast<std::uint64_t>(info.dims[2]) * info.slice_bytes();

@@ -10,6 +10,7 @@
 #include "files/byte_stream.hpp"
 #include "files/length_units.hpp"
 #include "isoweave/volume.hpp"
+#include "volume/band_stream.hpp"
 #include "volume/row_source.hpp"
 #include "volume/volume_sizes.hpp"
 
@@ -24,6 +25,7 @@ struct OpenedVolume {
   FilePtr input;  // what the user named, open as long as the volume: what came out of a pipe is kept with it
   std::uint64_t held_bytes = 0;           // by `samples`, at most: what must be decoded as a whole
   std::shared_ptr<Gaps> gaps{};           // of `samples`, where they are chunks
+  BandStream* bands = nullptr;            // in `samples`, where they can hold a box alone
   std::optional<SampleBytes> constant{};  // as stored: every sample is this one, and none is read
 };
 
@@ -37,6 +39,8 @@ class StreamSource final : public RowSource {
   void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override;
   bool skips() const override { return volume_.samples->skips(); }
   bool reads_parts_of_rows() const override { return skips() && volume_.gaps == nullptr && volume_.held_bytes == 0; }
+  bool reads_boxes() const override { return reads_parts_of_rows() || volume_.bands != nullptr; }
+  bool narrow(const Region& box) override;
   std::uint64_t held_bytes() const override { return volume_.held_bytes; }
   std::optional<SampleBytes> constant() const override;
   Gaps* gaps() override { return volume_.gaps.get(); }

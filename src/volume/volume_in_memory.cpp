@@ -4,6 +4,7 @@
 #include <string>
 
 #include "isoweave/volume.hpp"
+#include "volume/volume_sizes.hpp"
 
 namespace isoweave {
 namespace {
@@ -16,10 +17,7 @@ class HeldVolume final : public SliceSource {
   std::span<const std::byte> held() const override { return samples_; }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
-    if (first < next_ || count < 0 || count > info_.dims[2] - first) {
-      throw std::invalid_argument(info_.path + ": slices " + std::to_string(first) + " to " +
-                                  std::to_string(first + count) + " are behind or outside the volume");
-    }
+    check_slice_range(info_, next_, first, count, out.size());
     const std::size_t slice = info_.slice_bytes();
     std::memcpy(out.data(), samples_.data() + static_cast<std::size_t>(first) * slice,
                 static_cast<std::size_t>(count) * slice);

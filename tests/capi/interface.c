@@ -105,7 +105,7 @@ static void test_digests(const float* samples, const char* program) {
   Source source = {samples, -1};
   Sink* kept = calloc(1, sizeof *kept);
   const iw_volume_info info = info_of_samples();
-  const iw_source slices = {sizeof slices, &source, read_slices};
+  const iw_source slices = {sizeof slices, &source, read_slices, 0};
   const iw_sink pieces = {sizeof pieces, kept, append, finish};
   iw_volume* streamed = NULL;
   EXPECT(is(iw_volume_from_source(&info, &slices, &streamed, &result), IW_DONE));
@@ -188,6 +188,7 @@ static void test_volumes(const float* samples) {
   EXPECT(slice[28 * 7 + 11] == samples[(9 * SIDE + 10) * SIDE + 13]);
   EXPECT(is(iw_read_slices(part, 5, 1, slice, sizeof slice - 1, &result), IW_BAD_ARGUMENT));
   EXPECT(is(iw_read_slices(part, 29, 1, slice, sizeof slice, &result), IW_BAD_ARGUMENT));
+  EXPECT(is(iw_read_slices(part, INT64_MAX, INT64_MAX, slice, sizeof slice, &result), IW_BAD_ARGUMENT));
 
   iw_volume* half = NULL;
   EXPECT(is(iw_downsample_volume(part, 2, &half, &result), IW_DONE));
@@ -292,13 +293,14 @@ static void test_meshes(const float* samples) {
 static void test_stops(const float* samples) {
   const iw_volume_info info = info_of_samples();
   Source source = {samples, 20};
-  const iw_source slices = {sizeof slices, &source, read_slices};
+  const iw_source slices = {sizeof slices, &source, read_slices, 0};
   iw_volume* volume = NULL;
   EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_DONE));
   iw_output file = {.struct_size = sizeof file};
   file.path = "c_stopped.ply";
   remove(file.path);  // what a test that failed left
   EXPECT(is(iw_mesh_volume(volume, NULL, NULL, &file, 1, &result), IW_STOPPED));
+  EXPECT(strstr(result.message, ": stopped by its source (7)") != NULL);
 
   source.stop_at = -1;
   int calls = 0;
@@ -325,6 +327,84 @@ static void test_stops(const float* samples) {
   EXPECT(is(iw_histogram(volume, stop, &result), IW_STOPPED));
   EXPECT(!exists("c_stopped.ply"));
   iw_stop_free(stop);
+  iw_free_volume(volume);
+}
+
+// A cap on memory leaves room for what a source holds, and nothing is read where there is none.
+static void test_held_bytes(const float* samples) {
+  const iw_volume_info info = info_of_samples();
+  Source source = {samples, -1};
+  iw_source slices = {sizeof slices, &source, read_slices, 0};
+  iw_run capped = {.struct_size = sizeof capped};
+  capped.memory = 1000000000;
+  iw_output none = {.struct_size = sizeof none};
+  iw_volume* volume = NULL;
+  EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_DONE));
+  EXPECT(is(iw_mesh_volume(volume, NULL, &capped, &none, 1, &result), IW_DONE));
+  iw_free_mesh(none.mesh);
+  none.mesh = NULL;
+  iw_free_volume(volume);
+
+  slices.held_bytes = 1000000000;
+  source.stop_at = 0;
+  EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_DONE));
+  EXPECT(is(iw_mesh_volume(volume, NULL, &capped, &none, 1, &result), IW_OVER_MEMORY));
+  iw_free_volume(volume);
+  slices.held_bytes = UINT64_MAX;
+  EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_BAD_ARGUMENT));
+
+  // A program that was built before the member was there.
+  source.stop_at = -1;
+  slices.struct_size = offsetof(iw_source, held_bytes);
+  EXPECT(is(iw_volume_from_source(&info, &slices, &volume, &result), IW_DONE));
+  EXPECT(is(iw_mesh_volume(volume, NULL, &capped, &none, 1, &result), IW_DONE));
+  iw_free_mesh(none.mesh);
+  iw_free_volume(volume);
+
+  // Samples that 63 bits can count, and bytes of them that they cannot.
+  iw_volume_info huge = info;
+  huge.dims[0] = INT64_C(1) << 61;
+  huge.dims[1] = huge.dims[2] = 1;
+  huge.type = IW_FLOAT64;
+  EXPECT(is(iw_volume_from_source(&huge, &slices, &volume, &result), IW_BAD_ARGUMENT));
+}
+
+// No struct ends with padding: a member that a later header has there would be read from programs that never set it.
+// `last` is the last member.
+#define EXPECT_FULL(type, last) EXPECT(sizeof(type) == offsetof(type, last) + sizeof(((type*)NULL)->last))
+
+static void test_structs(const float* samples) {
+  EXPECT_FULL(iw_result, report);
+  EXPECT_FULL(iw_volume_info, path);
+  EXPECT_FULL(iw_open_options, reserved);
+  EXPECT_FULL(iw_source, held_bytes);
+  EXPECT_FULL(iw_mesh_arrays, space);
+  EXPECT_FULL(iw_compare_options, distances);
+  EXPECT_FULL(iw_simplify_options, reserved);
+  EXPECT_FULL(iw_mesh_options, reserved);
+  EXPECT_FULL(iw_progress, bytes);
+  EXPECT_FULL(iw_run, reserved);
+  EXPECT_FULL(iw_piece, offset);
+  EXPECT_FULL(iw_sink, finish);
+  EXPECT_FULL(iw_output, iso);
+
+  iw_volume *volume = volume_of(samples), *other = NULL;
+  iw_output memory = {.struct_size = sizeof memory};
+  iw_open_options open = {.struct_size = sizeof open};
+  iw_simplify_options simplify = within("0");
+  iw_mesh_options options = {.struct_size = sizeof options};
+  iw_run run = {.struct_size = sizeof run};
+  open.reserved = simplify.reserved = options.reserved = run.reserved = 1;
+  EXPECT(is(iw_open_volume("c_missing.nrrd", &open, &other, &result), IW_BAD_ARGUMENT));
+  EXPECT(strcmp(result.message, "reserved: expected 0, found 1") == 0);
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  EXPECT(is(iw_mesh_volume(volume, NULL, &run, &memory, 1, &result), IW_BAD_ARGUMENT));
+  options.reserved = 0;
+  options.simplify = &simplify;
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  simplify.reserved = 0;
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_DONE));
+  iw_free_mesh(memory.mesh);
   iw_free_volume(volume);
 }
 
@@ -405,7 +485,9 @@ int main(int count, char** arguments) {
   test_isos(samples);
   test_meshes(samples);
   test_stops(samples);
+  test_held_bytes(samples);
   test_checkpoints(samples);
+  test_structs(samples);
   test_faults(samples);
   iw_result_clear(&result);
   free(samples);

@@ -83,7 +83,7 @@ void test_checkpoints(const float* samples) {
   run.slab = 4;
   run.checkpoint = "c_run";
   EXPECT(is(iw_mesh_volume(volume, &options, &run, outputs, 2, &result), IW_BAD_ARGUMENT));  // no files
-  EXPECT(strstr(result.message, "files") != NULL);
+  EXPECT(strstr(result.message, "files") != NULL && !exists("c_run"));
   const char* const paths[2] = {"c_saved0.ply", "c_saved1.ply"};
   for (int n = 0; n < 2; ++n) {
     outputs[n].path = paths[n];

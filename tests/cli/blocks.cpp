@@ -61,6 +61,18 @@ TEST(CliBlocks, GiveTheMeshOfTheSweepAndSayWhatTheyHandedOn) {
   EXPECT_EQ(listing(folder), (Words{"out.json", "out.ply"}));
 }
 
+TEST(CliBlocks, StopAtANumberAsSlabsDo) {
+  const files::Folder folder;
+  for (const Words& stop : {Words{"--triangles", "1000"}, Words{"--ratio", "10%"}}) {
+    const auto digest = [&](const Words& more) -> std::string {
+      const Result meshed = run(folder.path(), with(mesh(stop), more));
+      EXPECT_EQ(meshed.code, 0) << meshed.err;
+      return report_in(folder).at("digest");
+    };
+    EXPECT_EQ(digest({"--blocks", "24"}), digest({}));
+  }
+}
+
 TEST(CliBlocks, TakeOverWhereSlabsDoNotFit) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer takes memory of its own";
   const files::Folder folder;
@@ -72,14 +84,18 @@ TEST(CliBlocks, TakeOverWhereSlabsDoNotFit) {
   EXPECT_EQ(blocks.code, 0) << blocks.err;
   EXPECT_NE(blocks.err.find("--memory 80M: too little for slabs, so blocks of "), std::string::npos) << blocks.err;
   EXPECT_LT(blocks.peak_bytes, 80'000'000U);
+  for (const Words& stop : {Words{"--triangles", "1000"}, Words{"--ratio", "1%"}}) {
+    const Result few = run(folder.path(), with(with(mesh, stop), {"--memory", "80M"}));
+    EXPECT_EQ(few.code, 0) << few.err;
+    EXPECT_NE(few.err.find("so blocks of "), std::string::npos) << few.err;
+    EXPECT_LT(few.peak_bytes, 80'000'000U);
+  }
   EXPECT_EQ(listing(folder), (Words{"a.ply", "a.raw"}));
 }
 
 TEST(CliBlocks, AreRefusedWithWhatTheyDoNotHave) {
   const files::Folder folder;
   expect_failed(run(folder.path(), mesh({"--blocks", "7"})), 2, "--blocks");
-  expect_failed(run(folder.path(), mesh({"--blocks", "24", "--triangles", "100"})), 2,
-                "--blocks: expected a run without --triangles");
   expect_failed(run(folder.path(), mesh({"--blocks", "24", "--extractor", "dual"})), 2,
                 "--blocks: expected a run without --extractor dual");
   expect_failed(run(folder.path(), mesh({"--blocks", "24", "--max-distance", "1vox"})), 2, "--max-distance");

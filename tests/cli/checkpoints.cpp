@@ -239,8 +239,7 @@ TEST(CliCheckpoint, AFolderBelongsToOneProcess) {
         << refused.err;
   }
   EXPECT_EQ(digest(folder / "out.json"), undisturbed_digest());
-  EXPECT_EQ(listing(folder), (std::vector<std::string>{"out.json", "out.ply", "run"}));
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
+  EXPECT_EQ(listing(folder), (std::vector<std::string>{"out.json", "out.ply"}));
 }
 
 TEST(CliCheckpoint, DamagedPartsAreBadInput) {
@@ -282,6 +281,21 @@ TEST(CliCheckpoint, WrongUseIsRefused) {
                 .code,
             130);
   expect_refused(folder, mesh({"--checkpoint", "run"}), 4, "holds an unfinished run");
+}
+
+// Folders of states are made before outputs are opened. Those that were there stay.
+TEST(CliCheckpoint, RefusedOutputsLeaveNoFolder) {
+  const files::Folder folder;
+  std::filesystem::create_directories(folder / "old/empty");
+  const auto into = [](const char* states, const char* output) {
+    return std::vector<std::string>{"mesh",  kVolume,  "-o",        output,         "--iso",
+                                    "127.5", "--lods", "1vox,2vox", "--checkpoint", states};
+  };
+  expect_refused(folder, into("run", "none/out.ply"), 4, "none/out_lod0.ply");
+  expect_refused(folder, into("old/new/run", "none/out.ply"), 4, "none/out_lod0.ply");
+  expect_refused(folder, into("old/empty/", "none/out.ply"), 4, "none/out_lod0.ply");
+  EXPECT_EQ(listing(folder / "old"), std::vector<std::string>{"empty"});
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "old/empty"));
 }
 
 }  // namespace

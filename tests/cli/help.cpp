@@ -94,6 +94,8 @@ TEST(CliUsage, ErrorsSayWhatToDo) {
                "unknown option --erorr, did you mean --error?; see isoweave mesh --help");
   expect_usage({"info", "a.nii", "--jsn"}, "unknown option --jsn, did you mean --json?; see isoweave info --help");
   expect_usage({"info", "a.nii", "--entirely-else"}, "unknown option --entirely-else; see isoweave info --help");
+  expect_usage({"info", "a.nii", "-j"}, "unknown option -j; see isoweave info --help");
+  expect_usage({"info", "a.nii", "-5"}, "'-5' is one argument too many");
   expect_usage({"mehs", "a.nii"}, "did you mean 'mesh'");
   expect_usage({"mesh", "a.tif", "b.tif", "c.tif", "--iso", "1", "-o", "a.ply"},
                "found 2 files more than one: put a pattern in quotes, such as 'slices/*.tif'");

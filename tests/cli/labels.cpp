@@ -1,7 +1,9 @@
 // mesh --labels and --smooth: a file for each label, like those of runs on masks; and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -100,6 +102,51 @@ TEST_F(CliLabels, AreFilesLikeThoseOfRunsOnMasks) {
   }
 }
 
+// The most frequent sample of each block of 2 x 2 x 2, which all end within the map; of several the first.
+std::string thinned_bytes() {
+  const std::string map = map_bytes();
+  std::string bytes;
+  for (std::size_t k = 0; k < 20; k += 2) {
+    for (std::size_t j = 0; j < 22; j += 2) {
+      for (std::size_t i = 0; i < 24; i += 2) {
+        std::vector<char> block;
+        for (std::size_t n = 0; n < 8; ++n)
+          block.push_back(map[(k + n / 4) * 22 * 24 + (j + n / 2 % 2) * 24 + i + n % 2]);
+        char best = block[0];
+        for (const char c : block) {
+          if (std::ranges::count(block, c) > std::ranges::count(block, best)) best = c;
+        }
+        bytes += best;
+      }
+    }
+  }
+  return bytes;
+}
+
+TEST_F(CliLabels, AreThinnedByTheMostFrequentOfEachBlock) {
+  const json report = report_of(folder_, mesh({"--labels", "all", "--step", "2", "--spacing", "1,1,1"}));
+  files::write_bytes(folder_ / "small_12x11x10_uint8.raw", thinned_bytes());
+  const json direct = report_of(folder_, {"mesh", "small_12x11x10_uint8.raw", "-o", "small.ply", "--labels", "all",
+                                          "--spacing", "2,2,2", "--origin", "0.5,0.5,0.5"});
+  ASSERT_EQ(report.at("labels").size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    for (const char* key : {"label", "samples", "triangles", "digest"}) {
+      EXPECT_EQ(report.at("labels").at(n).at(key), direct.at("labels").at(n).at(key)) << key;
+    }
+  }
+  EXPECT_EQ(report.at("input").at("spacing"), json({2.0, 2.0, 2.0}));
+  EXPECT_EQ(report.at("input").at("type"), "uint8");
+}
+
+TEST_F(CliLabels, AreToldOfAlsoWhereTheMapIsMadeSmaller) {
+  const std::string hint = "--labels all";
+  EXPECT_NE(run(folder_.path(), {"info", kMap, "--step", "2"}).out.find(hint), std::string::npos);
+  const Result made = run(folder_.path(), {"mesh", kMap, "-o", "a.ply", "--iso", "auto", "--step", "2"});
+  EXPECT_NE(made.err.find("looks like a mask or label map: " + hint), std::string::npos) << made.err;
+  ASSERT_EQ(run(folder_.path(), {"generate", "smooth", "--size", "32", "--type", "uint8", "-o", "grey.nrrd"}).code, 0);
+  EXPECT_EQ(run(folder_.path(), {"info", "grey.nrrd", "--step", "2"}).out.find(hint), std::string::npos);
+}
+
 TEST_F(CliLabels, OnlyThoseNamedInTheirOrder) {
   const json report = report_of(folder_, mesh({"--labels", "200,3"}));
   ASSERT_EQ(report.at("labels").size(), 2U);
@@ -136,7 +183,7 @@ TEST_F(CliLabels, WrongUseIsRefused) {
     expect_refused(folder_, mesh({"--labels=" + labels}), 2, "--labels");
   }
   const std::vector<std::vector<std::string>> of_the_program{
-      {"--iso", "0.5"}, {"--inside", "below"}, {"--step", "2"}, {"--dry-run"}, {"--html", "a.html"}, {"--every", "9s"}};
+      {"--iso", "0.5"}, {"--inside", "below"}, {"--dry-run"}, {"--html", "a.html"}, {"--every", "9s"}};
   for (const std::vector<std::string>& more : of_the_program) {
     expect_refused(folder_, mesh(joined({"--labels", "all"}, more)), 2, "--labels");
   }
@@ -163,6 +210,30 @@ TEST_F(CliLabels, WhatTakesOneSurfaceIsRefused) {
   expect_refused(folder_, mesh({"--labels", "all", "--watch"}), 2,
                  "--labels: expected a run without --watch, which takes one surface");
 #endif
+}
+
+// The slab is larger than a block, and the balls are not.
+TEST_F(CliLabels, InBlocksAreThoseOfTheSweep) {
+  for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{{}, {"--smooth"}, {"--open"}}) {
+    const json sweep = report_of(folder_, joined(mesh({"--labels", "all"}), how));
+    for (const char* const size : {"18", "100"}) {
+      const json blocks = report_of(folder_, joined(mesh({"--labels", "all", "--blocks", size}), how));
+      EXPECT_EQ(blocks.at("digest"), sweep.at("digest"));
+      ASSERT_EQ(blocks.at("labels").size(), 3U);
+      for (std::size_t n = 0; n < 3; ++n) {
+        EXPECT_EQ(blocks["labels"][n].at("label"), sweep["labels"][n].at("label"));
+        EXPECT_EQ(blocks["labels"][n].at("digest"), sweep["labels"][n].at("digest"));
+        EXPECT_EQ(blocks["labels"][n].at("samples"), sweep["labels"][n].at("samples"));
+      }
+      EXPECT_TRUE(blocks.at("input").at("min").is_null()) << "not all samples are looked at";
+    }
+  }
+  expect_refused(folder_, mesh({"--labels", "all", "--blocks", "7"}), 2, "--blocks");
+  ASSERT_EQ(std::system(("gzip -k '" + folder_ / kMap + "'").c_str()), 0);
+  expect_refused(folder_,
+                 {"mesh", std::string(kMap) + ".gz", "--raw", "24x22x20:uint8", "-o", "b.ply", "--labels", "all",
+                  "--blocks", "16"},
+                 3, "expected a volume that can be read anywhere");
 }
 
 TEST_F(CliLabels, MapsThatAreNoneAreRefused) {

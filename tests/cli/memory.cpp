@@ -49,7 +49,7 @@ TEST(CliMemory, ADryRunSaysWhatItWouldTakeAndDoesNothing) {
 
 TEST(CliMemory, EveryRunHasWhatWasPredictedBesideWhatItTook) {
   const files::Folder folder;
-  const Result result = run(folder.path(), mesh({}));
+  const Result result = run(folder.path(), mesh({"--closed"}));
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(std::ranges::count(result.err, '\n'), 2) << "what was predicted is in the report: " << result.err;
   const Json json = report(folder);
@@ -177,13 +177,13 @@ TEST(CliMemory, ThePeakOfTheReportIsNotThatOfTheProcessThatStartedIt) {
   EXPECT_LT(report.at("memory").at("peak_bytes"), 200'000'000);
 }
 
-// Slices of 256 MB, of which none is held.
+// Slices of 256 MB, of which none is held. Blocks do for them.
 TEST(CliMemory, SlicesThatAreLargerThanTheCapAreRefusedAndNotHeld) {
   if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
   const files::Folder folder;
   const std::string volume = "generate:sphere:16000x16000x4:uint8";
-  const Result refused =
-      run(folder.path(), {"mesh", volume, "-o", "out.ply", "--iso", "127.5", "--error", "0", "--memory", "150M"});
+  const Result refused = run(folder.path(), {"mesh", volume, "-o", "out.ply", "--iso", "127.5", "--error", "0",
+                                             "--memory", "150M", "--blocks", "off"});
   EXPECT_GT(named_cap(refused), 900U);
   EXPECT_LE(refused.peak_bytes, 150'000'000U);
   const Result info = run(folder.path(), {"info", volume});
@@ -207,19 +207,22 @@ TEST(CliMemory, WhatTheReaderHoldsIsRefusedBeforeItIsRead) {
 }
 
 // 10^12 samples, none of them stored.
-TEST(CliMemory, AnArrayWithoutChunksIsAnsweredAtOnce) {
-  const files::Folder folder;
+/// An array of 10000^3 bytes of 7, of which no chunk was written.
+void write_array_without_chunks(const files::Folder& folder) {
   const std::string zarr = R"({"zarr_format":2,"shape":[10000,10000,10000],"chunks":[1,100,100],"dtype":"|u1",)"
                            R"("order":"C","fill_value":7,"compressor":null,"filters":null})";
   std::filesystem::create_directory(folder / "a.zarr");
   files::write_bytes(folder / "a.zarr/.zarray", zarr);
+}
+
+TEST(CliMemory, AnArrayWithoutChunksIsAnsweredAtOnce) {
+  const files::Folder folder;
+  write_array_without_chunks(folder);
   const Result info = run(folder.path(), {"info", "a.zarr", "--json"});
   ASSERT_EQ(info.code, 0) << info.err;
   EXPECT_EQ(Json::parse(info.out).at("input").at("max"), 7);
   const Result forecast = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--dry-run"});
   EXPECT_EQ(forecast.code, 0) << forecast.err;
-  const Result refused = run(folder.path(), {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--memory", "100M"});
-  EXPECT_GT(named_cap(refused), 200U);
   for (const std::vector<std::string>& more :
        std::vector<std::vector<std::string>>{{}, {"--largest"}, {"--checkpoint", "states"}, {"--triangles", "9"}}) {
     std::vector<std::string> arguments = {"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--allow-empty"};
@@ -229,6 +232,16 @@ TEST(CliMemory, AnArrayWithoutChunksIsAnsweredAtOnce) {
     EXPECT_NE(meshed.err.find("the surface is empty: the samples go from 7 to 7, iso is 9"), std::string::npos)
         << meshed.err;
   }
+}
+
+TEST(CliMemory, AnArrayWithoutChunksIsAnsweredUnderACap) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  write_array_without_chunks(folder);
+  std::vector<std::string> capped{"mesh", "a.zarr", "-o", "out.ply", "--iso", "9", "--quiet", "--memory", "100M"};
+  program::expect_failed(run(folder.path(), capped), 3, "the samples go from 7 to 7, iso is 9");
+  capped.insert(capped.end(), {"--blocks", "off"});
+  EXPECT_GT(named_cap(run(folder.path(), capped)), 200U);
 }
 
 }  // namespace

@@ -40,6 +40,11 @@ TEST(CliRender, WrongValuesAreRefused) {
       {{"--view", "above"}, "--view"},
       {{"--view", "10,91"}, "--view"},
       {{"--view", "10"}, "--view"},
+      {{"--up", "w"}, "--up"},
+      {{"--up", "+z"}, "--up"},
+      {{"--zoom", "0"}, "--zoom"},
+      {{"--zoom", "101"}, "--zoom"},
+      {{"--axes", "--size", "71x100"}, "axes"},
       {{"--background", "#12345"}, "--background"},
       {{"--background", "#12345g"}, "--background"},
       {{"--color", "transparent"}, "--color"},
@@ -126,6 +131,34 @@ TEST(CliRender, OptionsAreFollowed) {
   EXPECT_FALSE(files::read_bytes(folder / "s.png") == bytes);
 }
 
+// A sphere shows nothing of the axis that is up, but for the marks of the axes.
+TEST(CliRender, AxesAndZoomAreFollowed) {
+  const files::Folder folder;
+  make_sphere(folder);
+  const auto picture = [&](const std::vector<std::string>& more) {
+    const Result result = run(folder.path(), render(more));
+    EXPECT_EQ(result.code, 0) << result.err;
+    return read_png(folder / "s.png");
+  };
+  const auto is_white = [](const Png& png, std::uint32_t column, std::uint32_t row) {
+    return png.at(column, row)[0] == 255 && png.at(column, row)[1] == 255;
+  };
+  const Png plain = picture({"--view", "front"});
+  // The disc of 138 pixels becomes one of 69, out of the way of the marks.
+  const Png small = picture({"--view", "front", "--zoom", "0.5"});
+  EXPECT_FALSE(is_white(plain, 100, 12));
+  EXPECT_FALSE(is_white(small, 100, 45));
+  EXPECT_TRUE(is_white(small, 100, 35));
+  EXPECT_TRUE(is_white(small, 36, 100));
+  // The axis of z goes up from the middle of the marks, at 36, 114, or down.
+  const Png upright = picture({"--view", "front", "--zoom", "0.5", "--axes"});
+  const Png turned = picture({"--view", "front", "--zoom", "0.5", "--axes", "--up", "-z"});
+  EXPECT_FALSE(is_white(upright, 36, 100));
+  EXPECT_TRUE(is_white(upright, 36, 128));
+  EXPECT_TRUE(is_white(turned, 36, 100));
+  EXPECT_FALSE(is_white(turned, 36, 128));
+}
+
 TEST(CliRender, ColoursByQuality) {
   const files::Folder folder;
   make_sphere(folder);
@@ -143,6 +176,17 @@ TEST(CliRender, ColoursByQuality) {
   EXPECT_NE(result.err.find("colours from -2 to -1"), std::string::npos) << result.err;
   const Png high = read_png(folder / "d.png");
   EXPECT_GT(high.at(20, 20)[1], 2 * high.at(20, 20)[2]);  // beyond the bright end, yellow
+
+  // A picture with room for a bar of the colours has one, unless it is not wanted.
+  std::vector<std::string> large = picture;
+  large[5] = "480x200";
+  ASSERT_EQ(run(folder.path(), large).code, 0);
+  const Png with_bar = read_png(folder / "d.png");
+  constexpr std::uint32_t column = 402;  // of the bar, in a strip of 88
+  EXPECT_LT(with_bar.at(column, 100)[0], 200);
+  large.emplace_back("--no-color-bar");
+  ASSERT_EQ(run(folder.path(), large).code, 0);
+  EXPECT_EQ(read_png(folder / "d.png").at(column, 100)[0], 255);
 }
 #else
 TEST(CliRender, WithoutLibpngItSaysSo) {

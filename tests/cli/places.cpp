@@ -81,7 +81,8 @@ TEST(CliPlaces, InchesStayInches) {
 TEST(CliPlaces, AMetricLengthWithoutAUnitSaysWhatIsAssumed) {
   const files::Folder folder;
   succeed(folder, {"mesh", "generate:gyroid:16x16x16", "--iso", "0", "--error", "0", "-o", "a.ply"});
-  const std::string assumed = "isoweave: a.ply: does not say its unit: lengths are taken for it to be mm\n";
+  const std::string assumed =
+      "isoweave: a.ply: does not say its unit: lengths are taken for it to be mm, and so it is 15.0";
   const std::vector<std::string> simplify{"simplify", "a.ply", "-o", "b.ply"};
   for (const auto& [stop, said] : {std::pair<std::vector<std::string>, bool>{{"--error", "0.1mm"}, true},
                                    {{"--lods", "0.1,200um"}, true},

@@ -43,6 +43,7 @@ void become_program(const std::string& folder, char* const* arguments, const std
     const rlimit limit{*setup.file_limit, *setup.file_limit};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(99);
   }
+  for (const std::string& variable : setup.environment) ::putenv(const_cast<char*>(variable.c_str()));
   ::execv(arguments[0], arguments);
   ::_exit(99);
 }
@@ -72,7 +73,7 @@ Running::Running(const std::string& folder, const std::vector<std::string>& argu
     : out_path_(setup.out_path) {
   const std::string out = out_path_.empty() ? streams_ / "out" : out_path_;
   const std::string err = setup.err_path.empty() ? streams_ / "err" : setup.err_path;
-  std::vector<std::string> texts{ISOWEAVE_BINARY};
+  std::vector<std::string> texts{setup.program};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());

@@ -31,6 +31,8 @@ struct Setup {
   bool out_unread = false;                // standard output is a pipe that nobody reads
   int signal = 0;                         // sent once `ready`
   std::function<bool(pid_t)> ready;
+  std::string program = ISOWEAVE_BINARY;
+  std::vector<std::string> environment;  // NAME=VALUE, beside that of the test
 };
 
 // The process has a file of this folder open, with a name or without.

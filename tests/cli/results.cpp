@@ -2,7 +2,12 @@
 // volume is.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,7 +46,7 @@ TEST(CliEmptySurface, IsAnErrorAndReplacesNothing) {
                          "the samples go from 0 to 130, iso is 300: try --iso auto (--allow-empty writes");
   EXPECT_TRUE(files::read_bytes(folder / "a.ply") == before);
   program::expect_failed(run(folder.path(), mesh("300", {"--checkpoint", "states", "--every", "1layers"})), 3, "empty");
-  EXPECT_EQ(listing(folder / "states"), Words{});
+  EXPECT_FALSE(std::filesystem::exists(folder / "states"));
   EXPECT_EQ(run(folder.path(), mesh("60", {"--checkpoint", "states"})).code, 0) << "nothing is left to be resumed";
   const Result allowed = run(folder.path(), mesh("300", {"--allow-empty"}));
   EXPECT_EQ(allowed.code, 0) << allowed.err;
@@ -75,6 +80,29 @@ TEST(CliBorder, OfTheVolumeAloneIsAWarning) {
   EXPECT_NE(result.err.find("warning: " + std::string(kVolume) + ": the surface is nothing but the border"),
             std::string::npos)
       << result.err;
+}
+
+TEST(CliBorder, IsToldWhereMuchOfTheSurfaceIsCaps) {
+  const files::Folder folder;
+  const auto told = [&](const std::string& volume, const Words& more) {
+    Words words{"mesh", volume, "--iso", "0", "-o", "a.ply", "--report", "r.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = run(folder.path(), words);
+    EXPECT_EQ(result.code, 0) << result.err;
+    const std::string line = "isoweave: closed at the border of the volume by flat caps, about ";
+    return result.err.find(line) != std::string::npos &&
+           result.err.find(" % of the surface: --open leaves it open there\n") != std::string::npos;
+  };
+  const std::string gyroid = "generate:gyroid:24x24x24";
+  EXPECT_TRUE(told(gyroid, {}));
+  const Json report = Json::parse(files::read_bytes(folder / "r.json"));
+  EXPECT_GT(report.at("cap_cells").get<double>(), 0.05 * report.at("cells_crossed").get<double>());
+  EXPECT_TRUE(told(gyroid, {"--preview"}));
+  EXPECT_FALSE(told(gyroid, {"--open"}));
+  EXPECT_FALSE(Json::parse(files::read_bytes(folder / "r.json")).contains("cap_cells"));
+  EXPECT_FALSE(told(gyroid, {"--closed"})) << "it was asked for";
+  EXPECT_FALSE(told(gyroid, {"--quiet"}));
+  EXPECT_FALSE(told("generate:sphere:24x24x24", {}));
 }
 
 TEST(CliTriangles, SayWhatStoppedThem) {
@@ -145,6 +173,84 @@ TEST(CliLabelMaps, AreRecognised) {
   EXPECT_NE(meshed.err.find("looks like a mask or label map: --labels all"), std::string::npos) << meshed.err;
   ASSERT_EQ(run(folder.path(), {"generate", "noise", "--size", "48x40x32", "--type", "uint8", "-o", "n.nrrd"}).code, 0);
   EXPECT_EQ(run(folder.path(), {"info", "n.nrrd"}).out.find("label map"), std::string::npos);
+}
+
+// The output of info for a volume whose samples are the values, over and over.
+template <class T>
+std::string info_of(const std::string& type, const std::vector<T>& values) {
+  const files::Folder folder;
+  std::string bytes;
+  for (std::size_t n = 0; n < 4 * 5 * 6; ++n) {
+    const T value = values[n % values.size()];
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  const std::string name = "v_4x5x6_" + type + ".raw";
+  files::write_bytes(folder / name, bytes);
+  const Result result = run(folder.path(), {"info", name, "--isos"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  return result.out;
+}
+
+// The numbers behind a word at the beginning of lines, as they are printed.
+Words numbers_behind(const std::string& word, const std::string& text) {
+  Words numbers;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string first, number;
+    if (fields >> first >> number && first == word) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+TEST(CliHistogram, SaysInOneLineWhyItHasNoBars) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const auto expect_reason = [](const std::string& text, const std::string& reason) {
+    EXPECT_NE(text.find("\nhistogram  none: " + reason + "\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\nisos       none: " + reason + "\n"), std::string::npos) << text;
+    EXPECT_TRUE(numbers_behind("from", text).empty()) << text;
+  };
+  expect_reason(info_of<std::uint8_t>("uint8", {7}), "all samples are equal");
+  expect_reason(info_of<double>("float64", {-0.25}), "all samples are equal");
+  expect_reason(info_of<double>("float64", {7, kNan}), "all finite samples are equal");
+  expect_reason(info_of<double>("float64", {7, -kInfinite}), "all finite samples are equal");
+  expect_reason(info_of<double>("float64", {kNan}), "no sample is finite");
+  expect_reason(info_of<double>("float64", {kInfinite, -kInfinite}), "no sample is finite");
+  expect_reason(info_of<double>("float64", {1, std::nextafter(1.0, 2)}), "the samples differ by their last digits");
+  expect_reason(info_of<double>("float64", {0, 5e-324}), "the samples differ by their last digits");
+  const std::int64_t odd = (std::int64_t{1} << 60) + 1;
+  expect_reason(info_of<std::int64_t>("int64", {odd, odd}), "all samples are equal");
+  expect_reason(info_of<std::int64_t>("int64", {odd, odd - 1}), "the samples differ by their last digits");
+}
+
+TEST(CliHistogram, TellsItsLinesApart) {
+  const std::vector<std::vector<double>> volumes{
+      {0, 1}, {1e9, 1e9 + 1, 1e9 + 7}, {-1e15, 16 - 1e15}, {-1e308, 1.7e308}, {0, 1e-300}, {1, 1 + 1e-13}};
+  for (const std::vector<double>& values : volumes) {
+    const std::string text = info_of<double>("float64", values);
+    const Words froms = numbers_behind("from", text), isos = numbers_behind("iso", text);
+    ASSERT_EQ(froms.size(), 16U) << text;
+    EXPECT_FALSE(isos.empty()) << text;
+    for (const Words& numbers : {froms, isos}) {
+      for (std::size_t n = 0; n < numbers.size(); ++n) {
+        const double number = std::stod(numbers[n]);
+        EXPECT_TRUE(number >= values.front() && number <= values.back()) << number << "\n" << text;
+        EXPECT_TRUE(n == 0 || std::stod(numbers[n - 1]) < number) << text;
+      }
+    }
+    const std::size_t suggested = text.find("--iso ");
+    ASSERT_NE(suggested, std::string::npos) << text;
+    const double iso = std::stod(text.substr(suggested + 6));
+    EXPECT_TRUE(iso > values.front() && iso <= values.back()) << text;
+  }
+}
+
+TEST(CliHistogram, OfDistancesSaysThatAllAreZero) {
+  const files::Folder folder;
+  files::write_bytes(folder / "a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Result same = run(folder.path(), {"compare", "a.off", "a.off", "--histogram", "4"});
+  EXPECT_NE(same.out.find("A to B: all distances are 0\nB to A: all distances are 0\n"), std::string::npos) << same.out;
 }
 
 }  // namespace

@@ -115,5 +115,23 @@ TEST(CliUnevenSlices, StayAsTheyWereReadWhenARunGoesOn) {
   }
 }
 
+// A file that is usual beside slices is told by a note, one that may be a slice by a warning.
+TEST(CliSlices, FilesBesideThemAreToldApart) {
+  const files::Folder folder;
+  put_uneven(folder);
+  files::write_bytes(folder / "ct/README.txt", "hello");
+  files::write_bytes(folder / "ct/scan.jpg", "hello");
+  const Result made = run(folder.path(), mesh({}));
+  EXPECT_EQ(made.code, 0);
+  const std::string left_out = "1 file of the folder is no slice and is left out: ";
+  EXPECT_NE(made.err.find("isoweave: " + left_out + "README.txt\n"), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find("isoweave: warning: " + left_out + "scan.jpg\n"), std::string::npos) << made.err;
+  const std::string told = run(folder.path(), {"info", "ct"}).out;
+  EXPECT_NE(told.find("note       " + left_out + "README.txt\n"), std::string::npos) << told;
+  EXPECT_NE(told.find("warning    " + left_out + "scan.jpg\n"), std::string::npos) << told;
+  const Json info = Json::parse(run(folder.path(), {"info", "ct", "--json"}).out);
+  EXPECT_NE(info.at("input").at("notes").dump().find("README.txt"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace isoweave

@@ -1,7 +1,10 @@
 // Units and places of meshes: what is said of the input, and what becomes of it in the file.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -106,11 +109,84 @@ TEST_F(CliUnits, WrongUseIsRefused) {
   program::expect_failed(mesh("b.ply", {"--scale", "2", "--checkpoint", "states"}), 2, "--checkpoint");
 }
 
-TEST_F(CliUnits, AnErrorLargerThanTheThingIsToldApart) {
-  const Result result = mesh("a.ply", {"--error", "1cm", "--allow-empty"});
-  EXPECT_NE(result.err.find("warning: --error 1cm is more than a twentieth of the volume's diagonal, 41.57 mm"),
-            std::string::npos)
-      << result.err;
+// The line of standard error that has these words, or nothing.
+std::string line_with(const std::string& words, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(words) != std::string::npos) return line;
+  }
+  return "";
+}
+
+TEST_F(CliUnits, LengthsThatDoNotFitTheVolumeAreTold) {
+  const std::string large = line_with("is the unit right?", mesh("a.ply", {"--error", "1cm", "--allow-empty"}).err);
+  EXPECT_EQ(
+      large,
+      "isoweave: warning: --error 1cm is 10 mm, and the volume is 24 x 24 x 24 mm large: more than a twentieth of "
+      "its diagonal; is the unit right?");
+  const std::string small = line_with("is the unit right?", mesh("a.ply", {"--unit", "um", "--lods", "0.5nm,1um"}).err);
+  EXPECT_EQ(small,
+            "isoweave: warning: --lods 0.5nm is 0.0005 um, and the volume is 24 x 24 x 24 um large: less than a "
+            "thousandth of its voxels; is the unit right?");
+  for (const Words& fit : {Words{"--error", "2mm"}, Words{"--error", "0.001mm"}, Words{"--error", "0"},
+                           Words{"--error", "9vox", "--allow-empty"}, Words{"--error", "20%", "--allow-empty"}}) {
+    EXPECT_EQ(line_with("is the unit right?", mesh("a.ply", fit).err), "") << fit[1];
+  }
+  EXPECT_NE(line_with("--max-distance 3 is 3 mm", mesh("a.ply", {"--max-distance", "3"}).err), "");
+  EXPECT_NE(line_with("--preview 5 is 5 mm", mesh("a.ply", {"--preview=5"}).err), "");
+  const Words plan{"plan", kVolume, "--iso", "127.5", "--blocks", "16", "--error", "1cm", "-o", "tasks"};
+  EXPECT_NE(line_with("--error 1cm is 10 mm", run(folder_.path(), plan).err), "");
+}
+
+TEST_F(CliUnits, LengthsThatDoNotFitTheMeshAreTold) {
+  ASSERT_EQ(mesh("a.stl").code, 0);
+  const auto told = [&](const Words& more) {
+    Words words{"simplify", "a.stl", "-o", "s.ply", "--allow-empty"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = run(folder_.path(), words);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_NEAR(width("a.stl"), 19.34, 0.01);
+  const std::string large = told({"--error", "0.5cm"});
+  EXPECT_NE(line_with("a.stl: does not say its unit: lengths are taken for it to be mm, and so it is 19.3", large), "");
+  EXPECT_NE(line_with("--error 0.5cm is 5 mm, and the mesh is 19.3", large), "");
+  EXPECT_NE(line_with("mm large: more than a twentieth of its diagonal; is the unit right?", large), "");
+  EXPECT_NE(line_with("mm large: less than coordinates of 32 bits tell apart; is the unit", told({"--error", "1nm"})),
+            "");
+  EXPECT_EQ(line_with("is the unit right?", told({"--error", "10nm"})), "");
+  EXPECT_EQ(line_with("is the unit right?", told({"--error", "1.5"})), "");
+  EXPECT_EQ(line_with("does not say its unit", told({"--error", "0.1vox"})), "");
+  EXPECT_EQ(line_with("does not say its unit", told({"--error", "0.1%"})), "");
+}
+
+TEST_F(CliUnits, PercentIsOfTheDiagonal) {
+  const auto digest = [&] { return Json::parse(files::read_bytes(folder_ / "r.json")).at("digest"); };
+  ASSERT_EQ(mesh("a.ply", {"--error", "1%"}).code, 0);
+  const Json report = Json::parse(files::read_bytes(folder_ / "r.json"));
+  const double diagonal = 24 * std::sqrt(3.0);
+  EXPECT_NEAR(report.at("error").get<double>(), diagonal / 100, 1e-12);
+  std::ostringstream number;
+  number << std::setprecision(17) << diagonal / 100;
+  ASSERT_EQ(mesh("b.ply", {"--error", number.str()}).code, 0);
+  EXPECT_EQ(digest(), report.at("digest"));
+  ASSERT_EQ(mesh("c.ply", {"--spacing", "2,2,2", "--lods", "0.5%,1%", "--max-distance", "5%"}).code, 0);
+  EXPECT_NEAR(Json::parse(files::read_bytes(folder_ / "r.json")).at("levels").at(0).at("error").get<double>(),
+              diagonal / 100, 1e-12);
+  ASSERT_EQ(mesh("look.ply", {"--preview=5%"}).code, 0);
+  EXPECT_NEAR(Json::parse(files::read_bytes(folder_ / "r.json")).at("preview").at("cell").get<double>(), diagonal / 20,
+              1e-9);
+  const Json box = check("b.ply").at("box");
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double side = box.at("high").at(axis).get<double>() - box.at("low").at(axis).get<double>();
+    squared += side * side;
+  }
+  ASSERT_EQ(run(folder_.path(), {"simplify", "b.ply", "-o", "s.ply", "--error", "1%", "--report", "r.json"}).code, 0);
+  EXPECT_NEAR(Json::parse(files::read_bytes(folder_ / "r.json")).at("error").get<double>(), std::sqrt(squared) / 100,
+              1e-6);
+  program::expect_failed(mesh("d.ply", {"--error", "%"}), 2, "--error: expected a length");
+  program::expect_failed(mesh("d.ply", {"--error", "-1%"}), 2, "--error: expected a length");
 }
 
 }  // namespace

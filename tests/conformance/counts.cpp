@@ -1,10 +1,11 @@
 // Runs to a number of triangles stop where the reference queue would.
-// Threads: Limits.*:CountsHeld.*
+// Threads: Limits.*:CountsHeld.*:HeadStarts.End*
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "oracle.hpp"
@@ -44,20 +45,51 @@ SurfaceRun oracle(const SurfaceCase& surface, std::uint64_t triangles) {
   });
 }
 
-// most_held: so that sweeps have to thin out.
-SurfaceRun run(const SurfaceCase& surface, std::uint64_t triangles, Schedule schedule, int threads, std::int64_t slab,
-               std::uint64_t most_held, std::uint64_t* held = nullptr) {
-  const Executor executor(threads);
-  Simplifier simplifier({zone_options(surface), schedule}, executor, nullptr);
-  CountTarget target(simplifier, executor, triangles, most_held);
+struct Way {
+  Schedule schedule = Schedule::kLocal;
+  int threads = 1;
+  std::int64_t slab = kWholeVolume;
+  std::uint64_t most_held = 0;  // 0: sweeps have to thin out
+  CostBits head_start = kUnknownCost;
+};
+
+struct CountRun {
+  SurfaceRun run;
+  std::uint64_t held = 0;           // triangles, the most after a slab
+  std::optional<CostBits> instead;  // the head start that the run should have had
+};
+
+CountRun run_once(const SurfaceCase& surface, std::uint64_t triangles, const Way& way) {
+  const Executor executor(way.threads);
+  Simplifier simplifier({zone_options(surface), way.schedule}, executor, nullptr);
+  CountTarget target(simplifier, executor, triangles, way.most_held, way.head_start);
   const std::int64_t layers = surface.volume.dims[2] + (surface.closed ? 1 : 0);
   std::int64_t done = 0;
-  return sweep(surface, slab, executor, simplifier, [&] {
+  CountRun made;
+  made.run = sweep(surface, way.slab, executor, simplifier, [&] {
     simplifier.decide();
-    done += slab;
-    done < layers ? target.thin_out() : target.finish();
-    if (held != nullptr) *held = std::max(*held, simplifier.live_triangles());
+    done += way.slab;
+    if (done < layers) {
+      target.thin_out();
+    } else if (target.has_overshot()) {
+      made.instead = target.safe_head_start();
+      simplifier.zone().retire_all();
+    } else {
+      target.finish();
+    }
+    made.held = std::max(made.held, simplifier.live_triangles());
   });
+  return made;
+}
+
+CountRun run(const SurfaceCase& surface, std::uint64_t triangles, Way way) {
+  CountRun made = run_once(surface, triangles, way);
+  if (!made.instead) return made;
+  way.head_start = *made.instead;
+  CountRun again = run_once(surface, triangles, way);
+  EXPECT_FALSE(again.instead) << "a safe head start";
+  again.instead = made.instead;
+  return again;
 }
 
 class Counts : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
@@ -82,7 +114,7 @@ TEST_P(Counts, RunsStopWhereTheReferenceQueueWould) {
       for (const std::int64_t slab : {std::int64_t{1}, std::int64_t{6}, kWholeVolume}) {
         if (kSanitized && slab == 6) continue;
         const auto same = [&](Schedule schedule, int threads) {
-          const SurfaceRun found = run(surface, triangles, schedule, threads, slab, 0);
+          const SurfaceRun found = run(surface, triangles, {schedule, threads, slab}).run;
           EXPECT_EQ(digest_text(found.report.digest), digest_text(expected.report.digest))
               << triangles << " of " << all << ", error " << error << ", slab " << slab << ", threads " << threads
               << ", schedule " << static_cast<int>(schedule);
@@ -114,11 +146,90 @@ TEST(CountsOfSpecks, StopWhereTheReferenceQueueWould) {
   for (const std::uint64_t triangles : {all / 2, all / 5, all / 20, std::uint64_t{3}, std::uint64_t{1}}) {
     const SurfaceRun expected = oracle(surface, triangles);
     for (const std::int64_t slab : {std::int64_t{6}, kWholeVolume}) {
-      const SurfaceRun found = run(surface, triangles, Schedule::kLocal, 3, slab, 0);
+      const SurfaceRun found = run(surface, triangles, {Schedule::kLocal, 3, slab}).run;
       EXPECT_EQ(digest_text(found.report.digest), digest_text(expected.report.digest)) << triangles << " of " << all;
       EXPECT_EQ(found.report.triangles, expected.report.triangles);
     }
   }
+}
+
+// The cost of the last collapse of the reference: a run with it as its limit leaves the number, or somewhat less.
+CostBits cost_that_leaves(const SurfaceCase& surface, std::uint64_t triangles) {
+  const Executor executor(1);
+  Simplifier simplifier({zone_options(surface), Schedule::kQueue}, executor, nullptr);
+  std::uint64_t dearest = 0;
+  sweep(surface, kWholeVolume, executor, simplifier, [&] {
+    dearest = decide_in_order(simplifier.zone(), simplifier.triangles() - triangles).dearest;
+    simplifier.zone().retire_all();
+  });
+  return static_cast<CostBits>(dearest);
+}
+
+// Compares runs with a head start, whatever it is, with the reference. Returns how many of them overshot.
+int overshot_runs(const SurfaceCase& surface, std::uint64_t triangles, std::uint64_t most_held) {
+  const SurfaceRun expected = oracle(surface, triangles);
+  const auto right = double{cost_value(cost_that_leaves(surface, triangles))};
+  int overshot = 0;
+  for (const double factor : {1e-3, 0.3, 0.9, 1.0, 1.2, 4.0, 1e6}) {
+    for (const Way& way : {Way{Schedule::kLocal, 1, 1}, Way{Schedule::kLocal, 4, 6}, Way{Schedule::kLocal, 2},
+                           Way{Schedule::kQueue, 1, 6}, Way{Schedule::kRounds, 3, 6}}) {
+      if (kSanitized && way.slab == 1) continue;
+      Way with = way;
+      with.most_held = most_held;
+      with.head_start = to_cost(factor * right);
+      const CountRun found = run(surface, triangles, with);
+      EXPECT_EQ(digest_text(found.run.report.digest), digest_text(expected.report.digest))
+          << surface.volume.kind << ' ' << triangles << ", factor " << factor << ", slab " << way.slab << ", schedule "
+          << static_cast<int>(way.schedule);
+      EXPECT_EQ(found.run.report.triangles, expected.report.triangles);
+      overshot += found.instead ? 1 : 0;
+    }
+  }
+  return overshot;
+}
+
+TEST(HeadStarts, ChangeNoMeshHoweverWrongTheyAre) {
+  for (const char* kind : {"noise", "box", "smooth"}) {
+    SurfaceCase surface = make_case(kind, true);
+    surface.error = kNoLimit;
+    const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+    for (const std::uint64_t triangles : {all / 2, all / 10}) {
+      EXPECT_GE(overshot_runs(surface, triangles, ~std::uint64_t{0}), kSanitized ? 8 : 10) << kind;
+      EXPECT_GE(overshot_runs(surface, triangles, 0), kSanitized ? 8 : 10) << kind;
+    }
+  }
+}
+
+TEST(HeadStarts, CountTheFourTrianglesOfASpeck) {
+  SurfaceCase surface = make_case("specks", true);
+  surface.error = kNoLimit;
+  surface.drop_specks = true;
+  const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+  for (const std::uint64_t triangles : {all / 2, all / 5}) EXPECT_GE(overshot_runs(surface, triangles, 0), 8);
+}
+
+// An error below the one that leaves the number ends the run, and the head start with it.
+TEST(HeadStarts, EndAtTheError) {
+  SurfaceCase surface = make_case("noise", true);
+  surface.error = 0.3;
+  const std::uint64_t left = oracle(surface, 1).report.triangles;
+  for (const std::uint64_t triangles : {left / 2, left - 1, left, left + 1}) {
+    const SurfaceRun expected = oracle(surface, triangles);
+    for (const std::int64_t slab : {std::int64_t{6}, kWholeVolume}) {
+      const CountRun found = run(surface, triangles, {Schedule::kLocal, 2, slab, 0, kRetiredCost - 1});
+      EXPECT_EQ(digest_text(found.run.report.digest), digest_text(expected.report.digest)) << triangles;
+    }
+  }
+}
+
+// Where no more triangles are extracted than are asked for, nothing is decided.
+TEST(HeadStarts, OvershootWhereNothingIsToBeDecided) {
+  SurfaceCase surface = make_case("noise", true);
+  surface.error = kNoLimit;
+  const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+  const CountRun found = run(surface, all + 1, {Schedule::kLocal, 2, 6, 0, cost_bits(0.1F)});
+  EXPECT_EQ(found.instead, kUnknownCost);
+  EXPECT_EQ(found.run.report.triangles, all);
 }
 
 // The least cost of an edge that is to be decided; kRetiredCost if there is none.
@@ -159,14 +270,13 @@ TEST(CountsHeld, NoMoreThanIsNeeded) {
   SurfaceCase surface = make_case("smooth", true);
   surface.volume.dims = {40, 40, 160};
   surface.error = kNoLimit;
-  std::uint64_t held = 0;
-  const SurfaceRun thin = run(surface, 1500, Schedule::kLocal, 2, 8, 6000, &held);
-  const SurfaceRun whole = run(surface, 1500, Schedule::kLocal, 2, kWholeVolume, 6000);
-  EXPECT_EQ(digest_text(thin.report.digest), digest_text(whole.report.digest));
-  EXPECT_LE(thin.report.triangles, 1500U);
-  EXPECT_GE(thin.report.triangles, 1499U);
-  EXPECT_GT(thin.report.triangles_extracted, 40'000U);
-  EXPECT_LT(held, 30'000U);
+  const CountRun thin = run(surface, 1500, {Schedule::kLocal, 2, 8, 6000});
+  const CountRun whole = run(surface, 1500, {Schedule::kLocal, 2, kWholeVolume, 6000});
+  EXPECT_EQ(digest_text(thin.run.report.digest), digest_text(whole.run.report.digest));
+  EXPECT_LE(thin.run.report.triangles, 1500U);
+  EXPECT_GE(thin.run.report.triangles, 1499U);
+  EXPECT_GT(thin.run.report.triangles_extracted, 40'000U);
+  EXPECT_LT(thin.held, 30'000U);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-// Writes small valid files as seeds for the fuzzer: write_seeds FOLDER makes FOLDER/TARGET/*.
+// Small valid files, which are seeds for the fuzzer.
 #include "seeds.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -355,6 +354,12 @@ void put_meshes(Seeds& seeds) {
     seeds.put(name, get(folder / ("a." + name)));
     seeds.put("mesh_gzip", gzipped(get(folder / ("a." + name))));
   }
+#ifdef ISOWEAVE_HAS_MESHOPTIMIZER
+  MeshFileOptions packed{true, {"a comment"}};
+  packed.compress = true;
+  write(*open_mesh_file(folder / "packed.glb", packed));
+  seeds.put("glb", get(folder / "packed.glb"));
+#endif
   mesh.offset = {500000.1, 4649776.7, 120.3};
   mesh.unit = "m";
   mesh.space = "RAS";
@@ -414,13 +419,10 @@ void put_options(Seeds& seeds) {
        {"512x512x300:int16:big:skip=1024", "a/foot_256x256x256_uint8.raw", "0.2vox", "30um", "float32"}) {
     seeds.put("options", text);
   }
-}
-
-// A volume of 9 x 9 x 9 bytes, and calls with the defaults.
-void put_c_interface(Seeds& seeds) {
-  std::string seed{"\0\x09\x09\x09\0\0\1\1\1\1\0\1", 12};
-  for (int n = 0; n < 9 * 9 * 9; ++n) seed += static_cast<char>((n * n) % 251);
-  for (const char choice : {'\0', '\1', '\2', '\7'}) seeds.put("c_interface", seed + std::string(40, choice));
+  for (const char* text :
+       {"https://ann:word@host:80/a%20b/?sig=x#y", "s3://bucket/key", "gs://b.c/k", "bytes 5-7/100", "bytes 0-0/*"}) {
+    seeds.put("remote", text);
+  }
 }
 
 void put_state(Seeds& seeds) {
@@ -450,12 +452,7 @@ void put_indices(Seeds& seeds) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fputs("usage: write_seeds FOLDER\n", stderr);
-    return 2;
-  }
-  Seeds seeds(argv[1]);
+void isoweave::fuzz::put_files(Seeds& seeds) {
   put_raw(seeds);
   put_nrrd(seeds);
   put_metaimage(seeds);
@@ -473,10 +470,13 @@ int main(int argc, char** argv) {
   put_dicom(seeds);
 #endif
 #ifdef ISOWEAVE_HAS_ZARR
-  fuzz::put_arrays(seeds);
+  put_arrays(seeds);
 #endif
   put_meshes(seeds);
-  fuzz::put_packages(seeds);
+  put_packages(seeds);
+}
+
+void isoweave::fuzz::put_others(Seeds& seeds) {
   put_options(seeds);
   put_c_interface(seeds);
   put_label_names(seeds);
@@ -484,5 +484,4 @@ int main(int argc, char** argv) {
   put_state_bodies(seeds);
   put_task_bodies(seeds);
   put_indices(seeds);
-  return 0;
 }

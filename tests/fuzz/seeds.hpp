@@ -28,8 +28,17 @@ class Seeds {
   std::map<std::string, int> count_;
 };
 
-// Zarr 2 and 3, OME-Zarr, N5.
+// Volumes and meshes of all formats.
+void put_files(Seeds& seeds);
+
+// Options, calls of the C interface, names of labels, states, files of tasks, indices.
+void put_others(Seeds& seeds);
+
+// Zarr 2 and 3, OME-Zarr, N5, precomputed volumes.
 void put_arrays(Seeds& seeds);
+
+// Calls of the C interface.
+void put_c_interface(Seeds& seeds);
 
 // States of runs, and the files of tasks, behind their beginnings.
 void put_state_bodies(Seeds& seeds);

@@ -152,6 +152,51 @@ void put_n5_seeds(Seeds& all) {
   });
 }
 
+ArrayJson precomputed_info(const char* type, const char* encoding) {
+  const ArrayJson scale = {{"key", "k"},
+                           {"size", {4, 3, 2}},
+                           {"resolution", {4, 4, 40}},
+                           {"voxel_offset", {0, 0, 0}},
+                           {"chunk_sizes", {{2, 3, 2}}},
+                           {"encoding", encoding},
+                           {"compressed_segmentation_block_size", {2, 2, 2}}};
+  return {{"data_type", type}, {"num_channels", 1}, {"scales", {scale}}};
+}
+
+// Numbers as they are stored.
+template <class Word>
+std::string words(std::initializer_list<Word> numbers) {
+  std::string text;
+  for (const Word number : numbers) text += bytes_of(number);
+  return text;
+}
+
+void put_precomputed_seeds(Seeds& all) {
+  ArraySeeds seeds(all, "precomputed", {"info", "k/0-2_0-3_0-2", "k/2-4_0-3_0-2", "k/0.shard", "k/1.shard"});
+  const std::string raw = words<std::uint16_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  seeds.put([&](const std::string& folder) {
+    put_json(folder + "/info", precomputed_info("uint16", "raw"));
+    put_file(folder + "/k/0-2_0-3_0-2", raw);
+    put_file(folder + "/k/2-4_0-3_0-2", raw);
+  });
+  // Two blocks: one of two labels, one bit for each sample; one of a single label.
+  seeds.put([&](const std::string& folder) {
+    put_json(folder + "/info", precomputed_info("uint32", "compressed_segmentation"));
+    put_file(folder + "/k/0-2_0-3_0-2", words<std::uint32_t>({1, 5 | 1U << 24, 4, 6, 7, 0xa5, 3, 9}));
+  });
+  // A shard of one minishard, in which the second chunk lies.
+  seeds.put([&](const std::string& folder) {
+    ArrayJson info = precomputed_info("uint16", "raw");
+    info["scales"][0]["sharding"] = {{"@type", "neuroglancer_uint64_sharded_v1"},
+                                     {"hash", "identity"},
+                                     {"preshift_bits", 0},
+                                     {"minishard_bits", 0},
+                                     {"shard_bits", 1}};
+    put_json(folder + "/info", info);
+    put_file(folder + "/k/1.shard", words<std::uint64_t>({24, 48}) + raw + words<std::uint64_t>({1, 0, 24}));
+  });
+}
+
 }  // namespace
 
 void put_arrays(Seeds& seeds) {
@@ -159,6 +204,7 @@ void put_arrays(Seeds& seeds) {
   put_zarr3_seeds(seeds);
   put_ome_zarr_seeds(seeds);
   put_n5_seeds(seeds);
+  put_precomputed_seeds(seeds);
 }
 
 }  // namespace isoweave::fuzz

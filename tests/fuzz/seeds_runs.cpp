@@ -24,4 +24,19 @@ void put_task_bodies(Seeds& seeds) {
   }
 }
 
+// A volume of 9 x 9 x 9 bytes in memory and one by callback, and calls with the defaults.
+void put_c_interface(Seeds& seeds) {
+  const std::string info{"\0\x09\x09\x09\0\0\1\1\1\1\0", 11};
+  std::string samples;
+  for (int n = 0; n < 9 * 9 * 9; ++n) samples += static_cast<char>((n * n) % 251);
+  const std::string held = std::string(1, '\0') + info + '\1' + samples;
+  const std::string by_callback = '\1' + info + std::string("\1\1\1\1\0\1\1\1\xff", 9) + samples.substr(0, 256);
+  for (const char choice : {'\0', '\1', '\2', '\7'}) {
+    for (const std::string& seed : {held, by_callback}) {
+      // Slices to be read, then the calls.
+      seeds.put("c_interface", seed + std::string("\1\0\1\2\1", 5) + std::string(80, choice));
+    }
+  }
+}
+
 }  // namespace isoweave::fuzz

@@ -41,7 +41,8 @@ void read_volume(const std::string& path) {
   const VolumeInfo& info = volume->info();
   expect_sane(info);
   const std::int64_t slices = info.dims[2];
-  const std::size_t most = info.format == "zarr" || info.format == "n5" ? kReadableFromChunks : kReadable;
+  const std::size_t most =
+      info.format == "zarr" || info.format == "n5" || info.format == "precomputed" ? kReadableFromChunks : kReadable;
   if (info.slice_bytes() > most / static_cast<std::size_t>(slices)) return;
   otsu_threshold(read_histogram(*volume));
   std::vector<std::byte> last(info.slice_bytes());

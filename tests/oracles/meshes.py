@@ -144,14 +144,20 @@ def read_legacy_precomputed(folder, segment):
 
 
 def read_packed_precomputed(folder, segment, scratch):
-    """What Draco's own decoder gives, in steps, and where the manifest places it."""
+    """What Draco's own decoder gives of an object of one fragment, in steps, and where the manifest places it."""
     info = json.load(open(f"{folder}/info"))
-    index = open(f"{folder}/{segment}.index", "rb").read()
+    shard = open(f"{folder}/0.shard", "rb").read()
+    begin, end = struct.unpack_from("<QQ", shard)
+    key, start, size = struct.unpack_from("<QQQ", shard, 16 + begin)
+    assert key == segment and end - begin == 24
+    index = shard[16 + start : 16 + start + size]
     shape, origin = np.frombuffer(index, "<f4", 6).reshape(2, 3).astype(float)
-    assert struct.unpack_from("<I", index, 24) == (1,)
-    assert struct.unpack_from("<I", index, 60) == (os.path.getsize(f"{folder}/{segment}"),)
-    decoded = os.path.join(scratch, "decoded.obj")
-    subprocess.run(["draco_decoder", "-i", f"{folder}/{segment}", "-o", decoded], check=True, stdout=subprocess.DEVNULL)
+    assert struct.unpack_from("<I", index, 24) == (1,) and struct.unpack_from("<I", index, 44) == (1,)
+    (packed,) = struct.unpack_from("<I", index, 60)
+    fragment, decoded = os.path.join(scratch, "fragment.drc"), os.path.join(scratch, "decoded.obj")
+    with open(fragment, "wb") as out:
+        out.write(shard[16 + start - packed : 16 + start])
+    subprocess.run(["draco_decoder", "-i", fragment, "-o", decoded], check=True, stdout=subprocess.DEVNULL)
     steps, cells = [], []
     for line in open(decoded):
         words = line.split()

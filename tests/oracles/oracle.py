@@ -93,3 +93,15 @@ def ply_vertices(path, properties=3):
             if line.startswith(b"element vertex"):
                 count = int(line.split()[2])
         return np.frombuffer(file.read(4 * properties * count), "<f4").reshape(-1, properties).astype(float)
+
+
+def ply_triangles(path, properties=3):
+    """The corners of all triangles of such a file, which has its faces behind the vertices."""
+    with open(path, "rb") as file:
+        counts = {}
+        while (line := file.readline().strip()) != b"end_header":
+            if line.startswith(b"element"):
+                counts[line.split()[1]] = int(line.split()[2])
+        points = np.frombuffer(file.read(4 * properties * counts[b"vertex"]), "<f4").reshape(-1, properties)
+        faces = np.frombuffer(file.read(), np.dtype([("count", "u1"), ("corners", "<u4", 3)]), counts[b"face"])
+    return points[:, :3].astype(float)[faces["corners"]]

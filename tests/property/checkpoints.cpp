@@ -53,6 +53,8 @@ class InterruptedRun {
 
   int interruptions = 0;
   bool with_values = false;
+  double head_start = 0;   // where a number of triangles is asked for
+  int opens_until = 1000;  // interruptions: the volume cannot be opened again then
 
  private:
   MeshReport run_part(RunControl control, bool resume, int slabs) {
@@ -66,6 +68,8 @@ class InterruptedRun {
     const std::string mark = resume ? checkpoint.marks.at(0) : "";
     MeshFileOptions file{options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark};
     file.values = with_values;
+    control.head_start = head_start;
+    if (interruptions < opens_until) control.reopen = [this] { return generate_volume(surface_.volume); };
     const auto sink = open_mesh_file(mesh_path(), file);
     options_.values = with_values ? generate_volume(values_beside(surface_)) : nullptr;
     return mesh_volume(*generate_volume(surface_.volume), *sink, options_, control);
@@ -88,6 +92,7 @@ void expect_same_result(const MeshReport& a, const MeshReport& b) {
   EXPECT_EQ(a.triangles_extracted, b.triangles_extracted);
   EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
   EXPECT_EQ(a.cells_crossed, b.cells_crossed);
+  EXPECT_EQ(a.cap_cells, b.cap_cells);
   EXPECT_EQ(a.collapses, b.collapses);
   EXPECT_EQ(a.postponed, b.postponed);
   EXPECT_EQ(a.rekeyed, b.rekeyed);
@@ -137,6 +142,28 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ResumedExtractors,
                                            ExtractorKind::kDual));
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Resumed, ::testing::Values("noise", "gyroid", "box", "specks", "white"));
+
+// One head start is too low, one leaves too few triangles: the run begins again, and is interrupted there as well.
+TEST(Checkpoints, AHeadStartGoesOn) {
+  const SurfaceCase surface{{"noise", {20, 24, 33}, SampleType::kUint8, {1, 1, 1.5}, 3}, true, 0.8};
+  MeshOptions options = mesh_options(surface);
+  options.triangles = 6000;
+  const MeshReport whole = run_whole(surface, options);
+  ASSERT_EQ(whole.triangles, 6000U);
+  for (const double head_start : {whole.error / 3, 3 * whole.error}) {
+    InterruptedRun run(surface, options);
+    run.head_start = head_start;
+    const MeshReport resumed = run.finish_in_steps(1);
+    EXPECT_GE(run.interruptions, head_start > whole.error ? 10 : 5);
+    expect_same_result(resumed, whole);
+    EXPECT_EQ(check_mesh(read_mesh(run.mesh_path())).digest, whole.digest);
+    EXPECT_TRUE(std::filesystem::is_empty(run.state_folder()));
+  }
+  InterruptedRun run(surface, options);
+  run.head_start = 3 * whole.error;
+  run.opens_until = 2;
+  EXPECT_THROW(run.finish_in_steps(1), std::invalid_argument) << "a volume that cannot be read again";
+}
 
 // What is smoothed is read again where the run goes on, and some slices below.
 TEST(Checkpoints, ASmoothedMaskGoesOnToTheSameMesh) {

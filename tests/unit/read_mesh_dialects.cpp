@@ -70,7 +70,7 @@ TEST(ReadMeshDialects, WideCharactersAreRefusedByName) {
       big += '\0' + std::string(1, c);
     }
     for (const std::string& wide : {"\xFF\xFE" + little, "\xFE\xFF" + big, little, big}) {
-      EXPECT_EQ(failure(name, wide), "is text in UTF-16 or UTF-32, expected ASCII or UTF-8");
+      EXPECT_EQ(failure(name, wide), "expected text in ASCII or UTF-8, found UTF-16 or UTF-32");
     }
   }
 }

@@ -249,8 +249,8 @@ TEST(ReadMesh, FormatIsToldByContentBeforeTheName) {
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   EXPECT_NO_THROW(parse("wrong.obj", ply));
   EXPECT_EQ(parse("no-ending", "# c\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size(), 1U);
-  EXPECT_EQ(failure("a.bin", "hello"), "is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
-  EXPECT_EQ(failure("a.ply", "hello"), "does not begin with the line 'ply'");
+  EXPECT_EQ(failure("a.bin", "hello"), "expected PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF, found 'hello'");
+  EXPECT_EQ(failure("a.ply", "hello"), "expected the line 'ply' at the beginning, found 'hello'");
   EXPECT_EQ(failure("a.obj", ""), "expected a mesh file, found an empty file");
 }
 

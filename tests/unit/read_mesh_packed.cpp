@@ -53,7 +53,7 @@ TEST(ReadMeshPacked, EveryFormatIsReadInGzip) {
   // OBJ whose first statement is none that is known: only the name tells.
   const std::string odd = "xyz\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(parse("a.obj.gz", gzipped(odd)).triangles.size(), 1U);
-  EXPECT_TRUE(contains(failure("a.gz", gzipped(odd)), "is not a PLY")) << failure("a.gz", gzipped(odd));
+  EXPECT_TRUE(contains(failure("a.gz", gzipped(odd)), "expected PLY, STL")) << failure("a.gz", gzipped(odd));
 }
 
 // Members one after another, as pigz and bgzip write them.
@@ -73,7 +73,7 @@ TEST(ReadMeshPacked, DamageIsToldInOneLine) {
   damaged[damaged.size() - 6] ^= 1;  // its sum
   EXPECT_TRUE(contains(failure("a.vtk.gz", damaged), "the compressed data are corrupt: incorrect data check"));
   EXPECT_EQ(failure("a.ply.gz", gzipped("")), "expected a mesh file, found an empty file in gzip");
-  EXPECT_EQ(failure("a.ply.gz", gzipped("plx")), "does not begin with the line 'ply'");
+  EXPECT_EQ(failure("a.ply.gz", gzipped("plx")), "expected the line 'ply' at the beginning, found 'plx'");
   EXPECT_EQ(failure("a.ply", ""), "expected a mesh file, found an empty file");
   foreign::expect_damage_is_safe("a.vtk.gz", packed);
 }

@@ -156,7 +156,7 @@ TEST(ReadVtu, OtherCellsAreRefusedWithTheWayRound) {
       << failure("a.vtu", vtu("0 1 2 3", "3 4", "9"));
   EXPECT_EQ(failure("a.vtu", xml("UnstructuredGrid", piece("NumberOfCells=\"1\"", cells("Cells", "0 1 2", "3")))),
             "expected types of Cells, found none");
-  EXPECT_EQ(failure("a.vtu", "text"), "does not begin with a '<VTKFile' tag");
+  EXPECT_EQ(failure("a.vtu", "text"), "expected a '<VTKFile' tag at the beginning, found 'text'");
   foreign::expect_damage_is_safe("a.vtu", vtu("0 1 2 3 0 1 2", "4 7", "7 5"));
 }
 
@@ -223,7 +223,7 @@ TEST(ReadPvtp, WhatIsNoPieceIsRefused) {
   const Pieces pieces;
   EXPECT_EQ(pieces.refusal("PPolyData", {"a_0.vtp"}, false),
             "expected a file that names no other, as --no-external asks, found 'a_0.vtp'");
-  EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"none.vtp"}), "none.vtp: cannot be opened"));
+  EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"none.vtp"}), "none.vtp, found no such file"));
   EXPECT_EQ(pieces.refusal("PPolyData", {""}), "expected a file as Source of each piece, found none");
   EXPECT_EQ(pieces.refusal("PPolyData", {}), "expected a piece of PPolyData, found none");
   EXPECT_TRUE(contains(pieces.refusal("PPolyData", {"b_0.vtu"}), "b_0.vtu: expected VTK XML of type PolyData"));

@@ -4,48 +4,25 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "files.hpp"
 #include "isoweave/error.hpp"
 #include "meshes.hpp"
 #include "render/camera.hpp"
+#include "render_scene.hpp"
 
 namespace isoweave {
 namespace {
 
-// Looks along +y: x to the right, z up.
-RenderOptions front(int width, int height, int samples = 1) {
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.view = {0, 0};
-  options.background.reset();
-  options.samples = samples;
-  return options;
-}
-
-std::uint8_t alpha_at(const Picture& picture, std::int64_t column, std::int64_t row) {
-  return picture.pixels[static_cast<std::size_t>(row * picture.width + column)][3];
-}
-
-Colour colour_at(const Picture& picture, std::int64_t column, std::int64_t row) {
-  const auto& p = picture.pixels[static_cast<std::size_t>(row * picture.width + column)];
-  return {p[0], p[1], p[2]};
-}
-
-// A square in the plane y, seen from the front.
-TriangleMesh square(float half, float y) {
-  return {{{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}}, {{0, 1, 2}, {0, 2, 3}}, {}};
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-}
+using namespace render_scene;
 
 // Alpha as the part of the picture that is covered.
 double coverage(const Picture& picture) {
@@ -154,7 +131,6 @@ TEST(RenderMesh, ViewsLookFromTheirSides) {
   EXPECT_LT(place({0, 90}, {0, 1, 0})[1], place({0, 90}, middle)[1]);
 }
 
-// The small square in front is nearer; it is told from the large one by the colour map.
 // A patient is seen from the same side in LPS and in RAS, whose x and y have the other sign.
 TEST(RenderMesh, TheFrontIsThatOfTheSpace) {
   TriangleMesh lps = square(1, 0);
@@ -165,19 +141,83 @@ TEST(RenderMesh, TheFrontIsThatOfTheSpace) {
   for (Point& point : ras.vertices) point = {-point[0], -point[1], point[2]};
   RenderOptions options = front(60, 60);
   options.view = {20, 10};
-  const Picture expected = render_mesh(lps, options);
-  const Picture found = render_mesh(ras, options);
-  std::size_t other = 0;
-  for (std::size_t n = 0; n < expected.pixels.size(); ++n) {
-    for (std::size_t part = 0; part < 4; ++part) {
-      if (std::abs(int{expected.pixels[n][part]} - int{found.pixels[n][part]}) > 2) ++other;
-    }
+  options.axes = true;
+  options.width = options.height = 80;
+  constexpr std::pair<Axis, Axis> kSame[] = {{Axis::kX, Axis::kMinusX}, {Axis::kY, Axis::kMinusY},
+                                             {Axis::kZ, Axis::kZ},      {Axis::kMinusX, Axis::kX},
+                                             {Axis::kMinusY, Axis::kY}, {Axis::kMinusZ, Axis::kMinusZ}};
+  for (const auto& [in_lps, in_ras] : kSame) {
+    options.up = in_lps;
+    const Picture expected = render_mesh(lps, options);
+    options.up = in_ras;
+    EXPECT_EQ(render_mesh(ras, options).pixels, expected.pixels);
   }
-  EXPECT_LT(other, 8U) << "but for pixels at an edge that rounding decides";
+  options.up = Axis::kZ;
+  const Picture of_patient = render_mesh(ras, options);
   ras.space.clear();
-  EXPECT_NE(render_mesh(ras, options).pixels, found.pixels);
+  EXPECT_NE(render_mesh(ras, options).pixels, of_patient.pixels);
 }
 
+// The axis that is up ascends in the picture, and the others keep their sense: the three directions of the camera are
+// no mirror image.
+TEST(RenderMesh, TheAxisThatIsUpPointsUp) {
+  constexpr std::pair<Axis, Vec3> kUp[] = {{Axis::kX, {1, 0, 0}},       {Axis::kY, {0, 1, 0}},
+                                           {Axis::kZ, {0, 0, 1}},       {Axis::kMinusX, {-1, 0, 0}},
+                                           {Axis::kMinusY, {0, -1, 0}}, {Axis::kMinusZ, {0, 0, -1}}};
+  for (const std::string space : {"", "LPS", "RAS", "index"}) {
+    TriangleMesh mesh = meshes::cube();
+    mesh.space = space;
+    for (const auto& [axis, direction] : kUp) {
+      RenderOptions options = front(50, 50);
+      options.up = axis;
+      const render::Camera camera(mesh, options);
+      const Vec3 seen = camera.turned(direction);
+      EXPECT_NEAR(seen.x, 0, 1e-15);
+      EXPECT_NEAR(seen.y, 1, 1e-15);
+      EXPECT_NEAR(seen.z, 0, 1e-15);
+      const Vec3 x = camera.turned({1, 0, 0}), y = camera.turned({0, 1, 0}), z = camera.turned({0, 0, 1});
+      EXPECT_NEAR(dot(cross(x, y), z), -1, 1e-15) << "the camera looks along z, so its directions are left-handed";
+    }
+  }
+}
+
+// A mesh with y up looks as the one that was turned to have z up.
+TEST(RenderMesh, YUpIsZUpTurned) {
+  TriangleMesh upright = square(1, 0);
+  append(upright, {{{-1, -0.5F, -1}, {0.2F, -0.7F, -1}, {0, -0.5F, 0.6F}}, {{0, 1, 2}}, {}});
+  TriangleMesh turned = upright;
+  for (Point& point : turned.vertices) point = {point[0], point[2], -point[1]};
+  RenderOptions options = front(60, 60);
+  options.view = {25, 15};
+  const Picture expected = render_mesh(upright, options);
+  options.up = Axis::kY;
+  EXPECT_EQ(render_mesh(turned, options).pixels, expected.pixels);
+}
+
+// The square fills 92 of 100 pixels each way; at half the size 46, from 27 to 73; at twice all of them.
+TEST(RenderMesh, ZoomEnlargesTheMiddle) {
+  RenderOptions options = front(100, 100);
+  options.zoom = 0.5;
+  const Picture half = render_mesh(square(1, 0), options);
+  for (std::int64_t row = 0; row < 100; ++row) {
+    for (std::int64_t column = 0; column < 100; ++column) {
+      const bool inside = column >= 27 && column < 73 && row >= 27 && row < 73;
+      ASSERT_EQ(alpha_at(half, column, row), inside ? 255 : 0) << column << ' ' << row;
+    }
+  }
+  options.zoom = 2;
+  EXPECT_EQ(coverage(render_mesh(square(1, 0), options)), 1);
+  TriangleMesh small = square(1, 0);
+  append(small, square(0.2F, -0.01F));
+  std::vector<float> number(8, 0);
+  std::fill(number.begin() + 4, number.end(), 1.0F);
+  const Picture twice = render_mesh(small, options, number);
+  const double least = 50 * (1 - 0.2 * 2 * kFilled) - 1;  // where the small square begins
+  const auto column = static_cast<std::int64_t>(least);
+  EXPECT_GT(colour_at(twice, column + 3, 50).red, 2 * colour_at(twice, column - 2, 50).red);
+}
+
+// The small square in front is nearer; it is told from the large one by the colour map.
 TEST(RenderMesh, NearerHidesFarther) {
   for (const bool near_first : {true, false}) {
     TriangleMesh mesh = square(near_first ? 0.2F : 1.0F, near_first ? -0.3F : 0.3F);
@@ -303,6 +343,15 @@ TEST(RenderMesh, WrongArgumentsAreErrors) {
   RenderOptions options;
   options.view.elevation = 91;
   refused(mesh, options);
+  for (const double zoom : {0.0, -1.0, 0.009, 101.0, std::numeric_limits<double>::quiet_NaN()}) {
+    options = {};
+    options.zoom = zoom;
+    refused(mesh, options);
+  }
+  options = front(71, 100);
+  EXPECT_NO_THROW(render_mesh(mesh, options));
+  options.axes = true;
+  refused(mesh, options);
   options = {};
   options.range = {{2, 2}};
   refused(mesh, options, std::vector<float>{1, 2, 3, 4});
@@ -328,6 +377,33 @@ TEST(RenderMesh, PicturesThatCannotBeWrittenLeaveNothing) {
   EXPECT_THROW(write_png(folder / "missing/a.png", picture), CannotWrite);
   EXPECT_THROW(require_png(folder / "missing/a.png"), CannotWrite);
   EXPECT_TRUE(folder.entries().empty());
+}
+
+// The letters "0", "0.5" and "1" have 19, 40 and 10 dots, of two by two pixels in so high a picture.
+TEST(RenderColourBar, TellsTheColoursAndTheirNumbers) {
+  Picture picture = render_mesh(square(1, 0), front(50, 700));
+  const auto width = colour_bar_width(700);
+  for (const std::optional<Colour>& background : {std::optional<Colour>{}, std::optional<Colour>{{20, 20, 40}}}) {
+    const Picture wider = with_colour_bar(picture, {0, 1}, background);
+    ASSERT_EQ(wider.width, 50 + width);
+    ASSERT_EQ(static_cast<std::int64_t>(wider.pixels.size()), wider.width * 700);
+    const auto at = [&](std::int64_t column, std::int64_t row) {
+      return wider.pixels[static_cast<std::size_t>(row * wider.width + column)];
+    };
+    std::int64_t ink = 0;
+    const std::uint8_t shade = background ? 235 : 30;
+    for (std::int64_t row = 0; row < 700; ++row) {
+      for (std::int64_t column = 0; column < 50; ++column)
+        ASSERT_EQ(at(column, row), picture.pixels[static_cast<std::size_t>(row * 50 + column)]);
+      for (std::int64_t column = 50; column < wider.width; ++column)
+        ink += at(column, row) == std::array<std::uint8_t, 4>{shade, shade, shade, 255};
+    }
+    EXPECT_EQ(ink, 4 * (19 + 40 + 10));
+    const auto high = at(50 + 20, 700 / 8 + 1), low = at(50 + 20, 699 - 700 / 8);
+    EXPECT_TRUE(high[0] > 240 && high[1] > 220 && high[2] < 50);  // yellow
+    EXPECT_TRUE(low[0] < 80 && low[1] < 10 && low[2] > 75);       // purple
+    EXPECT_EQ(at(50 + width - 1, 0)[3], background ? 255 : 0);
+  }
 }
 
 }  // namespace

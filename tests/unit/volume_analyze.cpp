@@ -39,7 +39,10 @@ TEST(Analyze, ReadsPackedFilesAndNamesInCapitals) {
   folder.put("C.IMG", stored(kSamples));
   EXPECT_EQ(read_file<std::int16_t>(folder.put("C.HDR", analyze_header({}))), kSamples);
   EXPECT_EQ(read_file<std::int16_t>(folder / "C.IMG"), kSamples);
-  EXPECT_TRUE(contains(refusal(folder.put("alone.hdr", analyze_header({}))), "alone.img: cannot be opened"));
+  EXPECT_EQ(refusal(folder.put("lost.img", "x")),
+            folder / "lost.img" + ": expected its header in " + folder / "lost.hdr" + ", found no such file");
+  EXPECT_TRUE(contains(refusal(folder.put("alone.hdr", analyze_header({}))),
+                       "alone.hdr: expected its samples in " + folder / "alone.img" + ", found no such file"));
 }
 
 TEST(Analyze, AppliesAndNotesWhatSpmKeepsInFreeFields) {

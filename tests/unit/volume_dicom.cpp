@@ -44,7 +44,7 @@ TEST(Dicom, ReadsASeriesByAFolderAPatternOrOneFile) {
   EXPECT_EQ(read_file<std::uint16_t>(folder / "s*"), kSamples);
   const auto source = open_volume(folder / "s7");
   EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
-  EXPECT_EQ(source->info().notes.at(0), "the series of this file: 5 files of its folder");
+  EXPECT_EQ(source->info().remarks.at(0), "the series of this file: 5 files of its folder");
   EXPECT_EQ(open_volume(folder / "other")->info().dims[2], 1);
 }
 
@@ -65,6 +65,7 @@ TEST(Dicom, ListsSeveralSeriesAndReadsTheChosenOne) {
   other.description = "scout";
   folder.put("other", dicom(other, slice(3)));
   const std::string message = refusal(folder / "");
+  EXPECT_TRUE(contains(message, "expected one series, or --series UID for one of them")) << message;
   EXPECT_TRUE(contains(message, "found 2 series: 1.2.3 ('thin', 5 slices); 1.2.4 ('scout', 1 slice)")) << message;
   OpenOptions options;
   options.series = "1.2.3";
@@ -434,7 +435,7 @@ TEST(Dicom, LeavesFilesWithoutImagesOut) {
   fields.rows = 0;
   folder.put("report", dicom(fields, ""));
   const auto source = open_volume(folder / "");
-  EXPECT_EQ(source->info().notes.at(0), "1 DICOM file holds no image and is left out");
+  EXPECT_EQ(source->info().remarks.at(0), "1 DICOM file holds no image and is left out");
   EXPECT_EQ(samples_of<std::uint16_t>(*source), kSamples);
 }
 

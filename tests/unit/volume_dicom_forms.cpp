@@ -9,6 +9,7 @@ using namespace dicom_files;
 std::string all_notes(const VolumeInfo& info) {
   std::string text;
   for (const std::string& note : info.notes) text += note + "\n";
+  for (const std::string& remark : info.remarks) text += remark + "\n";
   return text;
 }
 

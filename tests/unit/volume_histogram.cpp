@@ -169,6 +169,16 @@ TEST(Hounsfield, IsARangeFromAirToBone) {
   EXPECT_FALSE(is_hounsfield_range(-1024, 50));
 }
 
+// An iso-value at the lower one would have all samples inside.
+TEST(Otsu, LiesAboveTheLowerOfTwoNeighbouringNumbers) {
+  for (const double low : {1.0, 0.0, -1.0}) {
+    const double high = std::nextafter(low, 2);
+    const Histogram histogram = histogram_of(SampleType::kFloat64, std::vector<double>{low, high, low});
+    EXPECT_EQ(otsu_threshold(histogram), high);
+    for (const double threshold : otsu_thresholds(histogram, 2)) EXPECT_EQ(threshold, high);
+  }
+}
+
 TEST(Otsu, SaysNothingAboutOneValue) {
   EXPECT_FALSE(otsu_threshold(histogram_of(SampleType::kUint8, std::vector<std::uint8_t>{7, 7, 7})));
   EXPECT_FALSE(otsu_threshold(Histogram{}));

@@ -79,9 +79,10 @@ TEST(Nrrd, KnowsAllTypeNamesAndNamesTheOthers) {
     const std::string content = header("type: " + name + "\n") + "\n" + std::string(30 * sample_bytes(type), 'x');
     EXPECT_EQ(open_volume(folder.put("a.nrrd", content))->info().type, type) << name;
   }
-  for (const std::string name : {"long", "unsigned long", "block", "half", ""}) {
+  for (const std::string name : {"long", "unsigned long", "block", "half"}) {
     EXPECT_TRUE(contains(refusal_of(folder, "type: " + name + "\n"), "type '" + name + "'")) << name;
   }
+  EXPECT_TRUE(contains(refusal_of(folder, "type: \n"), "expected the field 'type', found none"));
 }
 
 TEST(Nrrd, RefusesEncodingsItDoesNotKnow) {
@@ -128,7 +129,8 @@ TEST(Nrrd, ReadsDetachedDataBesideTheHeader) {
     // Fields may follow the data file, and a line end may be missing.
     EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nhdr", header(field + "\nspacings: 1 1 1"))), kSamples);
   }
-  EXPECT_TRUE(contains(refusal(folder.put("a.nhdr", header("data file: gone.raw\n"))), "gone.raw: cannot be opened"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.nhdr", header("data file: gone.raw\n"))),
+                       "a.nhdr: expected its samples in " + folder / "gone.raw" + ", found no such file"));
   folder.put("short.raw", "xx");
   EXPECT_TRUE(contains(refusal(folder.put("a.nhdr", header("data file: short.raw\n"))), "60 bytes of samples"));
   EXPECT_TRUE(contains(refusal(folder.put("a.nhdr", header())), "a blank line behind the header, or a data file"));
@@ -185,7 +187,7 @@ TEST(Nrrd, RefusesSeriesThatDoNotFit) {
        {"p%d 0 6 1", "p%d 0 3 1", "p%d 0 4 0", "p%d 4 0 1", "p%d 0 9223372036854775807 1", "p%s 0 4 1", "p%d%d 0 4 1",
         "p%999999d 0 4 1", "p%n 0 4 1", "p% 0 4 1", "LIST", "LIST\np0\np1\np2", "LIST\np0\np1\np2\np3\nq4"}) {
     const std::string message = refusal(folder.put("a.nhdr", header("data file: " + file + "\n")));
-    EXPECT_TRUE(contains(message, "expected") || contains(message, "cannot be opened")) << file << ": " << message;
+    EXPECT_TRUE(contains(message, "expected")) << file << ": " << message;
   }
   // A missing file is found before anything is read.
   EXPECT_THROW(open_volume(folder.put("a.nhdr", header("data file: LIST\np0\np1\np2\np3\nq4\n"))), BadInput);

@@ -139,6 +139,41 @@ TEST(SmallerVolume, MeansAreNotRounded) {
   EXPECT_THROW(downsample_volume(numbered({3, 2, 2}), 0), std::invalid_argument);
 }
 
+std::vector<std::uint16_t> thinned(const std::array<std::int64_t, 3>& dims, std::vector<std::uint16_t> samples,
+                                   std::int64_t step, std::int64_t slices) {
+  VolumeInfo info;
+  info.dims = dims;
+  info.type = SampleType::kUint16;
+  const auto smaller = thin_label_map(volume_in_memory(info, std::as_bytes(std::span(samples))), step);
+  return read_all<std::uint16_t>(*smaller, slices);
+}
+
+TEST(ThinnedLabels, AreTheMostFrequentOfEachBlock) {
+  // Two blocks of 2 x 2 x 2: 7 four times and 300 three times; 9 three times and 2 twice.
+  EXPECT_EQ(thinned({4, 2, 2}, {7, 300, 1, 9, 7, 7, 2, 9, 300, 7, 2, 3, 300, 5, 4, 9}, 2, 1),
+            (std::vector<std::uint16_t>{7, 9}));
+  // Of several the first, whichever is less.
+  EXPECT_EQ(thinned({4, 1, 1}, {8, 3, 3, 8}, 2, 1), (std::vector<std::uint16_t>{8, 3}));
+  EXPECT_EQ(thinned({2, 2, 2}, {0, 6, 0, 6, 0, 6, 0, 6}, 2, 1), (std::vector<std::uint16_t>{0}));
+  // Blocks that the upper ends cut off.
+  EXPECT_EQ(thinned({3, 3, 3}, std::vector<std::uint16_t>(27, 4), 2, 2), (std::vector<std::uint16_t>(8, 4)));
+  EXPECT_EQ(thinned({3, 1, 3}, {1, 1, 2, 1, 1, 2, 5, 6, 6}, 2, 1), (std::vector<std::uint16_t>{1, 2, 5, 6}));
+  EXPECT_EQ(thinned({2, 1, 1}, {1, 2}, 5, 1), (std::vector<std::uint16_t>{1}));
+}
+
+TEST(ThinnedLabels, LieInTheMiddleOfTheirBlocks) {
+  const auto map = [] { return numbered({4, 3, 3}); };
+  const auto labels = thin_label_map(map(), 2);
+  const auto means = downsample_volume(map(), 2);
+  EXPECT_EQ(labels->info().dims, means->info().dims);
+  EXPECT_EQ(labels->info().geometry.origin, means->info().geometry.origin);
+  EXPECT_EQ(labels->info().geometry.spacing, means->info().geometry.spacing);
+  EXPECT_EQ(labels->info().type, map()->info().type);
+  EXPECT_THROW(thin_label_map(map(), 0), std::invalid_argument);
+  std::vector<std::byte> bytes(3 * labels->info().slice_bytes());
+  EXPECT_THROW(labels->read(1, 2, bytes), std::invalid_argument);
+}
+
 // The surface of a part lies on that of the whole.
 TEST(CroppedVolume, GivesThePartOfTheSurface) {
   GenerateOptions volume;

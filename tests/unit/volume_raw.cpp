@@ -107,6 +107,33 @@ TEST(RawFiles, MustHaveExactlyTheDeclaredSize) {
   }
 }
 
+TEST(RawFiles, ProposeTheLayoutThatWouldFit) {
+  const TempFolder folder;
+  const auto found = [&](const char* layout, std::size_t bytes) {
+    OpenOptions options;
+    options.raw = parse_raw_layout(layout);
+    const std::string message = refusal(folder.put("a", std::string(bytes, 'x')), options);
+    return message.substr(message.find("found ") + 6);
+  };
+  EXPECT_EQ(found("10x10x10:uint8", 2000), "2000: perhaps uint16 or int16?");
+  EXPECT_EQ(found("10x10x10:uint16", 1000), "1000: perhaps uint8 or int8?");
+  EXPECT_EQ(found("10x10x10:int16", 4000), "4000: perhaps float32 or int32?");
+  EXPECT_EQ(found("10x10x10:float32", 8000), "8000: perhaps float64 or int64?");
+  EXPECT_EQ(found("10x10x10:uint8:skip=352", 2352), "2352: perhaps uint16 or int16?");
+  EXPECT_EQ(found("10x10x10:int16", 2352), "2352: perhaps skip=352?");
+  EXPECT_EQ(found("10x10x10:int16:skip=352", 2000), "2000");
+  EXPECT_EQ(found("10x10x10:uint8", 999), "999");
+  EXPECT_EQ(found("10x10x10:uint8:skip=5000", 1000), "1000");
+}
+
+TEST(RawFiles, NameTheHeaderBesideThem) {
+  const TempFolder folder;
+  const std::string samples = folder.put("a.raw", "xx");
+  EXPECT_FALSE(contains(refusal(samples), "header"));
+  folder.put("a.mhd", "x");
+  EXPECT_TRUE(contains(refusal(samples), "; open its header instead, " + folder / "a.mhd"));
+}
+
 TEST(RawFiles, RefuseSizesBeyond63Bits) {
   const TempFolder folder;
   OpenOptions options;
@@ -224,7 +251,7 @@ TEST(RawSlices, AreAsManyAndAsLongAsTheLayoutSays) {
     EXPECT_TRUE(contains(message, why)) << message;
   };
   refused("2x3x3:uint8", "expected 3 files by the layout, one for each slice, found 2");
-  refused("2x3x1:uint8", "expected 1 files by the layout, one for each slice, found 2");
+  refused("2x3x1:uint8", "expected 1 file by the layout, one for each slice, found 2");
   refused("2x2x2:uint8", "z9: expected 4 bytes by its layout, found 6");
   refused("2x3x2:uint8:skip=1", "z9: expected 7 bytes by its layout, found 6");
   folder.put("z10", std::string(5, 'x'));

@@ -82,5 +82,41 @@ TEST(Rows, ThatEndEarlyAreBadInput) {
   EXPECT_THROW(reader.read(2, 4, 1, row), BadInput);
 }
 
+// A label map that holds much while it is read.
+class LargeMap final : public BufferedSource {
+ public:
+  static constexpr std::uint64_t kHeld = 1'000'000;
+
+  const VolumeInfo& info() const override { return info_; }
+  std::uint64_t held_bytes() const override { return kHeld; }
+  void read(std::int64_t, std::int64_t, std::span<std::byte> out) override {
+    std::fill(out.begin(), out.end(), std::byte{1});
+  }
+
+ private:
+  const VolumeInfo info_ = generate_volume({"noise", {6, 5, 4}, SampleType::kUint8})->info();
+};
+
+// Caps on memory count what a volume holds that others are made of.
+TEST(HeldBytes, AreToldByVolumesThatAreMadeOfOthers) {
+  const auto map = [] { return std::make_unique<LargeMap>(); };
+  const std::uint64_t slice = map()->info().slice_bytes();
+  EXPECT_EQ(held_by_slices(*map()), LargeMap::kHeld);
+  EXPECT_EQ(held_by_rows(*map()), LargeMap::kHeld + slice);
+  const std::vector<Open> sources{
+      [&] { return downsample_volume(map(), 2); },
+      [&] { return smooth_mask(map(), {}, 1); },
+      [&] { return label_volume(map(), Label(1)); },
+      [&] {
+        return crop_volume(map(), {{0, 0, 0}, {3, 3, 3}});
+      },
+      [&] {
+        return crop_volume(downsample_volume(map(), 2), {{0, 0, 0}, {2, 2, 2}});
+      },
+  };
+  for (const Open& open : sources) EXPECT_GE(held_by_slices(*open()), LargeMap::kHeld + slice);
+  EXPECT_LT(held_by_slices(*sources.front()()), LargeMap::kHeld + 10 * slice);
+}
+
 }  // namespace
 }  // namespace isoweave::testing

@@ -136,9 +136,24 @@ TEST(SliceSeries, LeavesOtherFilesOfAFolderOutButNotOfAPattern) {
   std::filesystem::create_directory(folder / "more.tif");
   const auto source = open_volume(folder / "");
   EXPECT_EQ(source->info().dims[2], 12);
-  EXPECT_EQ(source->info().notes.at(0),
-            "5 files of the folder are no slices and are left out: a?.txt, b.txt, c.txt, ...");
+  EXPECT_EQ(source->info().remarks.at(0),
+            "4 files of the folder are no slices and are left out: a?.txt, b.txt, c.txt, ...");
+  EXPECT_EQ(source->info().notes.at(0), "1 file of the folder is no slice and is left out: empty");
   EXPECT_TRUE(contains(refusal(folder / "*.t*"), "a?.txt: expected a slice in TIFF, PNG or DICOM, found text"));
+}
+
+// Files that might have been slices are told apart from those that are usual beside slices.
+TEST(SliceSeries, TellsUsualFilesFromThoseThatMightBeSlices) {
+  const TempFolder folder;
+  put_series(folder);
+  for (const char* name : {"README", "Thumbs.db", "info.json", "z13.jpg", "z14.tif.part", "z15"})
+    folder.put(name, "hello");
+  const auto source = open_volume(folder / "");
+  EXPECT_EQ(
+      source->info().remarks,
+      std::vector<std::string>{"3 files of the folder are no slices and are left out: README, Thumbs.db, info.json"});
+  EXPECT_EQ(source->info().notes.at(0),
+            "3 files of the folder are no slices and are left out: z13.jpg, z14.tif.part, z15");
 }
 
 TEST(SliceSeries, RefusesFoldersWithoutSlices) {

@@ -104,5 +104,25 @@ TEST(ParseLength, ConvertsToTheUnitOfTheInput) {
   EXPECT_THROW(parse_length("1mm", "furlong"), std::invalid_argument);
 }
 
+TEST(ParseLength, PercentIsOfTheDiagonal) {
+  EXPECT_EQ(parse_length("5%", "um", 200).value, 10);
+  EXPECT_FALSE(parse_length("5%", "um", 200).in_voxels);
+  EXPECT_EQ(parse_length("0.5um", "um", 200).value, 0.5);
+  EXPECT_THROW(parse_length("5%", "um"), std::invalid_argument);
+  EXPECT_THROW(parse_length("5%%", "um", 200), std::invalid_argument);
+  EXPECT_THROW(parse_length("-5%", "um", 200), std::invalid_argument);
+}
+
+TEST(BoxDiagonal, OfVolumesAndMeshes) {
+  VolumeInfo volume;
+  volume.dims = {3, 4, 12};
+  volume.geometry.spacing = {2, 2, 2};
+  EXPECT_EQ(box_diagonal(volume), 26);
+  TriangleMesh mesh;
+  EXPECT_EQ(box_diagonal(mesh), 0);
+  mesh.vertices = {{-1, 0, 0}, {2, 4, -6}, {0, 1, 6}};
+  EXPECT_EQ(box_diagonal(mesh), 13);
+}
+
 }  // namespace
 }  // namespace isoweave::testing

@@ -3,6 +3,7 @@
 
 #include "index_helpers.hpp"
 #include "sanitized.hpp"
+#include "volume/row_source.hpp"
 #include "zarr_helpers.hpp"
 
 namespace isoweave::testing {
@@ -169,7 +170,7 @@ TEST(Zarr2, DamageIsRefusedByTheFileItIsIn) {
   put_file(folder / "a/0.0.0", "short");
   EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected a chunk of 24 bytes, found 5"));
   put_file(folder / "a/0.0.0", std::string(9000, 'x'));
-  EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected at most 4120 bytes for a chunk of 24, found 9000"));
+  EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected at most 4120 bytes, found 9000"));
   put_file(folder / "a/.zarray", "{\"zarr_format\": 2,");
   EXPECT_TRUE(contains(refusal(folder / "a"), ".zarray: expected JSON"));
   put_file(folder / "a/.zarray", std::string(200, '[') + std::string(200, ']'));
@@ -331,6 +332,66 @@ TEST(Zarr, ChunksThatTheSurfaceMissesAreNotRead) {
   // In an index of another state of the folder nobody trusts.
   std::filesystem::remove(folder / "a.zarr/4.1.3");
   EXPECT_THROW(run_file(folder / "a.zarr", iso, folder / "a.zarr.test-index", Normals::kAbsent), BadInput);
+}
+
+// Every box of a volume of 5 x 4 x 3 samples, by itself and as a part of a larger part.
+template <class Sample>
+void expect_boxes(const std::string& path) {
+  const std::vector<Sample> whole = read_file<Sample>(path);
+  EXPECT_TRUE(open_volume(path)->reads_boxes());
+  for (std::int64_t n = 0; n < 5 * 5 * 4 * 4 * 3 * 3; ++n) {
+    const Region box{{n % 5, n / 25 % 4, n / 400 % 3}, {n / 5 % 5 + 1, n / 100 % 4 + 1, n / 1200 + 1}};
+    if (box.first[0] >= box.end[0] || box.first[1] >= box.end[1] || box.first[2] >= box.end[2]) continue;
+    std::vector<Sample> expected;
+    for (std::int64_t k = box.first[2]; k < box.end[2]; ++k) {
+      for (std::int64_t j = box.first[1]; j < box.end[1]; ++j) {
+        const auto row = whole.begin() + 20 * k + 5 * j;
+        expected.insert(expected.end(), row + box.first[0], row + box.end[0]);
+      }
+    }
+    SCOPED_TRACE(::testing::Message() << path << ' ' << n);
+    EXPECT_EQ(samples_of<Sample>(*crop_volume(open_volume(path), box), 1 + n % 2), expected);
+    const std::int64_t corner = box.first[0] / 2;
+    auto larger = crop_volume(open_volume(path), {{corner, 0, 0}, {5, box.end[1], 3}});
+    const Region inner{{box.first[0] - corner, box.first[1], box.first[2]},
+                       {box.end[0] - corner, box.end[1], box.end[2]}};
+    EXPECT_EQ(samples_of<Sample>(*crop_volume(std::move(larger), inner), 1), expected);
+  }
+}
+
+TEST(Zarr, BoxesAreThoseOfTheWhole) {
+  const TempFolder folder;
+  put_zarr2(folder / "c", {{"fill_value", -7}});
+  std::filesystem::remove(folder / "c/0.0.1");
+  expect_boxes<std::int16_t>(folder / "c");
+  put_zarr2(folder / "f", {{"order", "F"}}, {.fortran = true});
+  expect_boxes<std::int16_t>(folder / "f");
+  put_zarr3<std::uint16_t>(folder / "half", {{"data_type", "float16"}});
+  expect_boxes<float>(folder / "half");
+  put_shards(folder / "shards", true);
+  expect_boxes<std::int16_t>(folder / "shards");
+  put_n5(folder / "n5", "raw");
+  expect_boxes<std::int16_t>(folder / "n5");
+}
+
+// A box of a volume whose bands are a thousand times as large as that of the box.
+TEST(Zarr, ABoxHoldsItsOwnBandAlone) {
+  const TempFolder folder;
+  put_json(folder / "a/.zarray", {{"zarr_format", 2},
+                                  {"shape", {64, 40000, 40000}},
+                                  {"chunks", {32, 32, 32}},
+                                  {"dtype", "|u1"},
+                                  {"order", "C"},
+                                  {"fill_value", 3},
+                                  {"compressor", nullptr},
+                                  {"filters", nullptr}});
+  for (const char* const chunk : {"a/0.1200.31", "a/0.0.0"}) put_file(folder / chunk, std::string(32 * 32 * 32, 'a'));
+  auto volume = crop_volume(open_volume(folder / "a"), {{1000, 38420, 0}, {1100, 38432, 40}});
+  EXPECT_LT(held_by_slices(*volume), 1'000'000U);
+  const std::vector<std::uint8_t> samples = samples_of<std::uint8_t>(*volume, 3);
+  // The chunk begins at 992, 38400, 0.
+  EXPECT_EQ(std::count(samples.begin(), samples.end(), 'a'), 24 * 12 * 32);
+  EXPECT_EQ(std::count(samples.begin(), samples.end(), 3), 100 * 12 * 40 - 24 * 12 * 32);
 }
 
 }  // namespace

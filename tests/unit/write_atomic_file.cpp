@@ -179,6 +179,10 @@ TEST(AtomicFile, OpeningFailsAtOnceWithThePathAndTheReason) {
   EXPECT_NE(open(folder / "missing/a.txt").find("No such file or directory"), std::string::npos);
   files::write_bytes(folder / "file", "");
   EXPECT_NE(open(folder / "file/a.txt").find("Not a directory"), std::string::npos);
+  const PartFile part{folder / "a.part", std::nullopt};
+  for (const std::string& path : {folder / "sub", folder / "missing/a.txt", folder / "file/a.txt"}) {
+    EXPECT_EQ(message_of([&] { AtomicFile file(path, part); }), open(path));
+  }
   EXPECT_EQ(folder.entries().size(), 2U);
 }
 

@@ -1,4 +1,4 @@
-// Packed meshes, as their own libraries unpack them.
+// Packed meshes, as their own libraries unpack them. neuroglancer's are in write_octree_mesh.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,90 +11,17 @@
 #include "isoweave/error.hpp"
 #include "mesh/write/mesh_file_sink.hpp"
 #include "meshes.hpp"
+#include "packed_meshes.hpp"
 
 #ifdef ISOWEAVE_HAS_MESHOPTIMIZER
 #include <meshoptimizer.h>
-#endif
-#ifdef ISOWEAVE_HAS_DRACO
-#include <draco/compression/decode.h>
 #endif
 
 namespace isoweave {
 namespace {
 
+using namespace packed;
 using Json = nlohmann::json;
-
-MeshFileOptions packed_options() {
-  MeshFileOptions options;
-  options.unit = "mm";
-  options.compress = true;
-  return options;
-}
-
-#if defined(ISOWEAVE_HAS_MESHOPTIMIZER) || defined(ISOWEAVE_HAS_DRACO)
-// A bent sheet, away from the origin, with a vertex of no triangle.
-TriangleMesh sheet() {
-  TriangleMesh mesh = meshes::grid(20);
-  for (Point& p : mesh.vertices) p = {p[0] + 100, p[1] * 0.7F - 50, std::sin(p[0] * 0.3F) * 3};
-  mesh.vertices.push_back({120, -36, 0});
-  return mesh;
-}
-
-std::vector<std::string> write(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options) {
-  std::vector<Triangle64> triangles;
-  for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-  const auto sink = open_mesh_file(path, options);
-  sink->append({.vertices = mesh.vertices, .normals = mesh.normals, .triangles = triangles});
-  sink->finish();
-  return sink->notes();
-}
-
-using Corners = std::array<std::array<double, 3>, 3>;
-
-// Triangles by their centres, to match them whatever their order.
-std::vector<Corners> sorted(std::vector<Corners> triangles) {
-  const auto centre = [](const Corners& t) {
-    std::array<long, 3> c{};
-    for (std::size_t axis = 0; axis < 3; ++axis) c[axis] = std::lround((t[0][axis] + t[1][axis] + t[2][axis]) * 20);
-    return c;
-  };
-  std::sort(triangles.begin(), triangles.end(),
-            [&](const Corners& a, const Corners& b) { return centre(a) < centre(b); });
-  return triangles;
-}
-
-std::vector<Corners> corners_of(const TriangleMesh& mesh) {
-  std::vector<Corners> all;
-  for (const auto& t : mesh.triangles) {
-    Corners corners{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t axis = 0; axis < 3; ++axis) corners[c][axis] = mesh.vertices[t[c]][axis];
-    }
-    all.push_back(corners);
-  }
-  return sorted(all);
-}
-
-// The same triangles, each corner within `error`, wherever a triangle begins.
-void expect_close(const std::vector<Corners>& a, const std::vector<Corners>& b, double error) {
-  ASSERT_EQ(a.size(), b.size());
-  double worst = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    double best = 1e9;
-    for (std::size_t turn = 0; turn < 3; ++turn) {
-      double far = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto& p = a[n][c];
-        const auto& q = b[n][(c + turn) % 3];
-        far = std::max(far, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
-      }
-      best = std::min(best, far);
-    }
-    worst = std::max(worst, best);
-  }
-  EXPECT_LE(worst, error);
-}
-#endif
 
 #ifdef ISOWEAVE_HAS_MESHOPTIMIZER
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
@@ -255,122 +182,6 @@ TEST(WritePackedGlb, AnEmptyMeshIsAnEmptyScene) {
   const std::string bytes = files::read_bytes(folder / "a.glb");
   EXPECT_EQ(bytes.size(), 20U + word_at(bytes, 12));
   EXPECT_EQ(Json::parse(bytes.substr(20))["scenes"].dump(), R"([{"name":"empty"}])");
-}
-#endif
-
-#ifdef ISOWEAVE_HAS_DRACO
-TEST(WritePackedPrecomputed, UnpacksToTheMeshWithinTheErrorTold) {
-  const files::Folder folder;
-  const TriangleMesh mesh = sheet();
-  MeshFileOptions options = packed_options();
-  options.segment = 7;
-  ASSERT_EQ(write(folder / "a.precomputed", mesh, options).size(), 1U);
-  const Json info = Json::parse(files::read_bytes(folder / "a.precomputed/info"));
-  EXPECT_EQ(info["@type"], "neuroglancer_multilod_draco");
-  EXPECT_EQ(info["vertex_quantization_bits"], 16);
-  EXPECT_EQ(info["transform"][0], 1e6) << "millimetres to nanometres";
-
-  const std::string index = files::read_bytes(folder / "a.precomputed/7.index");
-  const std::string fragment = files::read_bytes(folder / "a.precomputed/7");
-  ASSERT_EQ(index.size(), 64U);
-  std::array<float, 6> box{};
-  std::memcpy(box.data(), index.data(), sizeof(box));
-  std::array<std::uint32_t, 10> words{};
-  std::memcpy(words.data(), index.data() + 24, sizeof(words));
-  EXPECT_EQ(words[0], 1U) << "levels";
-  EXPECT_EQ(words[5], 1U) << "fragments";
-  EXPECT_EQ(words[9], fragment.size());
-
-  draco::DecoderBuffer buffer;
-  buffer.Init(fragment.data(), fragment.size());
-  draco::Decoder decoder;
-  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  ASSERT_TRUE(decoded.ok());
-  const draco::Mesh& found = *decoded.value();
-  const draco::PointAttribute& positions = *found.GetNamedAttribute(draco::GeometryAttribute::POSITION);
-  EXPECT_EQ(positions.data_type(), draco::DT_UINT32);
-  std::vector<Corners> corners(found.num_faces());
-  for (std::uint32_t f = 0; f < found.num_faces(); ++f) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::array<std::uint32_t, 3> place{};
-      positions.GetMappedValue(found.face(draco::FaceIndex(f))[c], place.data());
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        corners[f][c][axis] = double{box[3 + axis]} + double{box[axis]} * place[axis] / 65535;
-      }
-    }
-  }
-  expect_close(corners_of(mesh), sorted(corners), 0.000265);
-}
-
-// Two levels and one that has vanished.
-TEST(WritePackedPrecomputed, LevelsAreFragmentsInCellsTwiceAsWide) {
-  const files::Folder folder;
-  TriangleMesh fine = sheet();
-  fine.vertices.pop_back();
-  TriangleMesh coarse = meshes::grid(2);
-  for (Point& p : coarse.vertices) p = {p[0] * 10 + 100, p[1] * 7 - 50, 0.5F};
-  const std::array<MeshFileOptions, 3> options{packed_options(), packed_options(), packed_options()};
-  std::vector<std::string> notes;
-  {
-    const auto sinks = open_mesh_levels(folder / "a.precomputed", options);
-    for (std::size_t level = 0; level < 3; ++level) {
-      const TriangleMesh mesh = level == 0 ? fine : level == 1 ? coarse : TriangleMesh{};
-      std::vector<Triangle64> triangles;
-      for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
-      sinks[level]->append({mesh.vertices, {}, {}, triangles});
-      EXPECT_TRUE(folder.entries().empty());
-      sinks[level]->finish();
-    }
-    notes = sinks[2]->notes();
-  }
-  ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("level 1, the coarsest, by 2 times that"), std::string::npos) << notes[0];
-  const std::string index = files::read_bytes(folder / "a.precomputed/1.index");
-  const std::string data = files::read_bytes(folder / "a.precomputed/1");
-  ASSERT_EQ(index.size(), 28U + 2 * 20 + 2 * 16);
-  std::array<float, 6> box{};
-  std::memcpy(box.data(), index.data(), sizeof(box));
-  std::array<std::uint32_t, 19> words{};
-  std::memcpy(words.data(), index.data() + 24, sizeof(words));
-  EXPECT_EQ(words[0], 2U) << "levels";
-  std::array<float, 2> scales{};
-  std::memcpy(scales.data(), &words[1], sizeof(scales));
-  EXPECT_GT(scales[0], 0.5);
-  EXPECT_GT(scales[1], 5 * scales[0]);
-  for (std::size_t n = 3; n < 9; ++n) EXPECT_EQ(words[n], 0U) << "offsets";
-  EXPECT_EQ(words[9], 1U);
-  EXPECT_EQ(words[10], 1U);
-  const std::array<std::size_t, 2> bytes{words[14], words[18]};
-  ASSERT_EQ(bytes[0] + bytes[1], data.size());
-  for (std::size_t level = 0; level < 2; ++level) {
-    draco::DecoderBuffer buffer;
-    buffer.Init(data.data() + (level == 0 ? 0 : bytes[0]), bytes[level]);
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    ASSERT_TRUE(decoded.ok());
-    const draco::Mesh& found = *decoded.value();
-    const draco::PointAttribute& positions = *found.GetNamedAttribute(draco::GeometryAttribute::POSITION);
-    std::vector<Corners> corners(found.num_faces());
-    for (std::uint32_t f = 0; f < found.num_faces(); ++f) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        std::array<std::uint32_t, 3> place{};
-        positions.GetMappedValue(found.face(draco::FaceIndex(f))[c], place.data());
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          EXPECT_LE(place[axis], level == 0 ? 65534U : 32767U) << "in the first eighth of its cell";
-          const double cell = double{box[axis]} * (level == 0 ? 1 : 2);
-          corners[f][c][axis] = double{box[3 + axis]} + cell * place[axis] / 65535;
-        }
-      }
-    }
-    expect_close(corners_of(level == 0 ? fine : coarse), sorted(corners), 0.00027 * (level == 0 ? 1 : 2));
-  }
-}
-
-TEST(WritePackedPrecomputed, AnEmptyMeshHasNoFragment) {
-  const files::Folder folder;
-  write(folder / "a.precomputed", {}, packed_options());
-  EXPECT_EQ(files::read_bytes(folder / "a.precomputed/1.index").size(), 48U);
-  EXPECT_EQ(files::read_bytes(folder / "a.precomputed/1"), "");
 }
 #endif
 

@@ -94,6 +94,27 @@ function addSplit(view, startSplit) {
   });
 }
 
+function addOpacity(view) {
+  const range = byId('opacity');
+  const say = () => range.setAttribute('aria-valuetext', `${range.value} percent`);
+  range.addEventListener('input', () => {
+    view.setOpacity(range.value / 100);
+    say();
+  });
+  say();
+}
+
+const kBackgrounds = { light: 0xf3f5f7, dark: 0x10171d, white: 0xffffff };
+
+// One colour for view and picture; without a choice the view has the page's and the picture has none.
+function addBackground(view) {
+  const list = byId('background');
+  list.addEventListener('change', () => {
+    view.canvas.parentElement.dataset.background = list.value;
+    view.setBackground(kBackgrounds[list.value] ?? null);
+  });
+}
+
 function addPicture(view) {
   byId('picture').addEventListener('click', async () => {
     const link = element('a', { download: `${byId('title').textContent}.png` });
@@ -124,6 +145,8 @@ export function startControls(view, middle, { several = false, choose, startSpli
   addErrors(view);
   addSplit(view, startSplit);
   addViews(view, space);
+  addOpacity(view);
+  addBackground(view);
   addPicture(view);
   addFullScreen();
   startSection(view, middle);

@@ -12,6 +12,8 @@ const kPlain = 0xe2ddd0;
 const kLooked = 20000; // vertices of a surface that a view is fitted to, about
 const kPicture = 2; // a picture has so many of its pixels along one of the page, at least
 
+const kNested = 4; // steps of depth between surfaces that coincide, as those of iso-values do at the border of the volume
+
 const plainMaterial = (more = {}) => new MeshStandardMaterial({
   color: kPlain, roughness: 0.62, metalness: 0, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
   polygonOffsetUnits: 1, ...more,
@@ -30,6 +32,7 @@ export class View extends Stage {
     this.before = new Mesh(new BufferGeometry(), this.surface.material); // left of the split
     this.beforeEdges = new Mesh(this.before.geometry, this.edges.material);
     this.split = null; // part of the width, or none
+    this.opacity = 1; // of all surfaces, beside what parts have of their own
     this.planes = new Group();
     this.planes.visible = false;
     this.planesOfCut = [];
@@ -46,10 +49,12 @@ export class View extends Stage {
   }
 
   // Surfaces that are shown together, in place of a single one: { geometry, color, opacity } each. Those that let
-  // others be seen are drawn after them, the most transparent last.
+  // others be seen are drawn after them, the most transparent last, and lie in front where surfaces coincide.
   setParts(parts) {
     this.parts = parts.map(({ geometry, color, opacity }) => {
-      const surface = new Mesh(geometry, plainMaterial({ color }));
+      const outer = parts.filter((other) => other.opacity < opacity).length;
+      const depth = 1 + kNested * outer;
+      const surface = new Mesh(geometry, plainMaterial({ color, polygonOffsetFactor: depth, polygonOffsetUnits: depth }));
       const edges = new Mesh(geometry, this.edges.material);
       surface.renderOrder = -opacity;
       this.scene.add(surface, edges);
@@ -65,11 +70,25 @@ export class View extends Stage {
     this.parts.forEach((part, n) => {
       part.on = on[n];
       const opaque = part.opacity === strongest;
-      Object.assign(part.surface.material, {
-        opacity: opaque ? 1 : part.opacity, transparent: !opaque, depthWrite: opaque, side: opaque ? DoubleSide : FrontSide,
-        needsUpdate: true,
-      });
+      part.surface.material.side = opaque ? DoubleSide : FrontSide;
+      part.shown = opaque ? 1 : part.opacity;
     });
+    this.setOpacity(this.opacity);
+  }
+
+  // Surfaces that let others be seen hide nothing of them, so they do not write depths.
+  setOpacity(opacity) {
+    this.opacity = opacity;
+    const set = (material, value) =>
+      Object.assign(material, { opacity: value, transparent: value < 1, depthWrite: value === 1, needsUpdate: true });
+    set(this.surface.material, opacity);
+    for (const { surface, shown } of this.parts) set(surface.material, shown * opacity);
+    this.draw();
+  }
+
+  // A colour behind all, or null for none.
+  setBackground(color) {
+    this.renderer.setClearColor(color ?? 0x000000, color === null ? 0 : 1);
     this.draw();
   }
 
@@ -159,7 +178,7 @@ export class View extends Stage {
       .find(({ point }) => this.planesOfCut.every((plane) => plane.distanceToPoint(point) >= 0))?.point;
   }
 
-  // A PNG of what is seen, with nothing behind it.
+  // A PNG of what is seen, with the background that was chosen, if any.
   async picture() {
     const ratio = this.renderer.getPixelRatio();
     this.renderer.setPixelRatio(Math.max(ratio, kPicture));

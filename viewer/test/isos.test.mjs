@@ -1,42 +1,21 @@
-// Loads the page of several iso-values, as page.test.mjs does the page of one:
-//   node isos.test.mjs ISOWEAVE FOLDER PACKAGES
-// Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
+// Loads the page of several iso-values, as page.test.mjs does the page of one.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { Browser, findChromium } from './browser.mjs';
+import { before, describe, test } from 'node:test';
+import { inFolder, json, packages, run, withPage } from './begin.mjs';
 import {
   audit, choose, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kDesktop, kOtherDigits, kPhone,
-  kSmall, openAll, picture, reach, settled, slide, visibleText, visit,
+  kSmall, openAll, picture, reach, settled, slide, visibleText,
 } from './pages.mjs';
-
-const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
-if (findChromium() === undefined) {
-  console.log('skipped: no Chromium in PATH and no CHROMIUM');
-  process.exit(77);
-}
 
 const kVolume = 'generate:smooth:48x48x40:uint8';
 const kIsos = [90, 120.5, 150];
 
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-const run = (...words) => execFileSync(isoweave, words, { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] }).toString();
-const json = (name) => JSON.parse(readFileSync(join(folder, name), 'utf8'));
-
-let browser;
-before(async () => {
+before(() => {
   run('mesh', kVolume, '--iso', kIsos.join(','), '-o', 'a.ply', '--html', 'isos.html', '--report', 'isos.json', '--quiet');
   run('mesh', kVolume, '--iso', `400,${kIsos[1]}`, '--allow-empty', '-o', 'b.ply', '--page-triangles', '2000', '--html',
     'few.html', '--report', 'few.json', '--quiet');
-  browser = await Browser.start();
 });
-after(() => browser?.close());
 
-const withPage = (name, screen, act) => visit(browser, pathToFileURL(join(folder, name)).href, screen, act);
 const drawn = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => view.parts.map(({ surface, on }) => ({
   on, triangles: surface.geometry.index.count / 3, opacity: surface.material.opacity, clear: surface.material.transparent,
   colour: '#' + surface.material.color.getHexString() })))`);
@@ -77,6 +56,10 @@ describe('the page of several iso-values', () => {
       assert.equal((await picture(page)).sum, first.sum, `${index} and back, by its key`);
     }
     assert.equal(sums.size, 4, 'each is to be seen');
+    await slide(page, 'opacity', 50);
+    assert.deepEqual((await drawn(page)).map(({ opacity }) => opacity), isos.map(({ opacity }) => opacity / 2));
+    assert.deepEqual((await drawn(page)).map(({ clear }) => clear), [true, true, true]);
+    await slide(page, 'opacity', 100);
     await page.press('3');
     const left = (await drawn(page)).filter(({ on }) => on);
     assert.deepEqual(left.map(({ clear }) => clear), [true, false], 'the innermost that is shown is opaque');
@@ -85,6 +68,31 @@ describe('the page of several iso-values', () => {
     await settled(page);
     assert.equal((await picture(page)).covered, 0);
     assert.equal(await visibleText(page, 'drawn'), 'No surface is shown');
+  }));
+
+  // The surfaces coincide where they are closed at the border of the volume. The innermost is green there only where it is bare.
+  test('covers inner surfaces by outer ones', () => withPage('isos.html', kSmall, async (page) => {
+    const green = `window.isoweave.ready.then(({ view }) => {
+      view.drawNow();
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+      const context = copy.getContext('2d');
+      context.drawImage(view.canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, copy.width, copy.height);
+      let count = 0;
+      for (let at = 0; at < data.length; at += 4) count += data[at + 1] - Math.max(data[at], data[at + 2]) > 60;
+      return count;
+    })`;
+    for (const side of [0, 2, 4]) {
+      await choose(page, 'views', side);
+      await settled(page);
+      const covered = await page.evaluate(green);
+      for (const key of ['1', '2']) await page.press(key);
+      await settled(page);
+      const bare = await page.evaluate(green);
+      for (const key of ['1', '2']) await page.press(key);
+      assert.ok(bare > 5000 && covered < bare / 200, `${covered} of ${bare}`);
+    }
   }));
 
   test('draws as the page of one surface does', () => withPage('isos.html', kSmall, async (page) => {
@@ -142,7 +150,7 @@ describe('the page of several iso-values', () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('isos.html', { ...screen, dark }, (page) =>
-          page.screenshot(join(folder, `isos-${device}-${dark ? 'dark' : 'light'}.png`)));
+          page.screenshot(inFolder(`isos-${device}-${dark ? 'dark' : 'light'}.png`)));
       }
     }
   });

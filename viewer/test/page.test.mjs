@@ -1,36 +1,18 @@
 // Loads pages that isoweave has just written, from files and without a network, clicks, and compares every number with
-// the report:
-//   node page.test.mjs ISOWEAVE FOLDER PACKAGES
-// Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
+// the report.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { Browser, findChromium } from './browser.mjs';
+import { writeFileSync } from 'node:fs';
+import { before, describe, test } from 'node:test';
+import { inFolder, json, packages, run, withPage } from './begin.mjs';
 import { numberIn } from './numbers.mjs';
 import {
   audit, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kContrasts, kDesktop, kOtherDigits, kPhone,
-  openAll, pressed, settled, visibleText, visit,
+  openAll, pressed, settled, visibleText,
 } from './pages.mjs';
-
-const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
-if (findChromium() === undefined) {
-  console.log('skipped: no Chromium in PATH and no CHROMIUM');
-  process.exit(77);
-}
 
 const kVolume = '<img src=x onerror=alert(1)>.nrrd'; // what a page must not take for its own
 
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-const run = (...words) => execFileSync(isoweave, words, { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] }).toString();
-const json = (name) => JSON.parse(readFileSync(join(folder, name), 'utf8'));
-const address = (name) => pathToFileURL(join(folder, name)).href;
-
-let browser;
-before(async () => {
+before(() => {
   run('generate', 'gyroid', '--size', '56', '--type', 'uint8', '--spacing', '0.5,0.5,0.75', '-o', kVolume, '--quiet');
   run('mesh', kVolume, '--iso', '127.5', '--slab', '12', '-o', 'mesh.ply', '--html', 'mesh.html', '--report',
     'mesh.json', '--quiet');
@@ -47,13 +29,9 @@ before(async () => {
     'indexed.json', '--quiet');
   run('view', 'mesh.ply', '--quiet');
   run('view', 'mesh.json', '-o', 'view.html', '--quiet');
-  writeFileSync(join(folder, 'other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
+  writeFileSync(inFolder('other.json'), JSON.stringify({ ...json('mesh.json'), output: 'small.stl' }));
   run('view', 'other.json', '-o', 'other.html', '--quiet');
-  browser = await Browser.start();
 });
-after(() => browser?.close());
-
-const withPage = (name, screen, act) => visit(browser, address(name), screen, act);
 
 describe('numbers', () => {
   test('of a run on a volume are those of its report', () => withPage('mesh.html', kDesktop, async (page) => {
@@ -201,7 +179,7 @@ describe('looks', () => {
       reached.push(id);
     }
     assert.deepEqual(reached, ['a', 'theme', 'surface-choice-1', 'compare', 'error', 'wireframe', 'smooth', 'section', 'measure',
-      'views', 'reset', 'picture', 'full', 'view', 'summary', 'summary']);
+      'views', 'background', 'opacity', 'reset', 'picture', 'full', 'view', 'summary', 'summary']);
   }));
 
   test('screenshots', async () => {
@@ -209,7 +187,7 @@ describe('looks', () => {
       for (const dark of [false, true]) {
         await withPage('mesh.html', { ...screen, dark }, async (page) => {
           assert.equal(await pressed(page, 'theme'), String(dark));
-          const name = (more) => join(folder, `${device}-${dark ? 'dark' : 'light'}${more}.png`);
+          const name = (more) => inFolder(`${device}-${dark ? 'dark' : 'light'}${more}.png`);
           await page.screenshot(name(''));
           for (const id of ['error', 'wireframe', 'section', 'compare']) await page.click(`#${id}`);
           await settled(page);

@@ -1,43 +1,24 @@
-// Loads the page of info --isos:
-//   node range.test.mjs ISOWEAVE FOLDER PACKAGES
-// Pages and screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
+// Loads the page of info --isos.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, rmSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { Browser, findChromium } from './browser.mjs';
+import { before, describe, test } from 'node:test';
+import { inFolder, packages, run, withPage } from './begin.mjs';
 import { numberIn } from './numbers.mjs';
 import {
-  audit, expectFits, expectNumbersOf, kContrasts, kDesktop, kPhone, kSmall, openAll, pressed, settled, visibleText, visit,
+  audit, expectFits, expectNumbersOf, kContrasts, kDesktop, kPhone, kSmall, openAll, pressed, settled, visibleText,
 } from './pages.mjs';
-
-const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
-if (findChromium() === undefined) {
-  console.log('skipped: no Chromium in PATH and no CHROMIUM');
-  process.exit(77);
-}
 
 const kVolume = '<img src=x onerror=alert(1)>.nrrd'; // what a page must not take for its own
 
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-const run = (...words) => execFileSync(isoweave, words, { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] }).toString();
 const info = (...words) => JSON.parse(run('info', ...words, '--isos', '--json'));
 
-let browser;
-before(async () => {
+before(() => {
   run('generate', 'noise', '--size', '40', '--type', 'uint8', '-o', kVolume, '--quiet');
   run('generate', 'gyroid', '--size', '32', '--type', 'float32', '-o', 'gyroid.nrrd', '--quiet');
   run('info', kVolume, '--isos', '--html', 'range.html');
   run('info', 'gyroid.nrrd', '--isos', '--html', 'float.html');
   run('info', 'gyroid.nrrd', '--roi', '0:1,0:1,0:1', '--isos', '--html', 'none.html');
-  browser = await Browser.start();
 });
-after(() => browser?.close());
 
-const withPage = (name, screen, act) => visit(browser, pathToFileURL(join(folder, name)).href, screen, act);
 const plotted = (page) => page.evaluate('window.isoweave.data()');
 const legend = (page) => page.evaluate(`[...document.querySelectorAll('.u-value')].map((e) => e.textContent)`);
 const values = ({ first, step, vertices }) => vertices.map((_, n) => first + step * n);
@@ -156,7 +137,7 @@ describe('the page of info --isos', () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('range.html', { ...screen, dark }, (page) =>
-          page.screenshot(join(folder, `range-${device}-${dark ? 'dark' : 'light'}.png`)));
+          page.screenshot(inFolder(`range-${device}-${dark ? 'dark' : 'light'}.png`)));
       }
     }
   });

@@ -1,32 +1,16 @@
-// Loads pages from files, as page.test.mjs does, and looks at, turns, cuts and measures what they draw:
-//   node view.test.mjs ISOWEAVE FOLDER
-// Pages and pictures are left in FOLDER. Ends with 77 where there is no Chromium.
+// Loads pages from files, as page.test.mjs does, and looks at, turns, cuts and measures what they draw.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { Browser, findChromium } from './browser.mjs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { before, describe, test } from 'node:test';
+import { address, browser, inFolder, json, packages, run, withPage } from './begin.mjs';
+import { Browser } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
-  choose, expectNumbersOf, kPhone, kSmall, picture, pressed, reach, settled, slide, until, visibleText, visit,
+  audit, choose, expectNumbersOf, kPhone, kSmall, picture, pressed, reach, settled, slide, until, visibleText,
 } from './pages.mjs';
 
-const [isoweave, folder] = process.argv.slice(2).map((path) => resolve(path));
-if (findChromium() === undefined) {
-  console.log('skipped: no Chromium in PATH and no CHROMIUM');
-  process.exit(77);
-}
-
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
-const run = (...words) => execFileSync(isoweave, words, { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] }).toString();
-const json = (name) => JSON.parse(readFileSync(join(folder, name), 'utf8'));
-const address = (name) => pathToFileURL(join(folder, name)).href;
-
-let browser;
-before(async () => {
+before(() => {
   run('generate', 'gyroid', '--size', '56', '--type', 'uint8', '--spacing', '0.5,0.5,0.75', '-o', 'volume.nrrd', '--quiet');
   const mesh = (volume, name, ...more) => run('mesh', volume, '--iso', '127.5', '-o', `${name}.ply`, '--html', `${name}.html`,
     '--report', `${name}.json`, '--quiet', ...more);
@@ -35,21 +19,17 @@ before(async () => {
   mesh('volume.nrrd', 'levels', '--lods', '0.1vox,0.3vox,1vox');
   run('mesh', 'volume.nrrd', '--iso', '300', '--allow-empty', '-o', 'empty.ply', '--html', 'empty.html', '--quiet');
   run('generate', 'gyroid', '--size', '24', '--type', 'uint8', '-o', 'patient.nrrd', '--quiet');
-  const patient = readFileSync(join(folder, 'patient.nrrd'), 'latin1')
+  const patient = readFileSync(inFolder('patient.nrrd'), 'latin1')
     .replace('space dimension: 3', 'space: left-posterior-superior');
-  writeFileSync(join(folder, 'patient.nrrd'), patient, 'latin1');
+  writeFileSync(inFolder('patient.nrrd'), patient, 'latin1');
   for (const space of ['ras', 'lps']) mesh('patient.nrrd', space, '--space', space);
-  browser = await Browser.start();
 });
-after(() => browser?.close());
 
 // The middle, width and height of an element on the screen.
 const middleOf = (page, selector) => page.evaluate(`(() => {
   const { x, y, width, height } = document.querySelector('${selector}').getBoundingClientRect();
   return [x + width / 2, y + height / 2, width, height];
 })()`);
-
-const withPage = (name, screen, act) => visit(browser, address(name), screen, act);
 
 describe('the view', () => {
   test('shows the mesh', () => withPage('mesh.html', kSmall, async (page) => {
@@ -336,7 +316,7 @@ describe('the view', () => {
   });
 
   test('gives its picture away', () => withPage('mesh.html', kSmall, async (page) => {
-    const downloads = join(folder, 'downloads');
+    const downloads = inFolder('downloads');
     await browser.send('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: downloads });
     const [width, height] = await page.evaluate(`[view.clientWidth, view.clientHeight]`);
     const before = await picture(page);
@@ -348,6 +328,77 @@ describe('the view', () => {
     assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [2 * width, 2 * height]);
     assert.equal((await picture(page)).sum, before.sum);
   }));
+
+  // The least alpha of the pixels that the mesh covers.
+  const leastAlpha = (page) => page.evaluate(`window.isoweave.ready.then(({ view }) => {
+    view.drawNow();
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+    const context = copy.getContext('2d');
+    context.drawImage(view.canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    return data.reduce((least, value, at) => (at % 4 === 3 && value > 0 ? Math.min(least, value) : least), 255);
+  })`);
+
+  test('lets through as much as the slider says, and back', () => withPage('mesh.html', kSmall, async (page) => {
+    const first = await picture(page);
+    assert.equal(await page.evaluate(`document.getElementById('opacity').getAttribute('aria-valuetext')`), '100 percent');
+    const seen = [];
+    for (const value of [70, 30]) {
+      await slide(page, 'opacity', value);
+      const alpha = await leastAlpha(page);
+      // The least of the mesh is one layer of it, or what an edge of a triangle covers of a pixel.
+      assert.ok(alpha <= Math.ceil(2.55 * value) + 1, `${alpha} at ${value} percent`);
+      assert.equal(await page.evaluate(`document.getElementById('opacity').getAttribute('aria-valuetext')`), `${value} percent`);
+      seen.push((await picture(page)).sum);
+    }
+    assert.equal(new Set([first.sum, ...seen]).size, 3);
+    // A surface that is chosen later has it as well, and the one before does.
+    await page.click('#compare');
+    await settled(page);
+    assert.deepEqual(await page.evaluate(`window.isoweave.ready.then(({ view }) => [view.surface, view.before].map(({ material }) =>
+      [material.opacity, material.depthWrite]))`), [[0.3, false], [0.3, false]]);
+    await page.click('#compare');
+    await slide(page, 'opacity', 100);
+    await settled(page);
+    assert.equal((await picture(page)).sum, first.sum);
+  }));
+
+  const kBackgrounds = { light: [243, 245, 247, 255], dark: [16, 23, 29, 255], white: [255, 255, 255, 255], '': [0, 0, 0, 0] };
+  for (const dark of [false, true]) {
+    test(`has the background that is chosen, with marks that stand out, on a ${dark ? 'dark' : 'light'} page`, () =>
+      withPage('mesh.html', { ...kSmall, dark }, async (page) => {
+        await page.evaluate(`['error', 'section'].forEach((id) => document.getElementById(id).click())`);
+        const first = await picture(page);
+        for (const [name, color] of Object.entries(kBackgrounds)) {
+          await choose(page, 'background', name);
+          const corner = await page.evaluate(`window.isoweave.ready.then(async ({ view }) => {
+            const image = await createImageBitmap(await view.picture());
+            const copy = document.createElement('canvas');
+            [copy.width, copy.height] = [image.width, image.height];
+            const context = copy.getContext('2d');
+            context.drawImage(image, 0, 0);
+            return [...context.getImageData(2, 2, 1, 1).data];
+          })`);
+          assert.deepEqual(corner, color, name);
+          const contrast = await page.evaluate(`(() => {
+            const light = (rgb) => {
+              const [r, g, b] = rgb.map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+              return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            };
+            const ink = (query) => getComputedStyle(document.querySelector(query));
+            const inks = [ink('.scale').color, ...[0, 1, 2].map((axis) => ink('text.axis-' + axis).fill)];
+            return Math.min(...inks.map((text) => {
+              const [low, high] = [light(text.match(/[0-9]+/g).slice(0, 3).map(Number)), light(${JSON.stringify(color)})].sort((a, b) => a - b);
+              return (high + 0.05) / (low + 0.05);
+            }));
+          })()`);
+          if (name !== '') assert.ok(contrast >= 4.5, `${name}: ${contrast}`);
+          await audit(page, packages);
+        }
+        assert.equal((await picture(page)).sum, first.sum);
+      }));
+  }
 
   test('takes the full screen', () => withPage('mesh.html', kSmall, async (page) => {
     await page.click('#full');

@@ -1,39 +1,25 @@
 // Loads the page that isoweave serves while it runs, sees the surface grow, and compares what the page says in the end
-// with the report:
-//   node watch.test.mjs ISOWEAVE FOLDER PACKAGES
-// Screenshots are left in FOLDER. Ends with 77 where there is no Chromium.
+// with the report.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
-import { Browser, findChromium } from './browser.mjs';
+import { join } from 'node:path';
+import { describe, test } from 'node:test';
+import { browser, inFolder, isoweave, packages } from './begin.mjs';
+import { Browser } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
-import { audit, expectKeysOfControls, expectOnFirstScreen, openAll, reach, settled } from './pages.mjs';
+import {
+  audit, expectKeysOfControls, expectOnFirstScreen, kDesktop, kPhone, kSmall, openAll, reach, settled,
+} from './pages.mjs';
 
-const [isoweave, folder, packages] = process.argv.slice(2).map((path) => resolve(path));
-if (findChromium() === undefined) {
-  console.log('skipped: no Chromium in PATH and no CHROMIUM');
-  process.exit(77);
-}
-
-const kDesktop = { width: 1320, height: 900 };
-const kSmall = { width: 720, height: 600 }; // for pictures, which processors draw here
-const kPhone = { width: 390, height: 844, touch: true };
 const kSlow = 'generate:gyroid:64x64x900:uint8';
 const kSlower = 'generate:gyroid:96x96x1600:uint8'; // many seconds, with one thread: the browser is faster
 const kLong = 'generate:gyroid:96x96x2000000:uint8';
 const kOpen = 'generate:gyroid:160x160x600:uint8'; // with --open most of it is final soon
 const kRough = 'generate:white:64x64x256:uint8'; // more triangles than are drawn
 
-rmSync(folder, { recursive: true, force: true });
-mkdirSync(folder, { recursive: true });
 const sleep = (ms) => new Promise((done) => { setTimeout(done, ms); });
-
-let browser;
-before(async () => { browser = await Browser.start(); });
-after(() => browser?.close());
 
 // A run that is watched. It is killed in the end if it is still there.
 class Run {
@@ -290,7 +276,7 @@ describe('looks', () => {
   test('screenshots', async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
-        const name = (more) => join(folder, `watch-${device}-${dark ? 'dark' : 'light'}${more}.png`);
+        const name = (more) => inFolder(`watch-${device}-${dark ? 'dark' : 'light'}${more}.png`);
         // Runs of their own: a page that is photographed does not ask for news.
         await withWatched(kOpen, { ...screen, dark }, async (page) => {
           assert.equal(await pressed(page, 'theme'), String(dark));

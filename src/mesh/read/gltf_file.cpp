@@ -5,12 +5,17 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/read/gltf_packed.hpp"
+#include "mesh/read/placement.hpp"
 #include "parallel/size.hpp"
 #include "volume/formats/vtk/vtk_streams.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
 
+// The extension of packed data, by its first name and by its present one.
+constexpr const char* kOldPacking = "EXT_meshopt_compression";
+constexpr const char* kPacking = "KHR_meshopt_compression";
 constexpr std::uint64_t kLongestScene = std::uint64_t{256} << 20;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
 constexpr std::uint64_t kByte = 5120, kUbyte = 5121, kShort = 5122, kUshort = 5123, kUint = 5125, kFloat = 5126;
@@ -196,6 +201,27 @@ std::vector<std::byte> GltfFile::bytes_of(std::uint64_t buffer, std::uint64_t of
   return result;
 }
 
+// The items of a view that is packed; null for another one.
+const std::vector<std::byte>* GltfFile::unpacked_view(const GltfValue& number) {
+  const GltfValue extensions = element("bufferViews", number).value("extensions", GltfValue::object());
+  const char* const name = extensions.contains(kOldPacking) ? kOldPacking : kPacking;
+  if (!extensions.contains(name)) return nullptr;
+  const std::uint64_t view = whole(number, "a view");
+  if (const auto found = unpacked_.find(view); found != unpacked_.end()) return &found->second;
+  const GltfValue& packed = extensions.at(name);
+  const PackedForm form{whole(packed.at("count"), "count"), whole(packed.at("byteStride"), "byteStride"),
+                        packed.at("mode").get<std::string>(), packed.value("filter", "NONE")};
+  std::uint64_t bytes = 0;
+  if (__builtin_mul_overflow(form.count, form.stride, &bytes) || bytes > kMostCopies * size_ - unpacked_bytes_) {
+    input_.fail("expected packed data in proportion to the file, found more");
+  }
+  unpacked_bytes_ += bytes;
+  const std::uint64_t begin = packed.contains("byteOffset") ? whole(packed.at("byteOffset"), "byteOffset") : 0;
+  const std::vector<std::byte> stored =
+      bytes_of(whole(packed.at("buffer"), "buffer"), begin, whole(packed.at("byteLength"), "byteLength"));
+  return &unpacked_.emplace(view, unpacked(input_, form, stored)).first->second;
+}
+
 GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type, std::size_t components) {
   const GltfValue& accessor = element("accessors", number);
   if (accessor.contains("sparse")) input_.fail("expected plain accessors, found a sparse one");
@@ -204,11 +230,7 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
     input_.fail("expected an accessor of type " + std::string(type) + ", found '" + accessor.value("type", "") + "'");
   }
   const GltfValue& view = element("bufferViews", accessor.at("bufferView"));
-  for (const char* packed : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
-    if (view.contains("extensions") && view.at("extensions").contains(packed)) {
-      input_.fail(std::string("expected data that are not compressed, found '") + packed + "'");
-    }
-  }
+  const std::vector<std::byte>* const unpacked = unpacked_view(accessor.at("bufferView"));
   Stored stored;
   stored.component = whole(accessor.at("componentType"), "componentType");
   stored.count = whole(accessor.at("count"), "count");
@@ -217,9 +239,10 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
   stored.stride = view.contains("byteStride") ? whole(view.at("byteStride"), "byteStride") : each;
   const std::uint64_t first = accessor.contains("byteOffset") ? whole(accessor.at("byteOffset"), "byteOffset") : 0;
   const std::uint64_t begin = view.contains("byteOffset") ? whole(view.at("byteOffset"), "byteOffset") : 0;
-  const std::uint64_t length = whole(view.at("byteLength"), "byteLength");
+  const std::uint64_t length = unpacked != nullptr ? unpacked->size() : whole(view.at("byteLength"), "byteLength");
+  const std::uint64_t most = unpacked != nullptr ? unpacked->size() : size_;
   std::uint64_t bytes = 0;
-  const bool wrong = each == 0 || stored.stride < each || stored.count > size_ ||
+  const bool wrong = each == 0 || stored.stride < each || stored.count > most ||
                      __builtin_mul_overflow(stored.count - 1, stored.stride, &bytes) ||
                      __builtin_add_overflow(bytes, each, &bytes) || first > length || bytes > length - first;
   if (wrong && stored.count > 0) {
@@ -227,6 +250,11 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
                 " bytes, found others");
   }
   if (stored.count == 0) return stored;
+  if (unpacked != nullptr) {
+    const auto from = unpacked->begin() + static_cast<std::ptrdiff_t>(first);
+    stored.bytes.assign(from, from + static_cast<std::ptrdiff_t>(bytes));
+    return stored;
+  }
   std::uint64_t at = 0;
   if (__builtin_add_overflow(begin, first, &at)) input_.fail("expected a view within its buffer, found another");
   stored.bytes = bytes_of(whole(view.at("buffer"), "buffer"), at, bytes);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -51,6 +52,7 @@ class GltfFile {
   void take_buffers();
   Stored stored(const GltfValue& accessor, std::string_view type, std::size_t components);
   std::vector<std::byte> bytes_of(std::uint64_t buffer, std::uint64_t offset, std::uint64_t bytes);
+  const std::vector<std::byte>* unpacked_view(const GltfValue& number);
 
   MeshInput& input_;
   GltfValue scene_;
@@ -66,6 +68,8 @@ class GltfFile {
   std::uint64_t size_;
   std::uint64_t binary_ = 0, binary_bytes_ = 0;  // where the chunk of data is; 0: there is none
   std::vector<Buffer> buffers_;
+  std::map<std::uint64_t, std::vector<std::byte>> unpacked_;  // views that are packed in the file
+  std::uint64_t unpacked_bytes_ = 0;
 };
 
 }  // namespace isoweave::mesh_io

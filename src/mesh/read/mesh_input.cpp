@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "files/external_files.hpp"
+#include "files/part_file.hpp"
 #include "files/whole_input.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/printable.hpp"
@@ -28,7 +29,9 @@ std::string MeshInput::named_file(const std::string& name) const {
   OpenOptions options;
   options.external = options_.external;
   check_external(options, path_, name);
-  return beside(path_, name);
+  std::string path = beside(path_, name);
+  require_part(path_, "a part of the mesh in", path);
+  return path;
 }
 
 void MeshInput::fail(const std::string& what) const {

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "files/quoted.hpp"
 #include "mesh/read/mesh_words.hpp"
 
 namespace isoweave::mesh_io {
@@ -104,7 +105,7 @@ class HeaderReader {
       next_line();
       rest = line_;
     } while (line_.empty());
-    if (lower_case(take_word(rest)) != "ply") fail("expected 'ply'");
+    if (lower_case(take_word(rest)) != "ply") fail_at_line("'ply'");
     line_end_ = input_.ended_in_return() ? MeshInput::LineEnd::kReturn : MeshInput::LineEnd::kNewline;
   }
 
@@ -145,9 +146,9 @@ class HeaderReader {
     } else if (encoding == "binary_big_endian") {
       header_.encoding = PlyEncoding::kBigEndian;
     } else {
-      fail("expected ascii, binary_little_endian or binary_big_endian");
+      fail_at_line("ascii, binary_little_endian or binary_big_endian");
     }
-    if (version != "1.0") fail("expected version 1.0");
+    if (version != "1.0") fail_at_line("version 1.0");
     has_format_ = true;
   }
 
@@ -155,7 +156,7 @@ class HeaderReader {
     PlyElement element;
     element.name = lower_case(take_word(rest));
     const std::optional<std::uint64_t> count = parse_integer<std::uint64_t>(take_word(rest));
-    if (element.name.empty() || !count || !take_word(rest).empty()) fail("expected 'element NAME COUNT'");
+    if (element.name.empty() || !count || !take_word(rest).empty()) fail_at_line("'element NAME COUNT'");
     element.count = *count;
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name) fail("element '" + element.name + "' is given twice");
@@ -171,13 +172,13 @@ class HeaderReader {
     if (lower_case(type) == "list") {
       property.length_type = read_type(take_word(rest));
       if (property.length_type == PlyType::kFloat32 || property.length_type == PlyType::kFloat64) {
-        fail("expected an integer type for the length of a list");
+        fail_at_line("an integer type for the length of a list");
       }
       type = take_word(rest);
     }
     property.type = read_type(type);
     property.name = take_word(rest);
-    if (property.name.empty() || !take_word(rest).empty()) fail("expected 'property TYPE NAME'");
+    if (property.name.empty() || !take_word(rest).empty()) fail_at_line("'property TYPE NAME'");
     PlyElement& element = header_.elements.back();
     if (find_property(element, property.name)) fail("property '" + property.name + "' is given twice");
     if (element.properties.size() == kMostProperties) {
@@ -233,6 +234,10 @@ class HeaderReader {
 
   [[noreturn]] void fail(const std::string& what) const {
     input_.fail("header line " + std::to_string(number_) + ": " + what);
+  }
+
+  [[noreturn]] void fail_at_line(const std::string& expected) const {
+    fail("expected " + expected + ", found " + quoted(line_));
   }
 
   MeshInput& input_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "mesh/read/gltf_file.hpp"
@@ -10,6 +11,7 @@
 #include "mesh/read/mesh_leftovers.hpp"
 #include "mesh/read/placement.hpp"
 #include "mesh/write/glb_scene.hpp"
+#include "parallel/size.hpp"
 
 namespace isoweave::mesh_io {
 namespace {
@@ -19,7 +21,8 @@ enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, 
 // Whether an extension leaves the shape as it is, or is read here.
 bool is_known_extension(const std::string& name) {
   for (const char* known : {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
-                            "MSFT_lod", "MSFT_packing_", "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_"}) {
+                            "MSFT_lod", "MSFT_packing_", "EXT_meshopt_compression", "KHR_meshopt_compression",
+                            "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_"}) {
     if (name.starts_with(known)) return true;
   }
   return false;
@@ -71,8 +74,13 @@ class SceneReader {
     MeshPlace place;
     place.take("UNIT", extras.value("unit", ""));
     place.take("SPACE", extras.value("space", ""));
+    WidePoint offset{};
+    if (extras.contains("offset")) offset = numbers<3>(extras, "offset");
     const std::vector<GltfValue> meshes = own_meshes();
-    for (const GltfValue& mesh : meshes) add_primitive(mesh.at("primitives").at(0), Placement{}, nullptr);
+    const std::vector<Placement> places = own_places(meshes.size(), offset);
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+      add_primitive(meshes[n].at("primitives").at(0), places[n], nullptr);
+    }
     check_normals();
     if (meshes.size() > 1) {
       mesh_.mesh().notes.push_back(std::to_string(meshes.size()) +
@@ -80,7 +88,7 @@ class SceneReader {
     }
     TriangleMesh mesh = mesh_.finish(place);
     if (!extras.contains("offset")) return mesh;
-    mesh.offset = numbers<3>(extras, "offset");
+    mesh.offset = offset;
     for (const double coordinate : mesh.offset) {
       if (std::abs(coordinate) <= double{std::numeric_limits<float>::max()}) continue;
       input_.fail("expected an offset that is finite in 32 bits, found another");
@@ -94,6 +102,45 @@ class SceneReader {
     const GltfValue used = file_.scene().value("extensionsUsed", GltfValue::array());
     const bool levels = std::ranges::find(used, GltfValue("MSFT_lod")) != used.end();
     return {meshes.begin(), levels && !meshes.empty() ? meshes.begin() + 1 : meshes.end()};
+  }
+
+  bool is_packed() const {
+    const GltfValue used = file_.scene().value("extensionsUsed", GltfValue::array());
+    return std::ranges::find(used, GltfValue("KHR_mesh_quantization")) != used.end();
+  }
+
+  // The places of the meshes of one of isoweave's own files: as stored, but where positions are steps of a grid, where
+  // the nodes below the one that turns the axes to those of glTF put them, without the offset.
+  std::vector<Placement> own_places(std::size_t meshes, const WidePoint& offset) const {
+    std::vector<Placement> places(meshes);
+    if (!is_packed()) return places;
+    const GltfValue& nodes = file_.scene().at("nodes");
+    std::map<std::size_t, std::size_t> parents;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (const GltfValue& child : nodes[n].value("children", GltfValue::array())) {
+        parents.emplace(to_size(file_.whole(child, "a child")), n);
+      }
+    }
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (!nodes[n].contains("mesh")) continue;
+      const std::uint64_t mesh = file_.whole(nodes[n].at("mesh"), "a mesh");
+      if (mesh < meshes) places[to_size(mesh)] = own_place(nodes, parents, n, offset);
+    }
+    return places;
+  }
+
+  Placement own_place(const GltfValue& nodes, const std::map<std::size_t, std::size_t>& parents, std::size_t node,
+                      const WidePoint& offset) const {
+    constexpr int kDeepest = 3;  // the root, the grid, the part
+    Placement placement;
+    for (int depth = 0; depth < kDeepest; ++depth) {
+      if (!nodes[node].contains("rotation")) placement = both(placement, placement_of(nodes[node]));
+      const auto parent = parents.find(node);
+      if (parent == parents.end()) break;
+      node = parent->second;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) placement.shift[axis] -= offset[axis];
+    return placement;
   }
 
   TriangleMesh read_scene() {

@@ -1,10 +1,12 @@
 // Tells the format of a mesh file by its content, then by its name.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "files/header_text.hpp"
+#include "files/quoted.hpp"
 #include "isoweave/mesh.hpp"
 #include "mesh/read/mesh_input.hpp"
 #include "mesh/read/mesh_words.hpp"
@@ -77,7 +79,7 @@ std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string&
   if (head.starts_with("PK\3\4")) return mesh_io::read_3mf(input);
   if (!named_obj && mesh_io::is_binary_stl(input)) return mesh_io::read_stl_binary(input);
   if (head.find("<VTKFile") != std::string::npos) return mesh_io::read_vtp(input);
-  if (is_wide_text(head)) input.fail("is text in UTF-16 or UTF-32, expected ASCII or UTF-8");
+  if (is_wide_text(head)) input.fail("expected text in ASCII or UTF-8, found UTF-16 or UTF-32");
   if (is_vtk_legacy(head)) return mesh_io::read_vtk(input);
   std::string_view rest = text_of(head);
   if (rest.starts_with('{')) return mesh_io::read_glb(input);  // an object in JSON
@@ -93,17 +95,25 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
   const bool is_text = mesh_io::looks_like_text(head);
   if (has_ending(path, ".stl")) return is_text ? mesh_io::read_stl_ascii(input) : mesh_io::read_stl_binary(input);
   if (has_ending(path, ".off") && is_text) return mesh_io::read_off(input);
-  if (has_ending(path, ".ply")) input.fail("does not begin with the line 'ply'");
-  if (has_ending(path, ".glb")) input.fail("does not begin with 'glTF'");
-  if (has_ending(path, ".gltf")) input.fail("does not begin with '{'");
-  if (has_ending(path, ".vtk")) input.fail("does not begin with the line '# vtk DataFile Version'");
-  for (const std::string_view ending : {".vtp", ".pvtp", ".vtu", ".pvtu"}) {
-    if (has_ending(path, ending)) input.fail("does not begin with a '<VTKFile' tag");
+  static constexpr std::array<std::array<std::string_view, 2>, 10> kBeginnings{{
+      {".ply", "the line 'ply'"},
+      {".glb", "'glTF'"},
+      {".gltf", "'{'"},
+      {".vtk", "the line '# vtk DataFile Version'"},
+      {".vtp", "a '<VTKFile' tag"},
+      {".pvtp", "a '<VTKFile' tag"},
+      {".vtu", "a '<VTKFile' tag"},
+      {".pvtu", "a '<VTKFile' tag"},
+      {".3mf", "a zip archive's 'PK'"},
+      {".off", "a line such as 'OFF' or 'COFF'"},
+  }};
+  constexpr std::size_t kShown = 8;
+  const std::string found = ", found " + quoted(std::string_view(head).substr(0, kShown));
+  for (const auto& [ending, beginning] : kBeginnings) {
+    if (has_ending(path, ending)) input.fail("expected " + std::string(beginning) + " at the beginning" + found);
   }
-  if (has_ending(path, ".3mf")) input.fail("does not begin as a zip archive does");
-  if (has_ending(path, ".off")) input.fail("does not begin with a line such as 'OFF' or 'COFF'");
   if (named_obj || looks_like_obj(text_of(head))) return mesh_io::read_obj(input);
-  input.fail("is not a PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF file");
+  input.fail("expected PLY, STL, OBJ, OFF, VTP, VTU, VTK, GLB, glTF or 3MF" + found);
 }
 
 // Drops the normals of a mesh where one is not a number: programs write 'nan' as the normal of a vertex that has none.

@@ -1,4 +1,5 @@
 // Legacy VTK files with polygons: points, polygons and strips of PolyData, and the flat cells of an unstructured grid.
+#include "files/quoted.hpp"
 #include "mesh/read/mesh_input.hpp"
 #include "mesh/read/vtk_mesh.hpp"
 #include "volume/formats/formats.hpp"
@@ -117,7 +118,10 @@ class VtkReader {
 
   LegacyArray next_array(std::string_view key, std::uint64_t count) {
     const std::vector<std::string> words = file_.next_words();
-    if (words.size() != 2 || legacy_key(words) != key) input_.fail("expected " + std::string(key) + " and a type");
+    if (words.size() != 2 || legacy_key(words) != key) {
+      const std::string found = words.empty() ? "the end of the file" : quoted(words[0]);
+      input_.fail("expected a line with " + std::string(key) + " and a type, found " + found);
+    }
     return file_.array_here(words[0], words[1], 1, count);
   }
 

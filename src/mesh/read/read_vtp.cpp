@@ -48,7 +48,8 @@ class VtpReader {
     constexpr std::uint64_t kTail = 64;
     std::string tail(static_cast<std::size_t>(std::min(file_->size(), kTail)), '\0');
     file_->read_at(file_->size() - tail.size(), std::as_writable_bytes(std::span(tail)));
-    if (tail.find("</VTKFile>") == std::string::npos) input_.fail("truncated: expected '</VTKFile>' at the end");
+    if (tail.find("</VTKFile>") == std::string::npos)
+      input_.fail("truncated: expected '</VTKFile>' at the end, found none");
   }
 
   // False when nothing but appended arrays follows.

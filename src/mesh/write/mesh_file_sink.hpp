@@ -155,7 +155,6 @@ std::unique_ptr<MeshSink> open_packed_glb(const MeshTarget& target, const MeshFi
 std::unique_ptr<MeshSink> open_vtp(const MeshTarget& target, const MeshFileOptions& options);
 std::unique_ptr<MeshSink> open_3mf(const MeshTarget& target, const MeshFileOptions& options);
 std::unique_ptr<MeshSink> open_precomputed(const MeshTarget& target, const MeshFileOptions& options);
-std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, const MeshFileOptions& options);
 
 // Little-endian stores that advance `out`.
 inline void store_u32(std::byte*& out, std::uint32_t value) {

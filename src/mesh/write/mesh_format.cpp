@@ -1,5 +1,6 @@
 #include "mesh/write/mesh_format.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string_view>
@@ -51,8 +52,8 @@ void check_options(const std::string& path, MeshFormat format, const MeshFileOpt
 // The size of a packed file, as measured on scans.
 std::uint64_t packed_bytes(const std::string& path, MeshFormat format, std::uint64_t vertices, std::uint64_t triangles,
                            bool normals) {
-  check_count_fits(path, "triangles", 0, triangles, kMostPackedTriangles);
   if (format == MeshFormat::kPrecomputed) return vertices * 2 + triangles;
+  check_count_fits(path, "triangles", 0, triangles, kMostPackedTriangles);
   return vertices * (normals ? 8 : 4) + triangles * 3 / 2;
 }
 
@@ -100,7 +101,6 @@ void check_glb_fits(const std::string& path, std::uint64_t vertices, std::uint64
 std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFileOptions& options) {
   const MeshFormat format = checked_mesh_format(path, options);
   const MeshTarget file{path};
-  const MeshTarget folder{path, MeshTarget::Kind::kFolder};
   switch (format) {
     case MeshFormat::kPly:
       return open_ply(file, options);
@@ -119,7 +119,8 @@ std::unique_ptr<MeshSink> open_mesh_file(const std::string& path, const MeshFile
     case MeshFormat::kPrecomputed:
       break;
   }
-  return options.compress ? open_packed_precomputed(folder, options) : open_precomputed(folder, options);
+  if (options.compress) return std::move(open_mesh_levels(path, {&options, 1}).front());
+  return open_precomputed({path, MeshTarget::Kind::kFolder}, options);
 }
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFileOptions& options) {
@@ -188,12 +189,15 @@ std::uint64_t mesh_file_bytes(const std::string& path, std::uint64_t vertices, s
 
 std::uint64_t mesh_file_memory(const std::string& path, std::uint64_t vertices, std::uint64_t triangles,
                                const MeshFileOptions& options) {
-  // Measured; for GLB as the packing of indices begins, for Draco as its tables of corners are built.
+  // Measured; for GLB as the packing of indices begins. For .precomputed: triangles that are sorted, vertices that are
+  // kept, and one fragment; a small mesh is one, as Draco's tables of corners are built.
   constexpr std::uint64_t kGlbVertex = 44, kGlbNormal = 16, kGlbTriangle = 38, kDracoVertex = 50, kDracoTriangle = 62;
+  constexpr std::uint64_t kOctree = 56'000'000;
   const MeshFormat format = mesh_format(path);
   if (format == MeshFormat::kStl) return vertices * 12;
   if (!options.compress) return 0;
-  if (format == MeshFormat::kPrecomputed) return vertices * kDracoVertex + triangles * kDracoTriangle;
+  if (format == MeshFormat::kPrecomputed)
+    return std::min(kOctree, vertices * kDracoVertex + triangles * kDracoTriangle);
   return vertices * (kGlbVertex + (options.normals ? kGlbNormal : 0)) + triangles * kGlbTriangle;
 }
 

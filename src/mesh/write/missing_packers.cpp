@@ -30,10 +30,6 @@ std::unique_ptr<JoinedFile> open_packed_glb_parts(const std::string& path, std::
 #endif
 
 #ifndef ISOWEAVE_HAS_DRACO
-std::unique_ptr<MeshSink> open_packed_precomputed(const MeshTarget& target, const MeshFileOptions&) {
-  not_built(target.path, "Draco", "ISOWEAVE_DRACO");
-}
-
 std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& path, std::span<const MeshFileOptions>) {
   not_built(path, "Draco", "ISOWEAVE_DRACO");
 }

@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "extract/cube_rules.hpp"
 #include "parallel/float_environment.hpp"
 #include "parallel/parallel.hpp"
 #include "parallel/size.hpp"
+#include "pipeline/forecast/forecast_curve.hpp"
 #include "pipeline/forecast/forecast_profile.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
@@ -26,7 +29,6 @@
 #include "volume/axes.hpp"
 #include "volume/indexed_source.hpp"
 #include "volume/samples.hpp"
-#include "volume/threshold.hpp"
 
 namespace isoweave {
 namespace {
@@ -59,7 +61,8 @@ constexpr double kHeldOfLeft = 3;     // held while a number of triangles is out
 constexpr double kFineDepth = 1.5;    // of the zone with fine quality, over that with normal quality
 constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;   // mean voxels
-constexpr double kSeenDepth = 4;      // layers: where a thick block has fewer undecided ones, that is what there is
+constexpr std::array kNoError{0.0};
+constexpr double kSeenDepth = 4;  // layers: where a thick block has fewer undecided ones, that is what there is
 
 enum class Reachable : std::uint8_t { kYes, kNo };  // a number of triangles
 
@@ -84,6 +87,7 @@ class Forecaster {
     error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
     // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
+    curve_.emplace(mean_voxel(info_.geometry), tile_error_, options.triangles > 0);
     refuse_reader(control.memory);
     band_rows_ = band_rows();
     plan_blocks();
@@ -106,7 +110,7 @@ class Forecaster {
       facts_.push_back(facts);
     }
     if (options_.closed && !last_cap_) last_cap_ = volume_.skips() ? end_cap(info_.dims[2] - 1) : first_cap_;
-    if (before_ > 0) left_ = std::min(1.0, static_cast<double>(after_) / static_cast<double>(before_));
+    left_ = curve_->share_left();
     return conclude();
   }
 
@@ -212,13 +216,14 @@ class Forecaster {
     double inside = 0;
     Section section(rows_, info_, first, slices, band_, [&](std::int64_t n, std::span<const std::byte> slice) {
       if (tile != nullptr) tile->take(n, slice);
-      if (options_.closed) inside += inside_on_sides(slice);
+      if (options_.closed) inside += inside_on_sides(slice, info_, stored_rule(info_, options_), band_.count);
       if (options_.closed && first + n == 0) first_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
       if (options_.closed && first + n == info_.dims[2] - 1)
         last_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
     });
     Stopwatch watch;
-    const MeshReport report = mesh(section, sink, 0, 0);
+    MeshSink* const sinks[] = {&sink};
+    const MeshReport report = mesh(section, sinks, kNoError, 0);
     watch.lap(seconds_extracting_);
     slices_read_ += static_cast<double>(slices) / rows_in_bands();
     return {static_cast<double>(report.triangles) / layers(section) * layers_in_bands(),
@@ -230,43 +235,43 @@ class Forecaster {
     const double expected = per_layer * layers_in_bands() * static_cast<double>(info_.dims[2]);
     const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
     Tile part = tile.cut(map_.busy_part(std::min(1.0, wanted / (per_layer * layers(tile)))));
-    TileCount full = count(part, 0);
+    TileCount full = count(part, kNoError);
     if (static_cast<double>(full.total) < wanted / 4) {  // the surface is elsewhere
       part = tile;
-      full = count(part, 0);
+      full = count(part, kNoError);
     }
     Stopwatch watch;
-    const TileCount left = count(part, tile_error_);
+    const TileCount left = count(part, curve_->errors());
     watch.lap(seconds_simplifying_);
     simplified_ += static_cast<double>(full.total);
-    before_ += full.middle;
-    after_ += left.middle;
+    curve_->add(full.middle.back(), left.middle);
     const double depth = static_cast<double>(left.undecided) * layers(part) / static_cast<double>(full.total + 1);
     depth_ = std::max(depth_, depth);
   }
 
   struct TileCount {
-    std::uint64_t total = 0, middle = 0;  // triangles; in the middle third of the layers, which the ends hardly disturb
-    std::uint64_t undecided = 0;          // most of them after a slab
+    std::uint64_t total = 0;            // triangles
+    std::vector<std::uint64_t> middle;  // at each error, of the middle third of the layers: ends hardly disturb it
+    std::uint64_t undecided = 0;        // most triangles after a slab
   };
 
-  TileCount count(Tile& tile, double error) const {
-    const double third = layers(tile) / 3;
-    TileCount counted;
-    const auto look = [&](double /*i*/, double /*j*/, double k) {
-      counted.middle += k >= third && k < 2 * third ? 1 : 0;
-    };
-    LocatingSink sink(info_.geometry.spacing, look);
-    const MeshReport report = mesh(tile, sink, error, error > 0 ? 3 : 0);
-    counted.total = report.triangles;
+  TileCount count(Tile& tile, std::span<const double> errors) const {
+    const double third = layers(tile) / 3 * info_.geometry.spacing[2];
+    std::deque<CountBetween> counts;
+    std::vector<MeshSink*> sinks;
+    for (std::size_t n = 0; n < errors.size(); ++n) sinks.push_back(&counts.emplace_back(third, 2 * third));
+    const MeshReport report = mesh(tile, sinks, errors, errors.back() > 0 ? 3 : 0);
+    TileCount counted{report.triangles, {}};
+    for (const CountBetween& count : counts) counted.middle.push_back(count.total);
     for (const SlabRecord& record : report.sweep) {
       counted.undecided = std::max(counted.undecided, record.undecided_triangles);
     }
     return counted;
   }
 
-  // Meshes the open surface of a block, in samples.
-  MeshReport mesh(SliceSource& block, MeshSink& sink, double error, std::int64_t slab) const {
+  // Meshes the open surface of a block, in samples, once for each of some ascending errors.
+  MeshReport mesh(SliceSource& block, std::span<MeshSink* const> sinks, std::span<const double> errors,
+                  std::int64_t slab) const {
     MeshOptions options = options_;
     options.closed = false;
     if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
@@ -275,10 +280,11 @@ class Forecaster {
     options.triangles = 0;
     options.components.reset();
     options.space = OutputSpace::kIndex;
-    options.error = Length::units(error);
+    for (const double error : errors.first(errors.size() - 1)) options.levels.push_back(Length::units(error));
+    options.error = Length::units(errors.back());
     RunControl control = control_;
     control.slab = slab;
-    return mesh_volume(block, sink, options, control);
+    return mesh_volume(block, sinks, options, control);
   }
 
   // The rows of a slice, and the layers between them, over those of a band.
@@ -286,28 +292,6 @@ class Forecaster {
   double layers_in_bands() const {
     const auto between = [](std::int64_t rows) { return static_cast<double>(std::max<std::int64_t>(rows - 1, 1)); };
     return between(info_.dims[1]) / between(band_rows_);
-  }
-
-  // The samples inside on the sides of a slice. Two sides of a band are cuts, so the two others stand for all four.
-  double inside_on_sides(std::span<const std::byte> slice) const {
-    const IsoRule rule = stored_rule(info_, options_);
-    const std::int64_t nx = info_.dims[0];
-    const std::int64_t ny = band_.count;
-    const bool whole = ny == info_.dims[1];
-    return visit_sample_type(info_.type, [&]<class T>() {
-      const T* const samples = reinterpret_cast<const T*>(slice.data());
-      const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
-      std::uint64_t inside = 0;
-      const auto add = [&](std::int64_t i, std::int64_t j) {
-        const T value = samples[j * nx + i];
-        const bool is_beyond = rule.above ? value >= threshold.value : value <= threshold.value;
-        inside += threshold.reachable && is_beyond ? 1 : 0;
-      };
-      for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, ny - 1);
-      for (std::int64_t j = 0; j < ny; ++j) add(0, j), add(nx - 1, j);
-      const auto sides = static_cast<double>(info_.dims[0] + info_.dims[1]);
-      return static_cast<double>(inside) * (whole ? 1 : sides / static_cast<double>(ny));
-    });
   }
 
   static double layers(const SliceSource& block) {
@@ -324,7 +308,10 @@ class Forecaster {
     forecast.triangles_extracted = to_count(extracted);
     const double left = std::isinf(error_) ? extracted : open * left_ + caps * (error_ > 0 ? kCapsLeft : 1);
     forecast.triangles = to_count(left);
-    if (options_.triangles > 0) forecast.triangles = left_of_number(forecast);
+    if (options_.triangles > 0) {
+      forecast.triangles = left_of_number(forecast);
+      forecast.head_start = curve_->head_start(options_, open, kCapsLeft * caps);
+    }
     forecast.vertices = forecast.triangles / 2;
     const Peak of_run = peak(profiles, control_.slab);
     forecast.peak_bytes = to_count(of_run.bytes);
@@ -371,7 +358,7 @@ class Forecaster {
   // Whether the error or the topology leaves more triangles than the number that was asked for.
   bool is_out_of_reach(const Profiles& profiles) const {
     const double all = profiles.open.below(static_cast<double>(info_.dims[2]));
-    return before_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
+    return simplified_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
   }
 
   // The undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is
@@ -474,7 +461,7 @@ class Forecaster {
   std::optional<BricksOfLayers> bricks_;  // of the whole volume
   double slices_read_ = 0;                // in all blocks
   double simplified_ = 0;                 // triangles of tiles
-  std::uint64_t before_ = 0, after_ = 0;  // of them in the middle
+  std::optional<ForecastCurve> curve_;    // of those in the middle
   double first_cap_ = 0;                  // triangles below the first slice, two for each sample inside
   std::optional<double> last_cap_;        // above the last one
   double left_ = 1;                       // share of the triangles that is left

@@ -18,6 +18,24 @@ class CountingSink : public MeshSink {
   std::uint64_t total = 0;
 };
 
+// Counts the triangles whose first corners lie between two heights.
+class CountBetween final : public MeshSink {
+ public:
+  CountBetween(double from, double to) : from_(from), to_(to) {}
+
+  void append(const MeshPiece& piece) override {
+    for (const Point& vertex : piece.vertices) is_between_.push_back(vertex[2] >= from_ && vertex[2] < to_);
+    for (const auto& t : piece.triangles) total += is_between_[t[0]] ? 1U : 0U;
+  }
+  void finish() override {}
+
+  std::uint64_t total = 0;
+
+ private:
+  double from_, to_;
+  std::vector<bool> is_between_;  // per vertex
+};
+
 // Tells where triangles are, by their first corners in samples: look(i, j, k).
 template <class Look>
 class LocatingSink final : public MeshSink {

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "parallel/size.hpp"
+#include "volume/samples.hpp"
+#include "volume/threshold.hpp"
 
 namespace isoweave {
 namespace {
@@ -19,6 +21,26 @@ void copy_part(const std::byte* slice, std::int64_t row, const Rectangle& part, 
 }
 
 }  // namespace
+
+double inside_on_sides(std::span<const std::byte> slice, const VolumeInfo& info, const IsoRule& rule,
+                       std::int64_t rows) {
+  const std::int64_t nx = info.dims[0];
+  const bool whole = rows == info.dims[1];
+  return visit_sample_type(info.type, [&]<class T>() {
+    const T* const samples = reinterpret_cast<const T*>(slice.data());
+    const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
+    std::uint64_t inside = 0;
+    const auto add = [&](std::int64_t i, std::int64_t j) {
+      const T value = samples[j * nx + i];
+      const bool is_beyond = rule.above ? value >= threshold.value : value <= threshold.value;
+      inside += threshold.reachable && is_beyond ? 1 : 0;
+    };
+    for (std::int64_t i = 0; whole && i < nx; ++i) add(i, 0), add(i, rows - 1);
+    for (std::int64_t j = 0; j < rows; ++j) add(0, j), add(nx - 1, j);
+    const auto sides = static_cast<double>(info.dims[0] + info.dims[1]);
+    return static_cast<double>(inside) * (whole ? 1 : sides / static_cast<double>(rows));
+  });
+}
 
 std::size_t TriangleMap::bin(double place, std::size_t axis) const {
   const double bin = place / static_cast<double>(dims_[axis]) * static_cast<double>(kBins);

@@ -9,10 +9,16 @@
 #include <span>
 #include <vector>
 
+#include "extract/cube_rules.hpp"
 #include "isoweave/volume.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
+
+// The samples inside on the four sides of a slice, of which `slice` has some rows. Two sides of them are cuts, so the
+// two others stand for all four.
+double inside_on_sides(std::span<const std::byte> slice, const VolumeInfo& info, const IsoRule& rule,
+                       std::int64_t rows);
 
 // Part of a slice, in samples.
 struct Rectangle {

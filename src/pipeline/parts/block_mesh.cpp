@@ -1,11 +1,13 @@
 #include "pipeline/parts/block_mesh.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "isoweave/error.hpp"
 #include "pipeline/back_end.hpp"
+#include "system/process_memory.hpp"
 
 namespace isoweave {
 namespace {
@@ -14,19 +16,27 @@ constexpr std::int64_t kLeastBlock = 8;
 
 }  // namespace
 
-Task resolve_blocks(const SliceSource& volume, const MeshOptions& options, const BlockOptions& blocks,
-                    const RunControl& control, const std::array<double, 3>& offset) {
-  require_possible(RunKind::kBlocks, options, control);
+void check_blocks(const SliceSource& volume, const BlockOptions& blocks) {
   if (blocks.size < kLeastBlock) {
     throw std::invalid_argument("blocks: expected a size of " + std::to_string(kLeastBlock) + " or more, found " +
                                 std::to_string(blocks.size));
   }
-  if (!volume.skips()) {
-    throw BadInput(volume.info().path +
-                   ": expected a volume that can be read anywhere, for blocks, found one that has "
-                   "to be read from its beginning: unpack it first");
-  }
-  return resolve(volume.info(), options, control, offset, RunKind::kBlocks);
+  require_skipping(volume);
+}
+
+Task resolve_blocks(RunKind kind, const SliceSource& volume, const MeshOptions& options, const BlockOptions& blocks,
+                    const RunControl& control, const std::array<double, 3>& offset) {
+  require_possible(kind, options, control);
+  check_blocks(volume, blocks);
+  return resolve(volume.info(), options, control, offset, kind);
+}
+
+void check_memory_of_blocks(const Task& task, const RunControl& control, std::int64_t size) {
+  const std::uint64_t found = control.memory > 0 ? system::resident_bytes() : 0;
+  if (found <= control.memory) return;
+  throw OverMemory(task.volume.path + ": expected the process to stay below " + std::to_string(control.memory) +
+                   " bytes, found " + std::to_string(found) + ": blocks of " + std::to_string(size) +
+                   " cells take more here");
 }
 
 PartShape cut_part_shape(const SimplifyTask& task) {
@@ -57,6 +67,75 @@ std::uint64_t BlockStages::number(std::size_t stage, const BlockIndex& block) co
   const BlockIndex each = counts(stage);
   return static_cast<std::uint64_t>(((block[2] - first[2]) * each[1] + (block[1] - first[1])) * each[0] +
                                     (block[0] - first[0]));
+}
+
+BlockIndex BlockRange::nearest(BlockIndex block) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) block[axis] = std::clamp(block[axis], first[axis], last[axis]);
+  return block;
+}
+
+BlockRange BlockStages::takers(std::size_t stage, const BlockIndex& block) const {
+  BlockRange range;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [first, last] = points(stage, axis, block[axis]);
+    range.first[axis] = grids[stage + 1].block_of(axis, first);
+    range.last[axis] = grids[stage + 1].block_of(axis, last);
+  }
+  return range;
+}
+
+BlockRange BlockStages::givers(std::size_t stage, const BlockIndex& block) const {
+  BlockRange range;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto [first, last] = points(stage, axis, block[axis]);
+    if (stage == 1) {  // blocks of cells: the last lattice points of one are the first ones of the next
+      first = std::max(first - 1, all.first[axis]);
+      last = std::min(last, all.end[axis] - 1);
+    }
+    range.first[axis] = grids[stage - 1].block_of(axis, first);
+    range.last[axis] = grids[stage - 1].block_of(axis, last);
+  }
+  return range;
+}
+
+std::pair<std::int64_t, std::int64_t> BlockStages::points(std::size_t stage, std::size_t axis,
+                                                          std::int64_t block) const {
+  const std::int64_t end = grids[stage].begin(axis, block + 1);
+  return {std::max(grids[stage].begin(axis, block), all.first[axis]),
+          std::min(stage == 0 ? end : end - 1, all.end[axis])};
+}
+
+std::vector<std::uint64_t> BlockStages::takers_of(std::uint64_t task) const {
+  const TaskList list = tasks();
+  const std::size_t stage = list.stage_of(task);
+  if (stage + 1 == grids.size()) return {};
+  return tasks_of(stage + 1, takers(stage, block(stage, task - list.first_of(stage))));
+}
+
+std::vector<std::uint64_t> BlockStages::givers_of(std::uint64_t task) const {
+  const TaskList list = tasks();
+  const std::size_t stage = list.stage_of(task);
+  if (stage == 0) return {};
+  return tasks_of(stage - 1, givers(stage, block(stage, task - list.first_of(stage))));
+}
+
+std::vector<std::uint64_t> BlockStages::tasks_of(std::size_t stage, const BlockRange& range) const {
+  std::vector<std::uint64_t> tasks;
+  const std::uint64_t first = this->tasks().first_of(stage);
+  for (std::int64_t z = range.first[2]; z <= range.last[2]; ++z) {
+    for (std::int64_t y = range.first[1]; y <= range.last[1]; ++y) {
+      for (std::int64_t x = range.first[0]; x <= range.last[0]; ++x) tasks.push_back(first + number(stage, {x, y, z}));
+    }
+  }
+  return tasks;
+}
+
+bool BlockStages::may_have_surface(const CellBox& cells) const {
+  bool touches = !cells.empty();
+  for (std::size_t axis = 0; inside && axis < 3; ++axis) {
+    touches = touches && cells.first[axis] < inside->end[axis] && cells.end[axis] >= inside->first[axis];
+  }
+  return touches;
 }
 
 TaskList BlockStages::tasks() const {

@@ -5,12 +5,23 @@
 
 #include "pipeline/loop.hpp"
 #include "pipeline/run_report.hpp"
+#include "volume/row_source.hpp"
 
 namespace isoweave {
 
-BlockWorker::BlockWorker(const Task& task, const CellBox& all, const RunControl& control, const Executor& executor,
-                         MeshReport& report, TakeFinal take_final)
+void BlockTotals::operator+=(const BlockTotals& other) {
+  decisions += other.decisions;
+  rounds += other.rounds;
+  defects.resize(std::max(defects.size(), other.defects.size()));
+  for (std::size_t level = 0; level < other.defects.size(); ++level) defects[level] += other.defects[level];
+  range.merge(other.range);
+  removed.merge(other.removed);
+}
+
+BlockWorker::BlockWorker(const Task& task, CostBits limit, const CellBox& all, const RunControl& control,
+                         const Executor& executor, MeshReport& report, TakeFinal take_final)
     : task_(task),
+      limit_(limit),
       all_(all),
       control_(control),
       executor_(executor),
@@ -21,6 +32,8 @@ BlockWorker::BlockWorker(const Task& task, const CellBox& all, const RunControl&
 
 ZonePart BlockWorker::extract(std::unique_ptr<SliceSource> volume, const CellBox& cells, std::uint64_t held,
                               SlabRecord& record) {
+  totals_.triangles = 0;
+  if (is_without_surface(*volume, cells)) return {};
   const BlockSides sides{task_.simplify.zone.numbering, cells, all_};
   BlockPieces pieces(std::move(volume), task_, sides, control_, executor_);
   const auto simplifier = make_simplifier();
@@ -28,7 +41,7 @@ ZonePart BlockWorker::extract(std::unique_ptr<SliceSource> volume, const CellBox
   SurfacePiece piece;
   while (!pieces.complete()) {
     check_stop(control_);
-    pieces.next({simplifier->live_triangles(), simplifier->zone().bytes(), 0}, piece, report_);
+    pieces.next({simplifier->live_triangles(), simplifier->zone().bytes()}, piece, report_);
     Stopwatch clock;
     simplifier->append(piece);
     record.live_triangles = std::max(record.live_triangles, simplifier->live_triangles());
@@ -41,11 +54,36 @@ ZonePart BlockWorker::extract(std::unique_ptr<SliceSource> volume, const CellBox
   return rest_of(*simplifier, [&](std::uint64_t a, std::uint64_t b) { return sides.on_border(a, b); });
 }
 
+void BlockWorker::count(std::unique_ptr<SliceSource> volume, const CellBox& cells) {
+  if (is_without_surface(*volume, cells)) return;
+  const BlockSides sides{task_.simplify.zone.numbering, cells, all_};
+  BlockPieces pieces(std::move(volume), task_, sides, control_, executor_);
+  SurfacePiece piece;
+  while (!pieces.complete()) {
+    check_stop(control_);
+    pieces.next({}, piece, report_);
+  }
+}
+
+// Whether a block has no surface as all samples of the volume are the same: none is read then. Their range is counted.
+bool BlockWorker::is_without_surface(const SliceSource& volume, const CellBox& cells) {
+  const std::optional<SampleBytes> sample = constant_sample(volume);
+  if (!sample) return false;
+  const SampleRange range = range_of_constant(*sample, task_.volume);
+  if (range.empty()) return false;  // NaN are counted one by one
+  const bool caps = task_.surface.closed && is_inside(*sample, task_.volume.type, task_.rule);
+  for (std::size_t axis = 0; caps && axis < 3; ++axis) {
+    if (cells.first[axis] == all_.first[axis] || cells.end[axis] == all_.end[axis]) return false;
+  }
+  totals_.range.merge(range);
+  return true;
+}
+
 ZonePart BlockWorker::glue(std::vector<ZonePart> parts) {
   check_stop(control_);
   Stopwatch clock;
   const auto simplifier = make_simplifier();
-  simplifier->put_part(glue_parts(std::move(parts), task_.simplify.zone.retire, executor_));
+  simplifier->put_part(glue_parts(std::move(parts), limit_, executor_));
   totals_.triangles = simplifier->triangles();
   clock.lap(report_.seconds_simplify);
   decide(*simplifier);
@@ -53,9 +91,13 @@ ZonePart BlockWorker::glue(std::vector<ZonePart> parts) {
 }
 
 std::unique_ptr<Simplifier> BlockWorker::make_simplifier() const {
-  const SimplifierOptions options{task_.simplify.zone, control_.schedule, task_.simplify.level_costs, control_.measure,
-                                  true};
-  return std::make_unique<Simplifier>(options, executor_, control_.stop.get());
+  // Of a run to a number of triangles nothing is final before the end.
+  const bool inspects = control_.measure && task_.simplify.triangles == 0;
+  const SimplifierOptions options{task_.simplify.zone, control_.schedule, task_.simplify.level_costs, inspects, true};
+  auto simplifier = std::make_unique<Simplifier>(options, executor_, control_.stop.get());
+  simplifier->zone().limit = limit_;
+  if (task_.simplify.triangles > 0) simplifier->count_removed();
+  return simplifier;
 }
 
 // Decides all that can be decided, level by level.
@@ -77,6 +119,7 @@ ZonePart BlockWorker::rest_of(Simplifier& simplifier, const IsBorder& is_border)
   for (std::size_t level = 0; level < totals_.defects.size(); ++level) {
     totals_.defects[level] += simplifier.defects(level);
   }
+  if (task_.simplify.triangles > 0) totals_.removed.merge(simplifier.removed_by_key());
   return simplifier.take_part(is_border);
 }
 

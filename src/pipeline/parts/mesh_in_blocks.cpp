@@ -2,20 +2,22 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "isoweave/blocks.hpp"
-#include "isoweave/error.hpp"
+#include "isoweave/forecast.hpp"
 #include "output/final_output.hpp"
 #include "output/world.hpp"
 #include "parallel/float_environment.hpp"
 #include "pipeline/parts/block_mesh.hpp"
-#include "pipeline/parts/block_worker.hpp"
-#include "pipeline/parts/part_store.hpp"
+#include "pipeline/parts/block_pass.hpp"
+#include "pipeline/parts/blocks_to_number.hpp"
+#include "pipeline/parts/mesh_box_in_blocks.hpp"
 #include "pipeline/run_identity.hpp"
 #include "pipeline/run_report.hpp"
 #include "system/process_memory.hpp"
@@ -44,112 +46,89 @@ class FinalOfBlock final : public FinalSource {
   const std::size_t level_;
 };
 
+// The cost up to which a run to a number of triangles may decide everything at once.
+CostBits head_start_of(const VolumeOpener& open, const MeshOptions& options, const RunControl& control) {
+  if (options.triangles == 0) return kUnknownCost;
+  const std::unique_ptr<SliceSource> volume = open();
+  std::optional<double> error = control.head_start;
+  if (!error) {
+    RunControl uncapped = control;  // slabs may not fit, and are not taken
+    uncapped.memory = 0;
+    error = forecast_mesh(*volume, options, uncapped).head_start;
+  }
+  return head_start_cost(*error, volume->info());
+}
+
 class BlocksRun {
  public:
   BlocksRun(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
-            const BlockOptions& blocks, const RunControl& control)
+            const BlockOptions& blocks, const RunControl& control, const std::optional<Region>& box)
       : open_(open),
         control_(control),
-        task_(resolve_blocks(*open(), options, blocks, control, common_offset(sinks))),
+        task_(resolve_blocks(RunKind::kBlocks, *open(), options, blocks, control, common_offset(sinks))),
         identity_(identity_of(task_)),
         executor_(control.threads),
         world_(task_.volume.geometry, task_.space, task_.offset),
-        sinks_(sinks.begin(), sinks.end()),
         stages_(task_, blocks),
-        store_(stages_.grids, task_.simplify.zone.numbering, cut_part_shape(task_.simplify), blocks.folder),
-        worker_(task_, stages_.all, control_, executor_, report_,
-                [this](Simplifier& simplifier, std::size_t level) { write_final(simplifier, level); }) {
-    report_.blocks.resize(store_.stages());
-    for (std::size_t stage = 0; stage < store_.stages(); ++stage) {
-      report_.blocks[stage].size = store_.grid(stage).size;
-      next_layer_.push_back(store_.grid(stage).block_of(2, stages_.all.first[2]));
+        folder_(blocks.folder) {
+    stages_.inside = box;
+    report_.blocks.resize(stages_.grids.size());
+    for (std::size_t stage = 0; stage < stages_.grids.size(); ++stage) {
+      report_.blocks[stage].size = stages_.grids[stage].size;
     }
-    for (MeshSink* sink : sinks_) {
+    for (MeshSink* sink : sinks) {
       outputs_.push_back(std::make_unique<FinalOutput>(world_, *sink, executor_, control_.measure));
     }
   }
 
-  MeshReport run() {
-    Stopwatch total;
+  // The report; or the head start of the run that has to take the place of this one, as its own was too high.
+  std::variant<MeshReport, CostBits> run(CostBits head_start) {
     start_report();
-    finish_layers(store_.stages() - 1, stages_.all.end[2] + 1);
-    if (store_.triangles() > 0) {
-      throw std::logic_error(std::to_string(store_.triangles()) + " triangles are left undecided");
+    if (task_.simplify.triangles > 0) {
+      if (const std::optional<CostBits> lower = take_to_number(head_start)) return *lower;
+    } else {
+      take_once();
     }
     finish_report();
     require_unchanged(task_, identity_);
-    for (MeshSink* sink : sinks_) sink->finish();
-    total.lap(report_.seconds_total);
-    report_.peak_bytes = system::peak_bytes();
     return std::move(report_);
   }
 
  private:
-  // Works on the layers of a stage that begin below a lattice plane, each after those of earlier stages below its end.
-  void finish_layers(std::size_t stage, std::int64_t plane) {
-    const BlockGrid& grid = store_.grid(stage);
-    while (grid.begin(2, next_layer_[stage]) < std::min(plane, stages_.all.end[2] + 1)) {
-      if (stage > 0) finish_layers(stage - 1, grid.begin(2, next_layer_[stage] + 1));
-      stage == 0 ? extract_layer(next_layer_[stage]) : take_layer(stage, next_layer_[stage]);
-      store_.close_below(stage, ++next_layer_[stage]);
-    }
+  // Hands triangles over as they become final.
+  void take_once() {
+    PartStore store(stages_.grids, task_.simplify.zone.numbering, cut_part_shape(task_.simplify), folder_);
+    BlockPass pass(task_, task_.simplify.zone.retire, stages_, store, control_, executor_, report_,
+                   [&](Simplifier& simplifier, std::size_t level) {
+                     FinalOfBlock source(simplifier.final_source(level), store, level);
+                     outputs_[level]->take(source);
+                   });
+    pass.extract(open_, [&](SlabRecord& record) {
+      record.undecided_triangles = store.triangles();
+      tell(record);
+    });
+    totals_ = pass.totals();
   }
 
-  void extract_layer(std::int64_t layer) {
-    const BlockGrid& grid = store_.grid(0);
-    SlabRecord record;
-    for (std::int64_t y = grid.block_of(1, stages_.all.first[1]); grid.begin(1, y) < stages_.all.end[1]; ++y) {
-      for (std::int64_t x = grid.block_of(0, stages_.all.first[0]); grid.begin(0, x) < stages_.all.end[0]; ++x) {
-        extract_block(grid.cells({x, y, layer}, stages_.all), record);
-      }
-    }
-    record.layer = std::min(grid.begin(2, layer + 1), stages_.all.end[2]) - stages_.all.first[2];
-    tell(record);
-  }
-
-  void extract_block(const CellBox& cells, SlabRecord& record) {
-    if (cells.empty()) return;
-    SlabRecord block;
-    ZonePart rest = worker_.extract(open_(), cells, store_.bytes(), block);
-    record.live_triangles = std::max(record.live_triangles, block.live_triangles + store_.triangles());
-    record.bytes = std::max(record.bytes, block.bytes);
-    finish_block(0, std::move(rest));
-  }
-
-  void take_layer(std::size_t stage, std::int64_t layer) {
-    for (const BlockIndex& block : store_.blocks(stage, layer)) {
-      finish_block(stage, worker_.glue(store_.take(stage, block)));
-    }
-  }
-
-  // Hands what is left of a block on to the next stage.
-  void finish_block(std::size_t stage, ZonePart rest) {
-    check_memory();
-    Stopwatch clock;
-    report_.blocks[stage].blocks += static_cast<std::uint64_t>(worker_.totals().triangles > 0);
-    report_.blocks[stage].triangles += worker_.totals().triangles;
-    if (rest.triangles.size() > 0) store_.hand_on(std::move(rest), std::min(stage + 1, store_.stages() - 1));
-    clock.lap(report_.seconds_simplify);
-  }
-
-  void write_final(Simplifier& simplifier, std::size_t level) {
-    FinalOfBlock source(simplifier.final_source(level), store_, level);
-    outputs_[level]->take(source);
-  }
-
-  // Ends a run that has gone beyond its cap. Slabs are chosen for it, but a block of a later stage is as large as it
-  // is.
-  void check_memory() const {
-    const std::uint64_t found = control_.memory > 0 ? system::resident_bytes() : 0;
-    if (found <= control_.memory) return;
-    throw OverMemory(task_.volume.path + ": expected the process to stay below " + std::to_string(control_.memory) +
-                     " bytes, found " + std::to_string(found) + ": blocks of " + std::to_string(store_.grid(0).size) +
-                     " cells take more here");
+  // Hands all triangles over once the number is met.
+  std::optional<CostBits> take_to_number(CostBits head_start) {
+    BlocksToNumber surface(task_, stages_, folder_, control_, executor_, report_);
+    const std::optional<CostBits> lower = surface.thin(open_, head_start, [&](SlabRecord& record) {
+      record.bytes += surface.kept_bytes();
+      record.undecided_triangles = surface.kept();
+      tell(record);
+    });
+    if (lower) return lower;
+    const std::unique_ptr<Simplifier> simplifier = surface.finish();
+    check_memory_of_blocks(task_, control_, stages_.grids[0].size);
+    outputs_.back()->take(simplifier->final_source());
+    totals_ = surface.totals();
+    totals_.defects = {simplifier->defects()};
+    return std::nullopt;
   }
 
   void tell(SlabRecord& record) {
     outputs_.back()->report(report_);
-    record.undecided_triangles = store_.triangles();
     record.final_triangles = report_.triangles;
     report_.sweep.push_back(record);
     if (!control_.progress) return;
@@ -172,12 +151,13 @@ class BlocksRun {
     for (std::size_t level = 0; level < outputs_.size(); ++level) {
       SurfaceReport& mesh = level + 1 == outputs_.size() ? report_ : report_.levels[level];
       outputs_[level]->report(mesh);
-      report_defects(worker_.totals().defects[level], mesh);
+      report_defects(totals_.defects[level], mesh);
     }
-    report_decisions(worker_.totals().decisions, report_);
-    report_.rounds = worker_.totals().rounds;
-    report_samples(task_.volume, worker_.totals().range, report_);
+    report_decisions(totals_.decisions, report_);
+    report_.rounds = totals_.rounds;
+    report_samples(task_.volume, totals_.range, report_);
     while (report_.blocks.size() > 1 && report_.blocks.back().blocks == 0) report_.blocks.pop_back();
+    if (task_.simplify.triangles > 0) report_target(totals_.decisions, task_.simplify, report_);
     warn_of_border(task_, report_);
     warn_of_nothing(task_, control_.allow_empty, report_);
   }
@@ -188,16 +168,37 @@ class BlocksRun {
   const RunIdentity identity_;
   const Executor executor_;
   const World world_;
-  const std::vector<MeshSink*> sinks_;
-  const BlockStages stages_;
-  PartStore store_;
-  std::vector<std::int64_t> next_layer_;               // per stage
+  BlockStages stages_;
+  const std::string folder_;
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
   MeshReport report_;
-  BlockWorker worker_;
+  BlockTotals totals_;
 };
 
+MeshReport run_blocks(const VolumeOpener& open, const std::optional<Region>& box, std::span<MeshSink* const> sinks,
+                      const MeshOptions& options, const BlockOptions& blocks, const RunControl& control) {
+  const StandardFloats floats;
+  check_sinks(sinks, options.levels.size());
+  std::variant<MeshReport, CostBits> made = CostBits{head_start_of(open, options, control)};
+  while (const CostBits* const head_start = std::get_if<CostBits>(&made)) {
+    made = BlocksRun(open, sinks, options, blocks, control, box).run(*head_start);
+  }
+  return std::move(std::get<MeshReport>(made));
+}
+
 }  // namespace
+
+std::uint64_t count_triangles_in_blocks(const VolumeOpener& open, const SurfaceOptions& options,
+                                        const BlockOptions& blocks, const RunControl& control) {
+  const StandardFloats floats;
+  const Task task = resolve_blocks(RunKind::kBlocks, *open(), full_surface(options), blocks, control, {0, 0, 0});
+  const BlockStages stages(task, blocks);
+  const Executor executor(control.threads);
+  MeshReport report;
+  PartStore store(stages.grids, task.simplify.zone.numbering, cut_part_shape(task.simplify), "");
+  BlockPass(task, kUnknownCost, stages, store, control, executor, report, {}).count(open);
+  return report.triangles_extracted;
+}
 
 MeshReport mesh_in_blocks(const VolumeOpener& open, MeshSink& sink, const MeshOptions& options,
                           const BlockOptions& blocks, const RunControl& control) {
@@ -207,9 +208,17 @@ MeshReport mesh_in_blocks(const VolumeOpener& open, MeshSink& sink, const MeshOp
 
 MeshReport mesh_in_blocks(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
                           const BlockOptions& blocks, const RunControl& control) {
-  const StandardFloats floats;
-  check_sinks(sinks, options.levels.size());
-  return BlocksRun(open, sinks, options, blocks, control).run();
+  Stopwatch total;
+  MeshReport report = run_blocks(open, std::nullopt, sinks, options, blocks, control);
+  for (MeshSink* sink : sinks) sink->finish();
+  total.lap(report.seconds_total);
+  report.peak_bytes = system::peak_bytes();
+  return report;
+}
+
+MeshReport mesh_box_in_blocks(const VolumeOpener& open, const Region& box, std::span<MeshSink* const> sinks,
+                              const MeshOptions& options, const BlockOptions& blocks, const RunControl& control) {
+  return run_blocks(open, box, sinks, options, blocks, control);
 }
 
 }  // namespace isoweave

@@ -32,10 +32,10 @@ void PartStore::put(const Address& address, ZonePart part) {
   vertices_ += part.vertices.size();
   triangles_ += part.triangles.size();
   std::vector<WaitingPart>& waiting = waiting_[address.stage][by_layer(address.block)];
-  if (folder_.empty()) {
-    waiting.emplace_back(std::move(part));
+  if (scratch_) {
+    waiting.emplace_back(std::move(part), *scratch_);
   } else {
-    waiting.emplace_back(std::move(part), folder_ + "/" + std::to_string(++files_) + ".part");
+    waiting.emplace_back(std::move(part));
   }
 }
 
@@ -50,13 +50,26 @@ std::vector<BlockIndex> PartStore::blocks(std::size_t stage, std::int64_t layer)
 std::vector<ZonePart> PartStore::take(std::size_t stage, const BlockIndex& block) {
   const auto found = waiting_[stage].find(by_layer(block));
   std::vector<ZonePart> parts;
-  for (WaitingPart& waiting : found->second) {
-    vertices_ -= waiting.vertices();
-    triangles_ -= waiting.triangles();
-    parts.push_back(waiting.take(shape_));
-  }
+  move_out(found->second, parts);
   waiting_[stage].erase(found);
   return parts;
+}
+
+std::vector<ZonePart> PartStore::take_all() {
+  std::vector<ZonePart> parts;
+  for (auto& stage : waiting_) {
+    for (auto& [index, waiting] : stage) move_out(waiting, parts);
+    stage.clear();
+  }
+  return parts;
+}
+
+void PartStore::move_out(std::vector<WaitingPart>& waiting, std::vector<ZonePart>& parts) {
+  for (WaitingPart& one : waiting) {
+    vertices_ -= one.vertices();
+    triangles_ -= one.triangles();
+    parts.push_back(one.take(shape_));
+  }
 }
 
 std::uint64_t PartStore::bytes() const {

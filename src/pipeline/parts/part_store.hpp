@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,14 +18,11 @@ namespace isoweave {
 
 class PartStore {
  public:
-  // The first stage takes no parts: it makes them. shape: that of all parts. folder: where parts wait in files; empty:
+  // The first stage takes no parts: it makes them. shape: that of all parts. folder: where parts wait in a file; empty:
   // they wait in memory.
-  PartStore(std::vector<BlockGrid> grids, const VertexNumbering& numbering, PartShape shape, std::string folder)
-      : grids_(std::move(grids)),
-        numbering_(numbering),
-        shape_(std::move(shape)),
-        folder_(std::move(folder)),
-        waiting_(grids_.size()) {
+  PartStore(std::vector<BlockGrid> grids, const VertexNumbering& numbering, PartShape shape, const std::string& folder)
+      : grids_(std::move(grids)), numbering_(numbering), shape_(std::move(shape)), waiting_(grids_.size()) {
+    if (!folder.empty()) scratch_.emplace(folder);
     closed_.assign(stages(), std::numeric_limits<std::int64_t>::min());
   }
 
@@ -41,6 +39,7 @@ class PartStore {
   // The blocks of a layer of a stage for which there are parts, and their parts.
   std::vector<BlockIndex> blocks(std::size_t stage, std::int64_t layer) const;
   std::vector<ZonePart> take(std::size_t stage, const BlockIndex& block);
+  std::vector<ZonePart> take_all();
 
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t triangles() const { return triangles_; }
@@ -57,14 +56,14 @@ class PartStore {
 
   Address address_of(std::uint64_t id, std::size_t stage) const;
   void put(const Address& address, ZonePart part);
+  void move_out(std::vector<WaitingPart>& waiting, std::vector<ZonePart>& parts);
 
   std::vector<BlockGrid> grids_;
   VertexNumbering numbering_;
   PartShape shape_;
-  std::string folder_;
+  std::optional<PartScratch> scratch_;
   std::vector<std::map<BlockIndex, std::vector<WaitingPart>>> waiting_;  // per stage; blocks in the order of layers
   std::vector<std::int64_t> closed_;                                     // per stage: layers below take no more parts
-  std::uint64_t files_ = 0;                                              // so far
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
 };

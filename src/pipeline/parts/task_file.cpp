@@ -7,7 +7,8 @@ namespace isoweave {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6b73617465766f77;  // "wovetask", little-endian
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint64_t kLeastPiece = 48;  // bytes: the lengths of five lists, and a count
 
 void require_same(const StateReader& state, const char* what, const std::string& found, const std::string& expected) {
   if (found == expected) return;
@@ -27,8 +28,8 @@ void TaskIdentity::write(StateWriter& state, std::uint64_t task) const {
   state.value(task);
 }
 
-void TaskIdentity::require(StateReader& state, std::uint64_t task) const {
-  std::uint64_t magic = 0, found_task = 0;
+TaskIdentity TaskIdentity::read(StateReader& state) {
+  std::uint64_t magic = 0;
   std::uint32_t version = 0;
   TaskIdentity found;
   state.value(magic);
@@ -38,6 +39,12 @@ void TaskIdentity::require(StateReader& state, std::uint64_t task) const {
   state.list(found.run.options);
   state.value(found.block);
   state.value(found.first);
+  return found;
+}
+
+void TaskIdentity::require(StateReader& state, std::uint64_t task) const {
+  const TaskIdentity found = read(state);
+  std::uint64_t found_task = 0;
   state.value(found_task);
   require_same(state, "volume", found.run.volume, run.volume);
   require_same(state, "options", found.run.options, run.options);
@@ -87,19 +94,26 @@ void serialize_piece(State& state, Piece& piece) {
   state.value(piece.open_edges);
 }
 
-}  // namespace
-
-void write_final_piece(StateWriter& state, const FinalPiece& piece) { serialize_piece(state, piece); }
-
 void read_final_piece(StateReader& state, FinalPiece& piece) {
   serialize_piece(state, piece);
-  piece.locked.resize(0);
   const std::size_t vertices = piece.known.size() + piece.positions.size();
   const auto fits = [&](std::size_t count) { return count == 0 || count == piece.positions.size(); };
   state.require(fits(piece.normals.size()) && fits(piece.values.size()), "a normal and a value for each vertex");
   for (const auto& triangle : piece.triangles) {
     for (const std::uint32_t corner : triangle) state.require(corner < vertices, "triangles of the vertices there are");
   }
+}
+
+}  // namespace
+
+void write_final_pieces(StateWriter& state, const std::vector<FinalPiece>& pieces) {
+  state.value(static_cast<std::uint64_t>(pieces.size()));
+  for (const FinalPiece& piece : pieces) serialize_piece(state, piece);
+}
+
+void read_final_pieces(StateReader& state, std::vector<FinalPiece>& pieces) {
+  pieces.resize(state.count(kLeastPiece));
+  for (FinalPiece& piece : pieces) read_final_piece(state, piece);
 }
 
 }  // namespace isoweave

@@ -32,6 +32,9 @@ struct TaskIdentity {
 
   // Throws BadInput, with the name of the file, for one of another version, mesh or task.
   void require(StateReader& state, std::uint64_t task) const;
+
+  // The identity in a file. Throws BadInput for one of another version.
+  static TaskIdentity read(StateReader& state);
 };
 
 // The counts of a level that a task has handed over.
@@ -70,8 +73,8 @@ std::string final_file(const std::string& folder, std::uint64_t task);
 std::string rest_file(const std::string& folder, std::uint64_t task);
 bool has_rest(const std::string& folder, std::uint64_t task);
 
-// A piece of final triangles, as it is in a file.
-void write_final_piece(StateWriter& state, const FinalPiece& piece);
-void read_final_piece(StateReader& state, FinalPiece& piece);
+// The pieces of final triangles of a level.
+void write_final_pieces(StateWriter& state, const std::vector<FinalPiece>& pieces);
+void read_final_pieces(StateReader& state, std::vector<FinalPiece>& pieces);
 
 }  // namespace isoweave

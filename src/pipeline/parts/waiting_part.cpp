@@ -1,8 +1,6 @@
 #include "pipeline/parts/waiting_part.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "files/state_file.hpp"
@@ -37,29 +35,17 @@ std::vector<std::uint32_t> labels_by_id(ZonePart& part, std::size_t level) {
 WaitingPart::WaitingPart(ZonePart part)
     : part_(std::move(part)), vertices_(part_.vertices.size()), triangles_(part_.triangles.size()) {}
 
-WaitingPart::WaitingPart(ZonePart part, const std::string& file)
-    : file_(file), vertices_(part.vertices.size()), triangles_(part.triangles.size()) {
+WaitingPart::WaitingPart(ZonePart part, PartScratch& file)
+    : file_(&file), vertices_(part.vertices.size()), triangles_(part.triangles.size()) {
   for (std::size_t level = 0; level <= part.levels.size(); ++level) labels_.push_back(labels_by_id(part, level));
-  StateWriter writer(file);
+  StateWriter writer;
   write_part(writer, part);
-  writer.commit();
-}
-
-WaitingPart::WaitingPart(WaitingPart&& other) noexcept
-    : part_(std::move(other.part_)),
-      file_(std::exchange(other.file_, {})),
-      labels_(std::move(other.labels_)),
-      vertices_(other.vertices_),
-      triangles_(other.triangles_) {}
-
-WaitingPart::~WaitingPart() {
-  std::error_code ignored;
-  if (!file_.empty()) std::filesystem::remove(file_, ignored);
+  place_ = file.put(writer.take());
 }
 
 ZonePart WaitingPart::take(const PartShape& shape) {
-  if (file_.empty()) return std::move(part_);
-  StateReader reader(file_, "part of a surface");
+  if (file_ == nullptr) return std::move(part_);
+  StateReader reader(file_->take(place_), "parts that wait in a file", "part of a surface");
   ZonePart part = read_cut_part(reader, shape);
   reader.require_end();
   for (std::size_t level = 0; level < labels_.size(); ++level) {
@@ -80,7 +66,7 @@ std::uint64_t WaitingPart::bytes() const {
 }
 
 void WaitingPart::list_labels(std::size_t level, std::vector<std::uint32_t*>& labels) {
-  if (file_.empty()) {
+  if (file_ == nullptr) {
     for_labels(part_, level, [&](std::uint64_t, std::uint32_t& label) { labels.push_back(&label); });
   } else {
     for (std::uint32_t& label : labels_[level]) labels.push_back(&label);

@@ -1,11 +1,11 @@
-// A part that waits for its block: in memory, or in a file.
+// A part that waits for its block: in memory, or in a scratch file.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
+#include "pipeline/parts/part_scratch.hpp"
 #include "simplify/zone_part.hpp"
 
 namespace isoweave {
@@ -15,13 +15,9 @@ class WaitingPart {
   // Keeps the part in memory.
   explicit WaitingPart(ZonePart part);
 
-  // Keeps the part in a file of that name, which appears. Labels of components stay in memory, as they change. Throws
+  // Keeps the part in a file, which must outlive it. Labels of components stay in memory, as they change. Throws
   // CannotWrite.
-  WaitingPart(ZonePart part, const std::string& file);
-
-  WaitingPart(WaitingPart&& other) noexcept;
-  WaitingPart& operator=(WaitingPart&&) = delete;
-  ~WaitingPart();
+  WaitingPart(ZonePart part, PartScratch& file);
 
   // Takes the part out. shape: what it must be like. Throws BadInput for a file that has changed.
   ZonePart take(const PartShape& shape);
@@ -35,7 +31,8 @@ class WaitingPart {
 
  private:
   ZonePart part_;                                   // unless it is in a file
-  std::string file_;                                // empty: in memory
+  PartScratch* file_ = nullptr;                     // null: in memory
+  PartScratch::Place place_;                        // in the file
   std::vector<std::vector<std::uint32_t>> labels_;  // per level, of the vertices with receipts, by ascending ids
   std::uint64_t vertices_ = 0, triangles_ = 0;
 };

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
+#include <string>
 #include <system_error>
 
 #include "files/header_text.hpp"
@@ -41,12 +43,25 @@ bool is_hdf5(const InputFile& file) {
   return false;
 }
 
+namespace {
+
+// Whether a folder is that of a precomputed volume. Those of meshes and skeletons have an `info` as well.
+bool is_precomputed(const std::string& folder) {
+  std::ifstream file(std::filesystem::path(folder) / "info", std::ios::binary);
+  std::string head(std::size_t{1} << 16, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.starts_with('{') && head.find("\"scales\"") != std::string::npos;
+}
+
+}  // namespace
+
 bool is_array_folder(const std::string& folder) {
   static constexpr std::array<const char*, 5> kNames{"zarr.json", ".zarray", ".zgroup", ".zattrs", "attributes.json"};
-  return std::any_of(kNames.begin(), kNames.end(), [&folder](const char* name) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(std::filesystem::path(folder) / name, error);
-  });
+  return is_precomputed(folder) || std::any_of(kNames.begin(), kNames.end(), [&folder](const char* name) {
+           std::error_code error;
+           return std::filesystem::is_regular_file(std::filesystem::path(folder) / name, error);
+         });
 }
 
 }  // namespace isoweave

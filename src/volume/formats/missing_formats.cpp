@@ -1,5 +1,6 @@
 // Stands in for the readers whose libraries the build lacks: an error that says which option brings them in.
 #include "volume/formats/chunked/chunk_codecs.hpp"
+#include "volume/formats/chunked/open_array.hpp"
 #include "volume/formats/dicom/dicom_file.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/vtk/vtk_streams.hpp"
@@ -47,6 +48,9 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions&) {
 #ifndef ISOWEAVE_HAS_ZARR
 OpenedVolume open_zarr(const std::string& path, const OpenOptions&) {
   not_built(path, "Zarr or N5", "nlohmann-json", "ISOWEAVE_ZARR");
+}
+OpenedVolume open_array(const StorePtr&, const std::string& folder, const OpenOptions&) {
+  not_built(folder, "Zarr or N5", "nlohmann-json", "ISOWEAVE_ZARR");
 }
 #endif
 

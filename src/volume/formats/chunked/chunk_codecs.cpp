@@ -74,6 +74,15 @@ std::size_t most_stored(std::size_t bytes) {
   return bytes + bytes / 64 + kFrame;
 }
 
+std::vector<std::byte> undo_codecs(std::vector<std::byte> stored, std::span<const Codec> codecs, std::size_t most,
+                                   const std::string& path) {
+  for (const Codec codec : codecs) {
+    const std::size_t plausible = std::min<std::uint64_t>(most, stored.size() * kDeflateRatio);
+    stored = decode(codec, std::move(stored), plausible, path);
+  }
+  return stored;
+}
+
 std::vector<std::byte> decode_chunk(std::vector<std::byte> stored, std::span<const Codec> codecs, std::size_t bytes,
                                     const std::string& path) {
   for (std::size_t n = 0; n < codecs.size(); ++n) {

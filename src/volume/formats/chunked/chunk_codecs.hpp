@@ -30,6 +30,11 @@ std::size_t most_stored(std::size_t bytes);
 std::vector<std::byte> decode_chunk(std::vector<std::byte> stored, std::span<const Codec> codecs, std::size_t bytes,
                                     const std::string& path);
 
+// The same where it is not known how many bytes that gives: `most` at most. For codecs that pack no better than
+// deflate.
+std::vector<std::byte> undo_codecs(std::vector<std::byte> stored, std::span<const Codec> codecs, std::size_t most,
+                                   const std::string& path);
+
 // CRC-32C (Castagnoli).
 std::uint32_t crc32c(std::span<const std::byte> bytes);
 

@@ -1,36 +1,18 @@
-// Files of chunks: their names, headers and shards.
+// Chunks, from the bytes that a store has of them to samples.
 #include <algorithm>
-#include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
-#include "files/external_files.hpp"
 #include "files/input_file.hpp"
 #include "parallel/size.hpp"
+#include "volume/formats/chunked/chunk_places.hpp"
 #include "volume/formats/chunked/chunked_array.hpp"
+#include "volume/formats/chunked/compressed_segmentation.hpp"
 
 namespace isoweave {
 namespace {
 
-namespace fs = std::filesystem;
-
-// The file, or nothing when there is none of this name. `root`: as in ChunkedArray.
-FilePtr open_if_there(const std::string& path, const std::string& root) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return nullptr;
-  if (!root.empty()) check_within(path, root);
-  return open_file(path);
-}
-
-std::vector<std::byte> bytes_of(const InputFile& file, std::uint64_t begin, std::size_t count) {
-  std::vector<std::byte> bytes(count);
-  if (file.read_at(begin, bytes) < count) {
-    bad_input(file.path(), std::to_string(count) + " bytes from byte " + std::to_string(begin) + " on", "fewer");
-  }
-  return bytes;
-}
+// The end of the name of a precomputed chunk in gzip, where files are written without headers of HTTP (cloud-volume).
+constexpr std::string_view kPackedEnding = ".gz";
 
 template <class Word>
 Word big_endian(std::span<const std::byte> bytes) {
@@ -66,102 +48,68 @@ std::vector<std::int64_t> take_block_shape(std::vector<std::byte>& stored, const
   return shape;
 }
 
-std::size_t count_of(const std::vector<std::int64_t>& shape) {
-  std::size_t count = 1;
-  for (const std::int64_t size : shape) count = to_size(size, count);
-  return count;
+// The part of a chunk that lies in the array.
+std::vector<std::int64_t> shape_inside(const ChunkIndex& index, const ChunkedArray& array) {
+  std::vector<std::int64_t> shape = array.chunk;
+  for (std::size_t n = 0; n < shape.size(); ++n) {
+    shape[n] = std::min(shape[n], array.axes[n].size - index[n] * array.chunk[n]);
+  }
+  return shape;
+}
+
+SegmentationShape segmentation_shape(const std::vector<std::int64_t>& shape, const ChunkedArray& array) {
+  return {{shape[3], shape[2], shape[1]},
+          array.precomputed->segmentation_block,
+          static_cast<std::size_t>(shape[0]),
+          sample_bytes(array.type)};
 }
 
 }  // namespace
 
-// One file of several chunks.
-struct ChunkReader::Shard {
-  struct Place {
-    std::uint64_t offset = 0;
-    std::uint64_t bytes = 0;
-  };
-  std::string path;
-  FilePtr file;  // none: the shard is not stored
-  std::vector<Place> index;
-};
-
-ChunkReader::ChunkReader(ChunkedArray array) : array_(std::move(array)) {
-  chunk_bytes_ = to_size(count_of(array_.chunk), sample_bytes(array_.type));
-}
+ChunkReader::ChunkReader(ChunkedArray array) : array_(std::move(array)), places_(chunk_places(array_)) {}
 
 ChunkReader::~ChunkReader() = default;
 
-std::string ChunkReader::path_of(const std::vector<std::int64_t>& file_index) const {
-  std::string key;
-  for (std::size_t n = 0; n < file_index.size(); ++n) {
-    if (n > 0) key += array_.separator;
-    key += std::to_string(file_index[array_.reversed_keys ? file_index.size() - 1 - n : n]);
+bool ChunkReader::knows_places() const { return places_->are_known(); }
+
+std::uint64_t ChunkReader::held_bytes() const { return places_->held_bytes() + array_.store->held_bytes(); }
+
+void ChunkReader::decode(std::vector<std::byte> stored, const ChunkIndex& index, const std::string& path,
+                         Chunk& chunk) const {
+  chunk.shape = array_.block_headers ? take_block_shape(stored, array_, path)
+                : array_.precomputed ? shape_inside(index, array_)
+                                     : array_.chunk;
+  std::vector<Codec> codecs = array_.codecs;
+  if (array_.precomputed && path.ends_with(kPackedEnding)) codecs.insert(codecs.begin(), Codec::kDeflate);
+  if (array_.precomputed && array_.precomputed->segmentation_block[0] > 0) {
+    stored = undo_codecs(std::move(stored), codecs, to_size(most_chunk_bytes(array_)), path);
+    chunk.samples = decode_segmentation(stored, segmentation_shape(chunk.shape, array_), path);
+    return;
   }
-  return array_.folder + "/" + array_.key_prefix + key;
+  chunk.samples = decode_chunk(std::move(stored), codecs, sample_count(chunk.shape) * sample_bytes(array_.type), path);
 }
 
-void ChunkReader::decode(std::vector<std::byte> stored, const std::string& path, Chunk& chunk) const {
-  chunk.shape = array_.block_headers ? take_block_shape(stored, array_, path) : array_.chunk;
-  chunk.samples =
-      decode_chunk(std::move(stored), array_.codecs, count_of(chunk.shape) * sample_bytes(array_.type), path);
-}
-
-std::optional<std::vector<std::byte>> ChunkReader::from_shard(const std::vector<std::int64_t>& index,
-                                                              const std::string& path) {
-  const Shards& shards = *array_.shards;
-  if (!shard_ || shard_->path != path) {
-    auto shard = std::make_unique<Shard>();
-    shard->path = path;
-    shard->file = open_if_there(path, array_.root);
-    if (shard->file) {
-      const std::size_t count = count_of(shards.chunks);
-      const std::size_t bytes = to_size(count, sizeof(Shard::Place)) + (shards.index_sum ? sizeof(std::uint32_t) : 0);
-      const std::uint64_t size = shard->file->size();
-      if (size < bytes) bad_input(path, "an index of " + std::to_string(bytes) + " bytes", std::to_string(size));
-      std::vector<std::byte> stored = bytes_of(*shard->file, shards.index_at_end ? size - bytes : 0, bytes);
-      constexpr std::array kSum{Codec::kCrc32c};
-      if (shards.index_sum) stored = decode_chunk(std::move(stored), kSum, count * sizeof(Shard::Place), path);
-      shard->index.resize(count);
-      std::memcpy(shard->index.data(), stored.data(), stored.size());
+void ChunkReader::expect(const std::vector<ChunkIndex>& next, const std::vector<ChunkIndex>& later) {
+  std::vector<ObjectPart> parts;
+  for (const std::vector<ChunkIndex>* const chunks : {&next, &later}) {
+    for (const ChunkIndex& index : *chunks) {
+      if (std::optional<ObjectPart> place = places_->find(index)) parts.push_back(std::move(*place));
     }
-    shard_ = std::move(shard);
   }
-  if (!shard_->file) return std::nullopt;
-  std::size_t slot = 0;
-  for (std::size_t n = 0; n < index.size(); ++n) {
-    slot = slot * static_cast<std::size_t>(shards.chunks[n]) + static_cast<std::size_t>(index[n] % shards.chunks[n]);
-  }
-  const auto [offset, bytes] = shard_->index.at(slot);
-  if (offset == ~std::uint64_t{0} && bytes == ~std::uint64_t{0}) return std::nullopt;
-  const std::uint64_t size = shard_->file->size();
-  if (offset > size || bytes > size - offset || bytes > most_stored(chunk_bytes_)) {
-    bad_input(path, "a chunk of at most " + std::to_string(most_stored(chunk_bytes_)) + " bytes inside the file",
-              std::to_string(bytes) + " bytes from byte " + std::to_string(offset) + " on");
-  }
-  return bytes_of(*shard_->file, offset, static_cast<std::size_t>(bytes));
+  array_.store->expect(parts);
 }
 
-bool ChunkReader::read(const std::vector<std::int64_t>& index, Chunk& chunk) {
-  std::vector<std::int64_t> file_index = index;
-  if (array_.shards) {
-    for (std::size_t n = 0; n < index.size(); ++n) file_index[n] /= array_.shards->chunks[n];
+bool ChunkReader::read(const ChunkIndex& index, Chunk& chunk) {
+  std::optional<ObjectPart> place = places_->find(index);
+  if (!place) return false;
+  std::optional<std::vector<std::byte>> stored = array_.store->read(*place);
+  if (!stored && place->whole && array_.precomputed) {
+    place->path += kPackedEnding;
+    stored = array_.store->read(*place);
   }
-  const std::string path = path_of(file_index);
-  if (array_.shards) {
-    std::optional<std::vector<std::byte>> stored = from_shard(index, path);
-    if (stored) decode(std::move(*stored), path, chunk);
-    return stored.has_value();
-  }
-  const FilePtr file = open_if_there(path, array_.root);
-  if (!file) return false;
-  if (file->size() > most_stored(chunk_bytes_)) {
-    bad_input(path,
-              "at most " + std::to_string(most_stored(chunk_bytes_)) + " bytes for a chunk of " +
-                  std::to_string(chunk_bytes_),
-              std::to_string(file->size()));
-  }
-  decode(bytes_of(*file, 0, static_cast<std::size_t>(file->size())), path, chunk);
-  return true;
+  if (!stored && !place->whole) bad_input(place->path, "an object that stays as it is while it is read", "none");
+  if (stored) decode(std::move(*stored), index, place->path, chunk);
+  return stored.has_value();
 }
 
 }  // namespace isoweave

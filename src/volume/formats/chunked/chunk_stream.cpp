@@ -24,6 +24,14 @@ struct Piece {
   std::int64_t shard = 0;
 };
 
+// The part of a chunk that lies in a band, by its pieces along i, j and k.
+using ChunkPart = std::array<Piece, 3>;
+
+Region box_of(const ChunkPart& part) {
+  const auto& [i, j, k] = part;
+  return {{i.begin, j.begin, k.begin}, {i.end, j.end, k.end}};
+}
+
 // Calls visit for every run of pieces that lie in one shard.
 template <class Visit>
 void for_shards(std::span<const Piece> pieces, const Visit& visit) {
@@ -45,28 +53,95 @@ class ChunkStream final : public BandStream {
         reader_(array),
         choice_(std::move(choice)),
         dims_(info.dims),
+        box_{{0, 0, 0}, info.dims},
+        depth_(depth),
         bytes_each_(sample_bytes(info.type)) {}
+
+  std::uint64_t held_by_reader() const { return reader_.held_bytes(); }
+
+  bool narrows() const override { return true; }
+  void narrow(const Region& box) override {
+    box_ = box;
+    const auto bytes_of = [&](std::int64_t samples) { return static_cast<std::uint64_t>(samples) * bytes_each_; };
+    keep({bytes_of(dims_[0]), static_cast<std::uint64_t>(box.first[1]), static_cast<std::uint64_t>(side(1)),
+          bytes_of(box.first[0]), bytes_of(side(0))});
+  }
 
  protected:
   void fill(std::int64_t first, std::int64_t count, std::span<std::byte> band) override {
     put_fill_value(band);
-    const Piece k = pieces(2, first, first + count).front();
-    const std::vector<Piece> rows = pieces(1, 0, dims_[1]);
-    const std::vector<Piece> columns = pieces(0, 0, dims_[0]);
-    // The chunks of a file one after another: its index is read once for the band.
+    if (reader_.looks_ahead()) return fill_ahead(first, first + count, band);
+    for_parts(first, first + count, [&](const ChunkPart& part) {
+      if (!gaps_->leaves_out(box_of(part))) put_chunk(part, band);
+    });
+  }
+
+ private:
+  std::int64_t side(std::size_t axis) const { return box_.end[axis] - box_.first[axis]; }
+
+  // Chunks whose places are looked up before any of them is read: the indices of their shards are held meanwhile.
+  static constexpr std::size_t kTogether = 64;
+
+  // Fills a band while chunks that come later are asked for.
+  void fill_ahead(std::int64_t first, std::int64_t end, std::span<std::byte> band) {
+    std::vector<ChunkPart> parts = parts_of_band(first, end);
+    std::erase_if(parts, [this](const ChunkPart& part) { return gaps_->leaves_out(box_of(part)); });
+    const std::vector<ChunkIndex> later = chunks_behind(end);
+    const std::size_t together = reader_.knows_places() ? parts.size() : kTogether;
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+      if (n % together == 0) {
+        reader_.expect(indices_of(std::span(parts).subspan(n, std::min(together, parts.size() - n))), later);
+      }
+      put_chunk(parts[n], band);
+    }
+  }
+
+  std::vector<ChunkPart> parts_of_band(std::int64_t first, std::int64_t end) const {
+    std::vector<ChunkPart> parts;
+    for_parts(first, end, [&](const ChunkPart& part) { parts.push_back(part); });
+    return parts;
+  }
+
+  // Visits the chunks of a band, those of a shard one after another: its index is read once for the band.
+  template <class Visit>
+  void for_parts(std::int64_t first, std::int64_t end, const Visit& visit) const {
+    const Piece k = pieces(2, first, end).front();
+    const std::vector<Piece> rows = pieces(1, box_.first[1], box_.end[1]);
+    const std::vector<Piece> columns = pieces(0, box_.first[0], box_.end[0]);
     for_shards(rows, [&](std::span<const Piece> in_rows) {
       for_shards(columns, [&](std::span<const Piece> in_columns) {
         for (const Piece& j : in_rows) {
-          for (const Piece& i : in_columns) {
-            if (gaps_->leaves_out({{i.begin, j.begin, k.begin}, {i.end, j.end, k.end}})) continue;
-            put_chunk({i, j, k}, band);
-          }
+          for (const Piece& i : in_columns) visit(ChunkPart{i, j, k});
         }
       });
     });
   }
 
- private:
+  // The chunks that are needed of the band that begins at a slice.
+  std::vector<ChunkIndex> chunks_behind(std::int64_t first) const {
+    if (!reader_.knows_places() || first >= dims_[2]) return {};
+    std::vector<ChunkPart> parts = parts_of_band(first, std::min(first + depth_, dims_[2]));
+    const NeededSamples* const needed = gaps_->needed;
+    if (needed != nullptr) std::erase_if(parts, [&](const ChunkPart& part) { return !needed->any_in(box_of(part)); });
+    return indices_of(parts);
+  }
+
+  std::vector<ChunkIndex> indices_of(std::span<const ChunkPart> parts) const {
+    std::vector<ChunkIndex> indices;
+    for (const ChunkPart& part : parts) indices.push_back(index_of(part));
+    return indices;
+  }
+
+  ChunkIndex index_of(const ChunkPart& part) const {
+    const ChunkedArray& array = reader_.array();
+    ChunkIndex index(array.axes.size());
+    for (std::size_t n = 0; n < index.size(); ++n) index[n] = choice_.at[n] / array.chunk[n];
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (choice_.axis.at(a) != kNoAxis) index[choice_.axis.at(a)] = part.at(a).chunk;
+    }
+    return index;
+  }
+
   void put_fill_value(std::span<std::byte> band) const {
     const auto& value = reader_.array().fill;
     if (value == std::array<std::byte, 8>{}) {
@@ -105,13 +180,9 @@ class ChunkStream final : public BandStream {
     return steps;
   }
 
-  void put_chunk(const std::array<Piece, 3>& place, std::span<std::byte> band) {
+  void put_chunk(const ChunkPart& place, std::span<std::byte> band) {
     const ChunkedArray& array = reader_.array();
-    std::vector<std::int64_t> index(array.axes.size());
-    for (std::size_t n = 0; n < index.size(); ++n) index[n] = choice_.at[n] / array.chunk[n];
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (choice_.axis.at(a) != kNoAxis) index[choice_.axis.at(a)] = place.at(a).chunk;
-    }
+    const ChunkIndex index = index_of(place);
     if (!reader_.read(index, chunk_)) return;
     const std::vector<std::int64_t> steps = steps_of(chunk_);
     std::int64_t from = 0;
@@ -121,15 +192,17 @@ class ChunkStream final : public BandStream {
       from += inside * steps[n];
     }
     BlockCopy copy;
-    copy.to_step = {1, dims_[0], dims_[0] * dims_[1]};
-    std::int64_t to = place[0].begin + place[1].begin * dims_[0];
+    copy.to_step = {1, side(0), side(0) * side(1)};
+    const std::int64_t to = place[0].begin - box_.first[0] + (place[1].begin - box_.first[1]) * side(0);
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t axis = choice_.axis.at(a);
       if (axis == kNoAxis) continue;
-      // Bands begin where chunks do.
-      const std::int64_t stored = chunk_.shape[axis];
-      copy.size.at(a) = std::min(place.at(a).end - place.at(a).begin, stored);
+      // Bands begin where chunks do, boxes anywhere.
+      const std::int64_t inside = place.at(a).begin - place.at(a).chunk * array.chunk[axis];
+      copy.size.at(a) = std::min(place.at(a).end - place.at(a).begin, chunk_.shape[axis] - inside);
+      if (copy.size.at(a) <= 0) return;
       copy.from_step.at(a) = steps[axis];
+      from += inside * steps[axis];
     }
     const auto bytes = static_cast<std::int64_t>(bytes_each_);
     copy_block(chunk_.samples.data() + from * bytes, band.data() + to * bytes, copy, bytes_each_);
@@ -139,6 +212,8 @@ class ChunkStream final : public BandStream {
   ChunkReader reader_;
   AxisChoice choice_;
   std::array<std::int64_t, 3> dims_;
+  Region box_;  // that is read
+  std::int64_t depth_;
   std::size_t bytes_each_;
   Chunk chunk_;
 };
@@ -155,8 +230,9 @@ std::uint64_t bytes_below(const std::string& folder, std::uint64_t enough) {
   return bytes;
 }
 
-// Whether there is any file or folder that may be a chunk's.
+// Whether there is any file or folder that may be a chunk's, where folders can be listed.
 bool has_chunks(const ChunkedArray& array) {
+  if (!array.store->is_local()) return true;
   std::error_code error;
   fs::directory_iterator entry(array.folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
@@ -179,7 +255,7 @@ void check_band(const ChunkedArray& array, std::int64_t slices, std::size_t slic
   std::uint64_t band = 0;
   const bool overflow = __builtin_mul_overflow(static_cast<std::uint64_t>(slices), slice_bytes, &band);
   if (overflow) bad_input(array.header, "bands of slices of fewer than 2^63 bytes", "larger ones");
-  check_plausible(array.header, band, bytes_below(array.folder, band / kRatio), kRatio);
+  if (array.store->is_local()) check_plausible(array.header, band, bytes_below(array.folder, band / kRatio), kRatio);
 }
 
 }  // namespace
@@ -224,11 +300,12 @@ OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice) {
   const std::int64_t depth = choice.axis[2] == kNoAxis ? 1 : array.chunk[choice.axis[2]];
   check_band(array, std::min(depth, info.dims[2]), info.slice_bytes());
   volume.swap_bytes = array.big_endian != (std::endian::native == std::endian::big);
-  volume.held_bytes =
-      static_cast<std::uint64_t>(std::min(depth, info.dims[2])) * info.slice_bytes() + 2 * chunk_bytes(array);
   if (!stored) volume.constant = array.fill;
   volume.gaps = std::make_shared<Gaps>();
-  volume.samples = std::make_unique<ChunkStream>(array, info, choice, depth, volume.gaps);
+  auto samples = std::make_unique<ChunkStream>(array, info, choice, depth, volume.gaps);
+  volume.held_bytes = samples->held_bytes() + 2 * chunk_bytes(array) + samples->held_by_reader();
+  volume.bands = samples.get();
+  volume.samples = std::move(samples);
   if (array.is_half) read_halves(volume);
   return volume;
 }

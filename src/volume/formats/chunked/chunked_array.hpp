@@ -1,4 +1,4 @@
-// An array that is kept as a folder of files, one per chunk or shard: the facts of its metadata, in any format.
+// An array that is kept as a folder of objects, one per chunk or shard: the facts of its metadata, in any format.
 #pragma once
 
 #include <array>
@@ -9,23 +9,39 @@
 #include <string>
 #include <vector>
 
+#include "files/object_store.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/chunked/chunk_codecs.hpp"
 #include "volume/stream_source.hpp"
 
 namespace isoweave {
 
-// The layout of a file that holds several chunks: a grid of `chunks` per axis behind an index of their places.
+// The layout of an object that holds several chunks: a grid of `chunks` per axis behind an index of their places.
 struct Shards {
   std::vector<std::int64_t> chunks;
   bool index_at_end = true;
   bool index_sum = false;  // the index ends in its CRC-32C
 };
 
+// The shards of a precomputed volume: the bits of a chunk's number, hashed or not, say where it lies.
+struct PrecomputedShards {
+  std::uint32_t preshift_bits = 0, minishard_bits = 0, shard_bits = 0;
+  bool hashes = false;
+  bool packed_index = false;  // by gzip
+};
+
+// The facts that neuroglancer's precomputed volumes have beside other arrays.
+struct Precomputed {
+  std::array<std::int64_t, 3> offset{};              // the first voxel along x, y, z
+  std::array<std::int64_t, 3> segmentation_block{};  // of compressed_segmentation; 0: samples as they are
+  std::optional<PrecomputedShards> shards;
+};
+
 struct ChunkedArray {
+  StorePtr store;
   std::string folder;
-  std::string header;           // the file of its metadata
-  std::string format;           // "zarr" or "n5"
+  std::string header;           // the object of its metadata
+  std::string format;           // "zarr", "n5" or "precomputed"
   std::vector<ArrayAxis> axes;  // from the slowest to the fastest
   std::vector<std::int64_t> chunk;
   std::vector<std::size_t> stored_order;  // axes as a chunk is stored, the slowest first
@@ -36,10 +52,10 @@ struct ChunkedArray {
   std::vector<Codec> codecs;        // in the order in which they are undone
   std::string key_prefix;           // "" or "c/"
   char separator = '.';
-  bool reversed_keys = false;  // names of files begin with the fastest axis (N5)
+  bool reversed_keys = false;  // names of objects begin with the fastest axis (N5)
   bool block_headers = false;  // a chunk begins with its size, which is smaller at the end of an axis (N5)
   std::optional<Shards> shards;
-  std::string root;  // no file is read that lies outside this folder; empty: wherever links lead
+  std::optional<Precomputed> precomputed;  // whose chunks are smaller at the end of an axis as well
   std::vector<std::string> notes;
 };
 
@@ -50,13 +66,18 @@ void check_array(const ChunkedArray& array);
 // proportion to what the folder holds.
 OpenedVolume open_chunks(const ChunkedArray& array, const AxisChoice& choice);
 
+// The number of a chunk along every axis of its array.
+using ChunkIndex = std::vector<std::int64_t>;
+
 // One chunk as stored and decoded. `shape`: its samples along the axes, less than a whole chunk only with headers.
 struct Chunk {
   std::vector<std::byte> samples;
   std::vector<std::int64_t> shape;
 };
 
-// Reads chunks from their files.
+class ChunkPlaces;
+
+// Reads chunks from the store of their array.
 class ChunkReader {
  public:
   explicit ChunkReader(ChunkedArray array);
@@ -66,18 +87,26 @@ class ChunkReader {
 
   const ChunkedArray& array() const { return array_; }
 
+  // Whether expect() makes reading faster.
+  bool looks_ahead() const { return !array_.store->is_local(); }
+
+  // Whether the store can be asked for a chunk without reading the index of a shard first.
+  bool knows_places() const;
+
+  // Names the chunks that will be read next, in that order, and those behind them.
+  void expect(const std::vector<ChunkIndex>& next, const std::vector<ChunkIndex>& later);
+
   // False when the chunk is not stored, so that all of it is the fill value.
-  bool read(const std::vector<std::int64_t>& index, Chunk& chunk);
+  bool read(const ChunkIndex& index, Chunk& chunk);
+
+  // The most bytes that are held beside a chunk.
+  std::uint64_t held_bytes() const;
 
  private:
-  struct Shard;
-  std::string path_of(const std::vector<std::int64_t>& file_index) const;
-  void decode(std::vector<std::byte> stored, const std::string& path, Chunk& chunk) const;
-  std::optional<std::vector<std::byte>> from_shard(const std::vector<std::int64_t>& index, const std::string& path);
+  void decode(std::vector<std::byte> stored, const ChunkIndex& index, const std::string& path, Chunk& chunk) const;
 
   ChunkedArray array_;
-  std::size_t chunk_bytes_ = 0;
-  std::unique_ptr<Shard> shard_;  // the last one that was read from
+  std::unique_ptr<ChunkPlaces> places_;
 };
 
 }  // namespace isoweave

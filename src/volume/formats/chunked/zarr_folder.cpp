@@ -4,11 +4,12 @@
 #include <system_error>
 #include <utility>
 
-#include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/quoted.hpp"
 #include "volume/formats/chunked/array_places.hpp"
 #include "volume/formats/chunked/ome_multiscale.hpp"
+#include "volume/formats/chunked/open_array.hpp"
+#include "volume/formats/chunked/precomputed_info.hpp"
 #include "volume/formats/chunked/zarr_node.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/images/slice_files.hpp"
@@ -44,15 +45,15 @@ std::vector<std::string> folders_in(const std::string& folder) {
 }
 
 // s0, s1, ... are the levels of one image in N5.
-bool has_n5_levels(const ZarrNode& node) {
+bool has_n5_levels(ObjectStore& store, const ZarrNode& node) {
   if (node.format != ZarrNode::Format::kN5) return false;
-  const std::optional<ZarrNode> largest = open_node(node.folder + "/s0");
+  const std::optional<ZarrNode> largest = open_node(store, node.folder + "/s0");
   return largest && largest->is_array;
 }
 
-bool is_image(const ZarrNode& node) {
+bool is_image(ObjectStore& store, const ZarrNode& node) {
   const Json* ome = member(node.attributes, "ome");
-  return member(ome != nullptr ? *ome : node.attributes, "multiscales") != nullptr || has_n5_levels(node);
+  return member(ome != nullptr ? *ome : node.attributes, "multiscales") != nullptr || has_n5_levels(store, node);
 }
 
 std::size_t axis_count(const ZarrNode& array) {
@@ -61,17 +62,21 @@ std::size_t axis_count(const ZarrNode& array) {
 }
 
 // Arrays and images below a group, by their paths in it; arrays of one axis are none that could be a volume.
-std::vector<std::string> images_below(const ZarrNode& root) {
+std::vector<std::string> images_below(ObjectStore& store, const ZarrNode& root) {
+  if (!store.is_local()) {
+    bad_input(root.header, "an array or an image, or --dataset with the path of one: no server is asked for lists",
+              "a group");
+  }
   std::vector<std::string> found;
   std::vector<std::string> open{""};
   for (std::size_t n = 0; n < open.size() && n < kMostFolders; ++n) {
     const std::string above = open[n].empty() ? "" : open[n] + "/";
     for (const std::string& folder : folders_in(root.folder + "/" + open[n])) {
       const std::string path = above + folder;
-      const std::optional<ZarrNode> node = open_node(root.folder + "/" + path);
+      const std::optional<ZarrNode> node = open_node(store, root.folder + "/" + path);
       if (node && node->is_array) {
         if (axis_count(*node) > 1) found.push_back(path);
-      } else if (node && is_image(*node)) {
+      } else if (node && is_image(store, *node)) {
         found.push_back(path);
       } else {
         open.push_back(path);
@@ -89,8 +94,8 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-ZarrNode node_at(const std::string& root, const std::string& name, const std::string& header) {
-  std::optional<ZarrNode> node = open_node(inside(root, name, header));
+ZarrNode node_at(ObjectStore& store, const std::string& root, const std::string& name, const std::string& header) {
+  std::optional<ZarrNode> node = open_node(store, inside(root, name, header));
   if (!node) bad_input(header, "an array or group at " + isoweave::quoted(name), "no metadata of Zarr or N5");
   return std::move(*node);
 }
@@ -108,15 +113,16 @@ void note_levels(FoundArray& array, std::size_t levels, std::int64_t level) {
                         " is read; --level chooses");
 }
 
-FoundArray level_of_image(const ZarrNode& node, const Multiscale& image, const OpenOptions& options) {
+FoundArray level_of_image(ObjectStore& store, const ZarrNode& node, const Multiscale& image,
+                          const OpenOptions& options) {
   check_level(options.level, image.levels.size(), node.header);
   const std::int64_t number = options.level.value_or(0);
   const Multiscale::Level& level = image.levels[static_cast<std::size_t>(number)];
-  FoundArray found{node_at(node.folder, level.path, node.header), {}, level.places, {}, {}};
+  FoundArray found{node_at(store, node.folder, level.path, node.header), {}, level.places, {}, {}};
   if (!found.node.is_array) bad_input(node.header, "an array at " + isoweave::quoted(level.path), "a group");
   if (!image.axis_names.is_null()) found.axis_names = image.axis_names;
   note_levels(found, image.levels.size(), number);
-  if (open_node(node.folder + "/nifti")) {
+  if (open_node(store, node.folder + "/nifti")) {
     found.notes.emplace_back("the NIfTI header beside the levels is not applied");
   }
   return found;
@@ -152,12 +158,12 @@ void take_group_attributes(FoundArray& found, const ZarrNode& group, std::int64_
   }
 }
 
-FoundArray level_of_n5(const ZarrNode& node, const OpenOptions& options) {
+FoundArray level_of_n5(ObjectStore& store, const ZarrNode& node, const OpenOptions& options) {
   std::size_t levels = 1;
-  while (open_node(node.folder + "/s" + std::to_string(levels))) ++levels;
+  while (open_node(store, node.folder + "/s" + std::to_string(levels))) ++levels;
   check_level(options.level, levels, node.header);
   const std::int64_t number = options.level.value_or(0);
-  FoundArray found{node_at(node.folder, "s" + std::to_string(number), node.header), {}, {}, {}, {}};
+  FoundArray found{node_at(store, node.folder, "s" + std::to_string(number), node.header), {}, {}, {}, {}};
   take_group_attributes(found, node, number);
   note_levels(found, levels, number);
   return found;
@@ -188,36 +194,33 @@ std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& ar
 }
 
 // An array that was opened by its own folder, as the level of an image that it may be.
-FoundArray alone_or_level(const ZarrNode& array) {
+FoundArray alone_or_level(ObjectStore& store, const ZarrNode& array) {
   constexpr int kMostAbove = 16;
-  std::error_code error;
-  fs::path folder = fs::absolute(array.folder, error).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();
   std::string name;
-  for (int above = 0; above < kMostAbove && folder.has_relative_path(); ++above) {
+  std::optional<FolderAbove> around = store.above(array.folder);
+  for (int above = 0; above < kMostAbove && around; ++above, around = store.above(around->folder)) {
     if (!name.empty()) name.insert(0, "/");
-    name.insert(0, folder.filename().string());
-    folder = folder.parent_path();
-    const std::optional<ZarrNode> group = open_node(folder.string());
+    name.insert(0, around->name);
+    const std::optional<ZarrNode> group = open_node(store, around->folder);
     if (!group || group->is_array) break;
     if (std::optional<FoundArray> found = described_by(*group, array, name)) return std::move(*found);
   }
   return {array, {}, {}, {}, {}};
 }
 
-FoundArray find_array(const ZarrNode& node, const OpenOptions& options) {
+FoundArray find_array(ObjectStore& store, const ZarrNode& node, const OpenOptions& options) {
   if (node.is_array) {
     if (options.level) bad_input(node.header, "several levels for --level", "an array alone");
-    return alone_or_level(node);
+    return alone_or_level(store, node);
   }
   if (const std::optional<Multiscale> image = multiscale_of(node.attributes, node.header)) {
-    return level_of_image(node, *image, options);
+    return level_of_image(store, node, *image, options);
   }
-  if (has_n5_levels(node)) return level_of_n5(node, options);
-  const std::vector<std::string> images = images_below(node);
+  if (has_n5_levels(store, node)) return level_of_n5(store, node, options);
+  const std::vector<std::string> images = images_below(store, node);
   if (images.empty()) bad_input(node.header, "an image or array in the group", "none");
   if (images.size() > 1) bad_input(node.header, "--dataset with one of " + listed(images), "no choice");
-  FoundArray found = find_array(node_at(node.folder, images[0], node.header), options);
+  FoundArray found = find_array(store, node_at(store, node.folder, images[0], node.header), options);
   found.notes.push_back(isoweave::quoted(images[0]) + " is the only array in the folder, and is read");
   return found;
 }
@@ -273,13 +276,47 @@ void check_places(const FoundArray& found, std::size_t axes) {
             "one of " + std::to_string(axes));
 }
 
+// Says which version of the metadata was read, and what was chosen.
+void note_parts(VolumeInfo& info, const std::string& version, std::initializer_list<std::string> chosen) {
+  for (const std::string& part : chosen) {
+    if (!part.empty()) info.part = part + (info.part.empty() ? "" : ", " + info.part);
+  }
+  if (!version.empty()) info.part += (info.part.empty() ? "version " : ", version ") + version;
+}
+
+OpenedVolume open_precomputed(const StorePtr& store, const std::string& folder, const OpenOptions& options) {
+  if (!options.dataset.empty()) {
+    bad_input(folder, "an array or group at " + isoweave::quoted(options.dataset), "no metadata of Zarr or N5");
+  }
+  const std::optional<Json> metadata = look_for_json(*store, folder + "/info");
+  if (!metadata) {
+    bad_input(folder, "the metadata of Zarr, OME-Zarr, N5 or a precomputed volume", store->why_nothing());
+  }
+  const PrecomputedScale scale = precomputed_scale(store, folder, *metadata, options);
+  const AxisChoice choice = choose_axes(scale.array.axes, options, scale.array.header);
+  OpenedVolume volume = open_chunks(scale.array, choice);
+  volume.info.path = folder;
+  place_axes(volume, choice, scale.places);
+  std::string level;
+  if (scale.scales > 1) {
+    level = "level " + std::to_string(scale.scale);
+    volume.info.notes.push_back(level + " of " + std::to_string(scale.scales) + " is read; --level chooses");
+  }
+  note_parts(volume.info, store->identity(scale.array.header), {level});
+  return volume;
+}
+
 }  // namespace
 
 OpenedVolume open_zarr(const std::string& path, const OpenOptions& options) {
-  const FoundArray found = find_array(node_at(path, options.dataset, path), options);
-  if (!options.external) check_within(found.node.header, path);
-  ChunkedArray array = array_of(found.node);
-  if (!options.external) array.root = path;
+  return open_array(open_folder_store(path, options.external), path, options);
+}
+
+OpenedVolume open_array(const StorePtr& store, const std::string& folder, const OpenOptions& options) {
+  const std::optional<ZarrNode> root = open_node(*store, inside(folder, options.dataset, folder));
+  if (!root) return open_precomputed(store, folder, options);
+  const FoundArray found = find_array(*store, *root, options);
+  ChunkedArray array = array_of(store, found.node);
   if (found.axis_names) {
     if (found.axis_names->size() != array.axes.size()) {
       bad_input(found.node.header, "an array of the " + std::to_string(found.axis_names->size()) + " axes of its image",
@@ -293,13 +330,11 @@ OpenedVolume open_zarr(const std::string& path, const OpenOptions& options) {
   if (found.node.format == ZarrNode::Format::kN5 && !found.places) take_n5_viewer(places, found.node, choice);
   OpenedVolume volume = open_chunks(array, choice);
   VolumeInfo& info = volume.info;
-  info.path = path;
+  info.path = folder;
   place_axes(volume, choice, places);
   info.notes.insert(info.notes.end(), found.notes.begin(), found.notes.end());
-  for (const std::string& chosen :
-       {found.part, options.dataset.empty() ? options.dataset : "dataset " + options.dataset}) {
-    if (!chosen.empty()) info.part = chosen + (info.part.empty() ? "" : ", " + info.part);
-  }
+  const std::string dataset = options.dataset.empty() ? "" : "dataset " + options.dataset;
+  note_parts(info, store->identity(array.header), {found.part, dataset});
   return volume;
 }
 

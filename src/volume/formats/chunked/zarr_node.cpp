@@ -20,13 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_file(const std::string& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
-
-ZarrNode zarr3_node(const std::string& folder, const std::string& header) {
-  ZarrNode node{ZarrNode::Format::kZarr3, false, folder, header, read_json(header), {}};
+ZarrNode zarr3_node(const std::string& folder, const std::string& header, Json metadata) {
+  ZarrNode node{ZarrNode::Format::kZarr3, false, folder, header, std::move(metadata), {}};
   const std::string type = text_member(node.metadata, "node_type");
   if (type != "array" && type != "group") bad_input(header, "node_type array or group", isoweave::quoted(type));
   node.is_array = type == "array";
@@ -97,26 +92,33 @@ std::optional<std::uint16_t> half_in(const Json& value) {
 
 }  // namespace
 
-std::optional<ZarrNode> open_node(const std::string& folder) {
-  if (const std::string header = folder + "/zarr.json"; is_file(header)) return zarr3_node(folder, header);
+std::optional<ZarrNode> open_node(ObjectStore& store, const std::string& folder) {
+  const std::string zarr3 = folder + "/zarr.json", n5 = folder + "/attributes.json";
   const std::string array = folder + "/.zarray", group = folder + "/.zgroup", attributes = folder + "/.zattrs";
-  if (is_file(array) || is_file(group) || is_file(attributes)) {
-    const bool is_array = is_file(array);
-    const std::string& header = is_array ? array : is_file(attributes) ? attributes : group;
-    ZarrNode node{ZarrNode::Format::kZarr2, is_array, folder, header, read_json(header), {}};
-    if (is_file(attributes)) node.attributes = read_json(attributes);
+  std::vector<ObjectPart> names;
+  for (const std::string& name : {zarr3, array, attributes, group, n5}) names.push_back(json_object(name));
+  store.expect(names);
+  if (std::optional<Json> json = look_for_json(store, zarr3)) return zarr3_node(folder, zarr3, std::move(*json));
+  std::optional<Json> of_array = look_for_json(store, array), of_user = look_for_json(store, attributes);
+  if (of_array || of_user) {
+    const bool is_array = of_array.has_value();
+    ZarrNode node{ZarrNode::Format::kZarr2, is_array, folder, is_array ? array : attributes, {}, {}};
+    if (of_user) node.attributes = *of_user;
+    node.metadata = std::move(is_array ? *of_array : *of_user);
     return node;
   }
-  if (const std::string header = folder + "/attributes.json"; is_file(header)) {
-    ZarrNode node{ZarrNode::Format::kN5, false, folder, header, read_json(header), {}};
-    node.is_array = member(node.metadata, "dimensions") != nullptr && member(node.metadata, "dataType") != nullptr;
-    node.attributes = node.metadata;
-    return node;
+  if (std::optional<Json> json = look_for_json(store, group)) {
+    return ZarrNode{ZarrNode::Format::kZarr2, false, folder, group, std::move(*json), {}};
   }
-  return std::nullopt;
+  std::optional<Json> json = look_for_json(store, n5);
+  if (!json) return std::nullopt;
+  ZarrNode node{ZarrNode::Format::kN5, false, folder, n5, std::move(*json), {}};
+  node.is_array = member(node.metadata, "dimensions") != nullptr && member(node.metadata, "dataType") != nullptr;
+  node.attributes = node.metadata;
+  return node;
 }
 
-ChunkedArray array_of(const ZarrNode& node) {
+ChunkedArray array_of(const StorePtr& store, const ZarrNode& node) {
   ChunkedArray array;
   switch (node.format) {
     case ZarrNode::Format::kZarr2:
@@ -129,6 +131,7 @@ ChunkedArray array_of(const ZarrNode& node) {
       array = n5_array(node);
       break;
   }
+  array.store = store;
   check_array(array);
   return array;
 }

@@ -23,10 +23,10 @@ struct ZarrNode {
 
 // Opens a folder. Nothing for a folder without metadata of these formats. Throws BadInput for metadata that cannot be
 // read.
-std::optional<ZarrNode> open_node(const std::string& folder);
+std::optional<ZarrNode> open_node(ObjectStore& store, const std::string& folder);
 
 // The array that the metadata describe. Throws BadInput, by name, for metadata that are wrong or not supported.
-ChunkedArray array_of(const ZarrNode& node);
+ChunkedArray array_of(const StorePtr& store, const ZarrNode& node);
 ChunkedArray zarr2_array(const ZarrNode& node);
 ChunkedArray zarr3_array(const ZarrNode& node);
 ChunkedArray n5_array(const ZarrNode& node);

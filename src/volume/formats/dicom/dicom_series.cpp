@@ -37,7 +37,7 @@ std::string listing(const SeriesByUid& all) {
 
 const Series& chosen_series(const SeriesByUid& all, const std::string& chosen, const std::string& path) {
   if (chosen.empty() && all.size() == 1) return all.begin()->second;
-  if (chosen.empty()) bad_input(path, "one series, or the UID of one of them", listing(all));
+  if (chosen.empty()) bad_input(path, "one series, or --series UID for one of them", listing(all));
   const auto found = all.find(chosen == kWithoutUid ? std::string() : chosen);
   if (found == all.end()) bad_input(path, "the series " + quoted(chosen), listing(all));
   return found->second;
@@ -59,9 +59,11 @@ OpenedVolume open_dicom_series(const SliceFiles& slices, const OpenOptions& opti
   OpenedVolume volume = open_dicom_slices(chosen_series(all, options.series, slices.path), slices.path, options);
   std::vector<std::string>& notes = volume.info.notes;
   notes.insert(notes.begin(), slices.notes.begin(), slices.notes.end());
+  volume.info.remarks = slices.remarks;
   if (without_image > 0) {
-    notes.push_back(without_image == 1 ? "1 DICOM file holds no image and is left out"
-                                       : std::to_string(without_image) + " DICOM files hold no image and are left out");
+    volume.info.remarks.push_back(without_image == 1
+                                      ? "1 DICOM file holds no image and is left out"
+                                      : std::to_string(without_image) + " DICOM files hold no image and are left out");
   }
   return volume;
 }
@@ -107,7 +109,7 @@ OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options
   }
   OpenedVolume volume = open_dicom_slices(series, path, options);
   if (files > 1) {
-    volume.info.notes.push_back("the series of this file: " + std::to_string(files) + " files of its folder");
+    volume.info.remarks.push_back("the series of this file: " + std::to_string(files) + " files of its folder");
   }
   if (others > 0) {
     volume.info.notes.push_back(std::to_string(others) + (others == 1 ? " file" : " files") +

@@ -1,13 +1,12 @@
 #include "volume/formats/hdf5/hdf5_library.hpp"
 
 #include <cstdlib>
-#include <filesystem>
 #include <span>
 #include <string_view>
 
 #include "files/input_file.hpp"
+#include "files/loaded_library.hpp"
 #include "files/quoted.hpp"
-#include "system/shared_library.hpp"
 #include "volume/formats/chunked/lzf.hpp"
 
 namespace isoweave {
@@ -33,28 +32,12 @@ std::size_t decode_lzf_chunk(unsigned flags, std::size_t values, const unsigned*
   return bytes;
 }
 
-template <class Function>
-void load(void* library, const char* name, Function& function, const std::string& path) {
-  function = reinterpret_cast<Function>(system::find_symbol(library, name));
-  if (function == nullptr) bad_input(path, "function " + std::string(name) + " in libhdf5", "a library without it");
-}
-
-// The library that was found when this one was built, or one of its name.
-void* load_library(const std::string& path) {
-  const std::filesystem::path built_with = ISOWEAVE_HDF5_LIBRARY;
-  for (const std::string& name : {built_with.string(), built_with.filename().string()}) {
-    if (void* const library = system::load_library(name)) return library;
-  }
-  bad_input(path, "a format of this system",
-            "HDF5, whose library " + built_with.filename().string() + " cannot be loaded");
-}
-
 Hdf5Functions load_functions(const std::string& path) {
-  void* const library = load_library(path);
+  const LoadedLibrary library(path, {ISOWEAVE_HDF5_LIBRARY, "libhdf5-103-1", "a format of this system", "HDF5"});
   Hdf5Functions h5;
 // The name is that of the function of this version, whatever macro stands for it.
 #define ISOWEAVE_TEXT(name) #name
-#define ISOWEAVE_LOAD(name, member) load(library, ISOWEAVE_TEXT(name), h5.member, path)
+#define ISOWEAVE_LOAD(name, member) library.find(ISOWEAVE_TEXT(name), h5.member)
   ISOWEAVE_LOAD(H5open, open);
   ISOWEAVE_LOAD(H5Eget_auto2, eget_auto2);
   ISOWEAVE_LOAD(H5Eset_auto2, eset_auto2);

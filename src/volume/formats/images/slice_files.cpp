@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -85,6 +86,22 @@ std::string left_out(const std::vector<std::string>& others) {
 
 // The index of an export, which a folder of DICOM files is known by.
 bool is_dicomdir_name(const std::string& path) { return lower_case(fs::path(path).filename().string()) == "dicomdir"; }
+
+// Whether a file lies beside slices as usual, by its name: papers, tables, archives and programs; in an export of DICOM
+// pictures as well. Any other file might be a slice that is damaged or of a kind that is not read.
+bool is_usual(const std::string& path, bool is_export) {
+  static const std::set<std::string, std::less<>> kUsual{
+      ".txt", ".md",  ".rst",  ".json", ".yaml", ".yml",  ".xml", ".csv",  ".tsv", ".log", ".ini", ".cfg",   ".inf",
+      ".pdf", ".doc", ".docx", ".rtf",  ".xls",  ".xlsx", ".htm", ".html", ".css", ".js",  ".db",  ".lnk",   ".url",
+      ".exe", ".dll", ".jar",  ".bat",  ".sh",   ".py",   ".m",   ".zip",  ".gz",  ".7z",  ".md5", ".sha256"};
+  static const std::set<std::string, std::less<>> kPictures{".png",  ".tif", ".tiff", ".jpg",
+                                                            ".jpeg", ".gif", ".bmp",  ".ico"};
+  static const std::set<std::string, std::less<>> kNames{"dicomdir", "readme", "license", "lockfile", "version"};
+  const fs::path name(lower_case(fs::path(path).filename().string()));
+  const std::string ending = name.extension().string();
+  if (ending.empty()) return kNames.contains(name.string());
+  return kUsual.contains(ending) || (is_export && kPictures.contains(ending));
+}
 
 std::string folder_of(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
@@ -221,7 +238,10 @@ SliceFiles find_slices(const std::string& path) {
   const bool is_dicom = slices.files.empty() || slices.kind == SliceKind::kDicom;
   if (is_dicom) take_slices(slices, others, files_below(path), true);
   if (slices.files.empty()) bad_input(path, "slices in TIFF, PNG or DICOM", "a directory without any");
-  if (!others.empty()) slices.notes.push_back(left_out(others));
+  const auto usual = std::stable_partition(others.begin(), others.end(),
+                                           [&](const std::string& file) { return !is_usual(file, is_export); });
+  if (usual != others.begin()) slices.notes.push_back(left_out({others.begin(), usual}));
+  if (usual != others.end()) slices.remarks.push_back(left_out({usual, others.end()}));
   return slices;
 }
 

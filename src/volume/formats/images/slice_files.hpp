@@ -28,7 +28,9 @@ struct SliceFiles {
   std::string path;  // the folder or the pattern, as given
   SliceKind kind = SliceKind::kOther;
   std::vector<std::string> files;
-  std::vector<std::string> notes;  // says which files of the folder are none of the slices
+  // The files of the folder that are none of the slices: those that might have been some, and those that a folder of
+  // slices usually has beside them.
+  std::vector<std::string> notes{}, remarks{};
 };
 
 // The slices of a folder or pattern: files of one kind. A folder of DICOM, or without slices of its own, stands for the

@@ -55,6 +55,7 @@ OpenedVolume open_slice_series(const SliceFiles& slices, const OpenOptions& opti
   info.path = slices.path;
   info.data_files = slices.files;
   info.notes.insert(info.notes.begin(), slices.notes.begin(), slices.notes.end());
+  info.remarks.insert(info.remarks.begin(), slices.remarks.begin(), slices.remarks.end());
   const std::vector<std::string> numbers = notes_on_numbers(slices.files);
   info.notes.insert(info.notes.end(), numbers.begin(), numbers.end());
   return volume;

@@ -12,6 +12,7 @@
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/length_units.hpp"
+#include "files/part_file.hpp"
 #include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/data_files.hpp"
@@ -63,6 +64,7 @@ MetaFields parse_fields(const std::string& text, std::string_view path) {
     const std::string key = lower_case(trimmed(line->substr(0, equals)));
     fields.values[key] = trimmed(line->substr(equals + 1));
     if (key != kDataFile) continue;
+    if (fields.get({kDataFile}).empty()) bad_input(path, "LOCAL, LIST or a file behind ElementDataFile", "nothing");
     fields.end = lines.position();
     if (is_list(fields.get({kDataFile}))) read_list(fields, lines);
     return fields;
@@ -224,7 +226,8 @@ void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaField
   const std::int64_t skip =
       local ? static_cast<std::int64_t>(fields.end) : integer_of(fields, {"headersize"}, info.path).value_or(0);
   if (skip < 0) return;
-  const FilePtr data = local ? file : open_file(beside(info.path, std::string(fields.get({kDataFile}))));
+  const FilePtr data =
+      local ? file : open_part(info.path, "its samples in", beside(info.path, std::string(fields.get({kDataFile}))));
   const auto found = static_cast<std::int64_t>(data->exact_size()) - skip;
   if (found == *said) return;
   info.notes.push_back("CompressedDataSize is " + std::to_string(*said) + ", and the file has " +
@@ -259,7 +262,7 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
   }
   if (is_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
   if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
-  const FilePtr data = open_file(beside(path, value));
+  const FilePtr data = open_part(path, "its samples in", beside(path, value));
   if (layout.encoding == DataLayout::Encoding::kRaw) return open_only_file(info, data, 0, layout, bytes);
   const std::uint64_t begin = compressed_begin(data, fields, std::exchange(layout.byte_skip, 0));
   info.data_files = {data->path()};

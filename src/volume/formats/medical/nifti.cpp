@@ -14,6 +14,7 @@
 
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
+#include "files/part_file.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/formats.hpp"
@@ -320,7 +321,7 @@ FilePtr image_of_header(const std::string& header_path) {
   const std::string packed = plain + ".gz";
   std::error_code error;
   const bool only_packed = !std::filesystem::exists(plain, error) && std::filesystem::exists(packed, error);
-  return unpacked(open_file(only_packed ? packed : plain));
+  return unpacked(open_part(header_path, "its samples in", only_packed ? packed : plain));
 }
 
 bool is_nifti(std::string_view head) { return parse_header(head).has_value(); }

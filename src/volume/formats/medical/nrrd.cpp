@@ -12,6 +12,7 @@
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/length_units.hpp"
+#include "files/part_file.hpp"
 #include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/data_files.hpp"
@@ -40,7 +41,7 @@ SampleType sample_type_of(const NrrdFields& fields, std::string_view path) {
       {SampleType::kUint64, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
       {SampleType::kFloat32, {"float"}},
       {SampleType::kFloat64, {"double"}}};
-  const std::string text = lower_case(fields.get("type"));
+  const std::string text = lower_case(required_nrrd_field(fields, "type", path));
   for (const Names& entry : kNames) {
     if (std::find(entry.names.begin(), entry.names.end(), text) != entry.names.end()) return entry.type;
   }
@@ -223,7 +224,7 @@ void set_axes(OpenedVolume& volume, const NrrdFields& fields, const std::vector<
 DataLayout layout_of(const NrrdFields& fields, SampleType type, std::string_view path) {
   DataLayout layout;
   layout.type = type;
-  const std::string encoding = lower_case(fields.get("encoding"));
+  const std::string encoding = lower_case(required_nrrd_field(fields, "encoding", path));
   if (encoding == "gzip" || encoding == "gz") {
     layout.encoding = DataLayout::Encoding::kDeflate;
   } else if (encoding == "ascii" || encoding == "text" || encoding == "txt") {
@@ -272,7 +273,7 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
   }
   if (is_nrrd_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
   if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
-  return open_only_file(info, open_file(beside(path, std::string(value))), 0, layout, bytes);
+  return open_only_file(info, open_part(path, "its samples in", beside(path, std::string(value))), 0, layout, bytes);
 }
 
 // The layers of a segmentation are a list, also where they are called a vector.

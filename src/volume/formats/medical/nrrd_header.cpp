@@ -108,6 +108,12 @@ NrrdFields parse_nrrd_fields(const std::string& text, const std::string& path) {
 
 bool is_nrrd_list(std::string_view value) { return value == "LIST" || value.starts_with("LIST "); }
 
+std::string_view required_nrrd_field(const NrrdFields& fields, const std::string& name, std::string_view path) {
+  const std::string_view text = fields.get(name);
+  if (text.empty()) bad_input(path, "the field '" + name + "'", "none");
+  return text;
+}
+
 std::int64_t nrrd_integer(const NrrdFields& fields, const std::string& name, std::int64_t missing,
                           std::string_view path) {
   const std::string_view text = fields.get(name);
@@ -155,6 +161,7 @@ std::vector<std::string> quoted_words(std::string_view text) {
 
 std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::string& path) {
   constexpr std::int64_t kMostAxes = 16;
+  required_nrrd_field(fields, "dimension", path);
   const std::int64_t dimension = nrrd_integer(fields, "dimension", 0, path);
   if (dimension < 1 || dimension > kMostAxes) {
     bad_input(path, "a dimension of 1 to 16", std::to_string(dimension));
@@ -168,7 +175,7 @@ std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::strin
   const auto centres = axis_words(fields, fields.get("centers").empty() ? "centerings" : "centers", axes.size(), path);
   const auto units = quoted_words(fields.get("units"));
   const auto steps = parse_nrrd_vectors(fields.get("spacedirections"), path);
-  if (sizes.empty()) bad_input(path, "the field 'sizes'", "none");
+  required_nrrd_field(fields, "sizes", path);
   if (!steps.empty() && steps.size() != axes.size()) {
     bad_input(path, std::to_string(axes.size()) + " space directions", std::to_string(steps.size()));
   }

@@ -49,6 +49,9 @@ NrrdFields parse_nrrd_fields(const std::string& text, const std::string& path);
 // Whether a data file is a list of names on the lines that follow.
 bool is_nrrd_list(std::string_view value);
 
+// Throws BadInput where the field is not there.
+std::string_view required_nrrd_field(const NrrdFields& fields, const std::string& name, std::string_view path);
+
 // A whole number, or `missing` where the field is not there. Throws BadInput for anything else.
 std::int64_t nrrd_integer(const NrrdFields& fields, const std::string& name, std::int64_t missing,
                           std::string_view path);

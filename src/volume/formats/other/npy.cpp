@@ -107,16 +107,20 @@ class NpyDictionary {
 NpyHeader read_npy_header(const FilePtr& file) {
   constexpr std::size_t kBeforeLength = 8;
   const std::string head = file->head(kLargestHeader);
-  const int version = head.size() > kMagic.size() ? head[kMagic.size()] : 0;
+  const auto expect_bytes = [&](std::uint64_t bytes, const std::string& what) {
+    if (bytes > head.size()) bad_input(file->path(), what, "a file of " + std::to_string(head.size()) + " bytes");
+  };
+  expect_bytes(kBeforeLength, "the version of NPY at byte 6");
+  const int version = static_cast<unsigned char>(head[kMagic.size()]);
   if (version < 1 || version > 3) bad_input(file->path(), "NPY of version 1, 2 or 3", std::to_string(version));
   const std::size_t begin = kBeforeLength + (version == 1 ? 2 : 4);
+  expect_bytes(begin, "the length of an NPY header at byte 8");
   std::uint64_t length = 0;
-  for (std::size_t at = std::min(begin, head.size()); at-- > kBeforeLength;) {
+  for (std::size_t at = begin; at-- > kBeforeLength;) {
     length = length << 8 | static_cast<unsigned char>(head[at]);
   }
-  if (head.size() < begin || length > head.size() - begin) {
-    bad_input(file->path(), "a header of " + std::to_string(length) + " bytes", "fewer bytes");
-  }
+  expect_bytes(begin + length,
+               "a header of " + std::to_string(length) + " bytes from byte " + std::to_string(begin) + " on");
   NpyHeader header;
   header.data = begin + length;
   NpyDictionary(std::string_view(head).substr(begin, static_cast<std::size_t>(length)), file->path()).read(header);

@@ -109,12 +109,25 @@ VolumeInfo raw_info(const std::string& path, const RawLayout& layout) {
   return info;
 }
 
+// Names the layout that a file of another size would fit: samples of another type, or a header to skip.
+std::string fitting_layout(std::uint64_t size, const RawLayout& layout, std::uint64_t bytes) {
+  constexpr std::pair<std::uint64_t, std::string_view> kTypes[] = {
+      {1, "uint8 or int8"}, {2, "uint16 or int16"}, {4, "float32 or int32"}, {8, "float64 or int64"}};
+  const auto skip = static_cast<std::uint64_t>(layout.skip_bytes);
+  const std::uint64_t samples = bytes / sample_bytes(layout.type);
+  for (const auto& [each, types] : kTypes) {
+    if (size > skip && size - skip == each * samples) return ": perhaps " + std::string(types) + "?";
+  }
+  return size > skip + bytes ? ": perhaps skip=" + std::to_string(size - bytes) + "?" : "";
+}
+
 // The `bytes` behind the skip, which end the file.
 std::unique_ptr<ByteStream> samples_to_end(const FilePtr& file, const RawLayout& layout, std::uint64_t bytes) {
   const auto skip = static_cast<std::uint64_t>(layout.skip_bytes);
   // Both are below 2^63, so the sum does not wrap.
   if (file->exact_size() != skip + bytes) {
-    bad_input(file->path(), std::to_string(skip + bytes) + " bytes by its layout", std::to_string(file->size()));
+    bad_input(file->path(), std::to_string(skip + bytes) + " bytes by its layout",
+              std::to_string(file->size()) + fitting_layout(file->size(), layout, bytes));
   }
   return std::make_unique<FileStream>(file, skip, skip + bytes);
 }
@@ -142,7 +155,9 @@ OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
   const std::vector<std::string> files = is_pattern(path) ? files_of_pattern(path) : files_of_folder(path);
   const auto count = static_cast<std::int64_t>(files.size());
   if (count != layout.dims[2]) {
-    bad_input(path, std::to_string(layout.dims[2]) + " files by the layout, one for each slice", std::to_string(count));
+    const char* const files_of_layout = layout.dims[2] == 1 ? " file" : " files";
+    bad_input(path, std::to_string(layout.dims[2]) + files_of_layout + " by the layout, one for each slice",
+              std::to_string(count));
   }
   const std::uint64_t slice = volume.info.slice_bytes();
   const auto name = [files](std::int64_t n) { return files[static_cast<std::size_t>(n)]; };

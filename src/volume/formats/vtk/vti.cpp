@@ -12,6 +12,7 @@
 
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
+#include "files/part_file.hpp"
 #include "files/quoted.hpp"
 #include "files/xml_tag.hpp"
 #include "volume/axes.hpp"
@@ -280,7 +281,8 @@ Headers piece_headers(const std::shared_ptr<const ImageHeader>& header, const Op
     check_external(options, header->path, piece.source);
     if (piece.source.empty()) bad_input(header->path, "a file as Source of each piece", "none");
     const std::string path = listed_files(header->path, {piece.source}).name(0);
-    auto source = std::make_shared<ImageHeader>(HeaderReader(open_file(path), options.dataset).read());
+    auto source = std::make_shared<ImageHeader>(
+        HeaderReader(open_part(header->path, "a piece in", path), options.dataset).read());
     const std::string wanted = header->form.type.substr(1);
     if (source->form.type != wanted) bad_input(source->path, "VTK XML of type " + wanted, source->form.type);
     // A file for each of many pieces would be more than a process may have open.

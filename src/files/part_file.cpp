@@ -1,0 +1,19 @@
+#include "files/part_file.hpp"
+
+#include <cerrno>
+
+#include "system/file_facts.hpp"
+
+namespace isoweave {
+
+void require_part(const std::string& whole, std::string_view role, const std::string& path) {
+  if (system::status_of(path) || (errno != ENOENT && errno != ENOTDIR)) return;
+  bad_input(whole, std::string(role) + " " + path, "no such file");
+}
+
+FilePtr open_part(const std::string& whole, std::string_view role, const std::string& path) {
+  require_part(whole, role, path);
+  return open_file(path);
+}
+
+}  // namespace isoweave

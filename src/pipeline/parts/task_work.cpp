@@ -1,0 +1,85 @@
+#include "pipeline/parts/task_work.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace isoweave {
+
+TaskWork::TaskWork(const Task& task, const BlockStages& stages, std::uint64_t number, const RunControl& control,
+                   const Executor& executor, std::function<void()> between)
+    : task_(task),
+      stages_(stages),
+      number_(number),
+      tasks_(stages.tasks()),
+      stage_(tasks_.stage_of(number)),
+      between_(std::move(between)),
+      worker_(task, task.simplify.zone.retire, stages.all, control, executor, report_,
+              [this](Simplifier& simplifier, std::size_t level) { keep_final(simplifier, level); }) {
+  result_.pieces.resize(task.simplify.level_costs.size() + 1);
+  result_.facts.levels.resize(result_.pieces.size());
+}
+
+TaskResult TaskWork::extract(const VolumeOpener& open) {
+  const CellBox cells = stages_.grids[0].cells(stages_.block(0, number_), stages_.all);
+  if (cells.empty()) return std::move(result_);
+  SlabRecord record;
+  return result_of(worker_.extract(open(), cells, 0, record));
+}
+
+TaskResult TaskWork::glue(std::vector<ZonePart> parts) {
+  if (parts.empty()) return std::move(result_);
+  return result_of(worker_.glue(std::move(parts)));
+}
+
+// Keeps what is final in a level until the task is done.
+void TaskWork::keep_final(Simplifier& simplifier, std::size_t level) {
+  LevelCounts& counts = result_.facts.levels[level];
+  FinalPiece piece;
+  simplifier.final_source(level).take_final({(number_ << kPlaceBits) + counts.vertices, 0}, piece);
+  counts.vertices += piece.positions.size();
+  counts.triangles += piece.triangles.size();
+  counts.open_edges += piece.open_edges;
+  if (piece.positions.size() + piece.triangles.size() > 0) result_.pieces[level].push_back(std::move(piece));
+  between_();
+}
+
+TaskResult TaskWork::result_of(ZonePart rest) {
+  if (rest.triangles.size() > 0) result_.parts = split(std::move(rest));
+  count();
+  return std::move(result_);
+}
+
+std::vector<SplitPart> TaskWork::split(ZonePart rest) const {
+  if (stage_ + 1 == tasks_.stages.size()) {
+    throw std::logic_error(std::to_string(rest.triangles.size()) + " triangles are left undecided");
+  }
+  const std::uint64_t first = tasks_.first_of(stage_ + 1);
+  const BlockRange takers = stages_.takers(stage_, stages_.block(stage_, number_ - tasks_.first_of(stage_)));
+  const VertexNumbering& numbering = task_.simplify.zone.numbering;
+  return split_part(std::move(rest), [&](std::uint64_t id) {
+    const BlockIndex block = takers.nearest(stages_.grids[stage_ + 1].block_of(numbering.place(id).low));
+    return static_cast<std::size_t>(first + stages_.number(stage_ + 1, block));
+  });
+}
+
+void TaskWork::count() {
+  const BlockTotals& totals = worker_.totals();
+  TaskCounts& counts = result_.facts.counts;
+  counts.cells = report_.cells_crossed;
+  counts.triangles_extracted = report_.triangles_extracted;
+  counts.vertices_extracted = report_.vertices_extracted;
+  counts.taken = totals.triangles;
+  counts.rounds = totals.rounds;
+  counts.decisions = totals.decisions;
+  counts.range = totals.range;
+  for (std::size_t level = 0; level < result_.pieces.size(); ++level) {
+    result_.facts.levels[level].defects = totals.defects[level];
+  }
+  for (const SplitPart& part : result_.parts) {
+    counts.left += part.part.triangles.size();
+    result_.facts.parts.push_back({part.owner, part.part.triangles.size()});
+  }
+}
+
+}  // namespace isoweave
