@@ -22,7 +22,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kProgramExamples = R"(
 Examples:
   isoweave info scan.nii.gz
   isoweave mesh scan.nii.gz --iso 300 -o bone.ply
@@ -33,7 +33,7 @@ Exit codes: 0 done, 2 usage, 3 bad input, 4 cannot write, 5 not enough memory,
 6 device, 130 interrupted.
 isoweave help VERB says more.)";
 
-constexpr const char* kRankExamples = R"(
+constexpr const char* kRankProgramExamples = R"(
 Examples:
   mpirun -n 64 isoweave-mpi mesh huge.zarr --iso 100 -o huge.ply
   mpirun -n 4 isoweave-mpi mesh ct.raw --raw 4096x4096x4096:uint16 --iso 3000 \
@@ -145,7 +145,7 @@ int run(const std::vector<std::string>& given) {
   app.set_version_flag("--version", "isoweave " ISOWEAVE_VERSION, "Show the version");
   app.set_help_flag("-h,--help", "Show this help");
   app.require_subcommand(1);
-  app.footer(rank_link() == nullptr ? kExamples : kRankExamples);
+  app.footer(rank_link() == nullptr ? kProgramExamples : kRankProgramExamples);
   use_help_text(app);
   add_verbs(app);
   describe(app);

@@ -17,7 +17,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kCheckExamples = R"(
 Examples:
   isoweave check bone.ply
   isoweave check bone.ply --self-intersections --json)";
@@ -143,7 +143,7 @@ void add_check_verb(CLI::App& app) {
   add_external_option(*verb, arguments->reading);
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print JSON");
-  verb->footer(kExamples);
+  verb->footer(kCheckExamples);
   verb->callback([arguments] { run_check(*arguments); });
 }
 

@@ -19,7 +19,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kCollectExamples = R"(
 Examples:
   isoweave collect tasks -o huge.ply --report huge.json
 
@@ -83,7 +83,7 @@ void add_collect_verb(CLI::App& app) {
   verb->add_flag("--no-clobber", arguments->no_clobber, "Refuse to replace a file");
   verb->add_flag("--allow-empty", arguments->allow_empty, "Write a mesh without triangles, too");
   verb->add_flag("--quiet", arguments->quiet, "Print errors alone");
-  verb->footer(kExamples);
+  verb->footer(kCollectExamples);
   verb->callback([arguments] { run_collect(*arguments); });
 }
 

@@ -19,7 +19,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kCompareExamples = R"(
 Examples:
   isoweave compare bone.ply full.ply
   isoweave compare bone.ply full.ply --distances colours.ply --histogram 20)";
@@ -149,7 +149,7 @@ void add_compare_verb(CLI::App& app) {
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--json", arguments->json, "Print JSON");
-  verb->footer(kExamples);
+  verb->footer(kCompareExamples);
   verb->callback([arguments] { run_compare(*arguments); });
 }
 

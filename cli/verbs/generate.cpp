@@ -15,7 +15,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kGenerateExamples = R"(
 Examples:
   isoweave generate gyroid --size 64 -o gyroid.nrrd
   isoweave generate sphere --size 64x64x32 --type uint8 -o sphere.nrrd)";
@@ -98,7 +98,7 @@ void add_generate_verb(CLI::App& app) {
       ->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  verb->footer(kExamples);
+  verb->footer(kGenerateExamples);
   verb->callback([arguments] { run_generate(*arguments); });
 }
 

@@ -24,7 +24,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kInfoExamples = R"(
 Examples:
   isoweave info scan.nii.gz
   isoweave info foot.raw --raw 256x256x256:uint8
@@ -249,7 +249,7 @@ void add_info_verb(CLI::App& app) {
   verb->add_flag("--isos", arguments->isos, "Triangles of the surface for iso-values over the whole range");
   verb->add_option("--html", arguments->page.path, "Write a page with a chart of --isos to this file")->needs("--isos");
   add_clobber_option(*verb, arguments->no_clobber);
-  verb->footer(kExamples);
+  verb->footer(kInfoExamples);
   verb->callback([arguments] { run_info(*arguments); });
 }
 

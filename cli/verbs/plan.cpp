@@ -19,7 +19,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kPlanExamples = R"(
 Examples:
   isoweave plan huge.zarr --iso 100 --blocks 512 -o tasks
   isoweave work tasks          (in as many shells as there are, on any machine)
@@ -61,7 +61,7 @@ void add_plan_verb(CLI::App& app) {
   verb->add_option("-o,--output", *folder, "Folder of the tasks, which is made")->required();
   verb->add_option("--blocks", arguments->blocks, "Cells along each side of a task's block")->default_str("256");
   verb->add_flag("--quiet", *quiet, "Print errors alone");
-  verb->footer(kExamples);
+  verb->footer(kPlanExamples);
   verb->callback([arguments, folder, quiet] {
     if (arguments->input.path.empty()) throw CLI::RequiredError("VOLUME");
     if (arguments->iso.empty()) throw CLI::RequiredError("--iso");

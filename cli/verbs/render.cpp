@@ -22,7 +22,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kRenderExamples = R"(
 Examples:
   isoweave render bone.ply -o bone.png
   isoweave render bone.ply -o side.png --view right --size 1920x1080 \
@@ -221,7 +221,7 @@ void add_render_verb(CLI::App& app) {
   verb->add_option("--threads", arguments->threads, "Threads, or all; never changes the result")->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  verb->footer(kExamples);
+  verb->footer(kRenderExamples);
   verb->callback([arguments] { run_render(*arguments); });
 }
 

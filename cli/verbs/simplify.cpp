@@ -26,7 +26,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kSimplifyExamples = R"(
 Examples:
   isoweave simplify scan.stl --error 0.1mm -o smaller.ply
   isoweave simplify brain.ply --ratio 10% --quality fine -o brain.obj
@@ -243,7 +243,7 @@ void add_simplify_verb(CLI::App& app) {
   add_run_options(*verb, arguments->run);
   add_page_options(*verb, arguments->page);
   add_preview_option(*verb, arguments->preview);
-  verb->footer(kExamples);
+  verb->footer(kSimplifyExamples);
   add_external_option(*verb, arguments->reading);
   verb->callback([arguments] { run_simplify(*arguments); });
 }

@@ -27,7 +27,7 @@ void write_file(const std::string& path, const std::string& text) {
   file.commit();
 }
 
-void make_folder(const std::string& folder) {
+void make_task_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder)) throw CannotWrite(folder + ": cannot be made: " + error.message());
@@ -89,7 +89,7 @@ std::string slurm_script(const TaskList& tasks) {
 PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder) {
   PlannedMesh plan = planned(arguments, block, folder);
   const TaskList tasks = list_tasks(plan.mesh);
-  make_folder(folder);
+  make_task_folder(folder);
   const Json json = {{"version", ISOWEAVE_VERSION},
                      {"blocks", block},
                      {"stages", tasks.stages},

@@ -23,7 +23,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kViewExamples = R"(
 Examples:
   isoweave view bone.ply --open
   isoweave view bone.json -o bone.html --before full.ply
@@ -126,7 +126,7 @@ void add_view_verb(CLI::App& app) {
   verb->add_option("--threads", arguments->threads, "Threads, or all")->capture_default_str();
   add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  verb->footer(kExamples);
+  verb->footer(kViewExamples);
   verb->callback([arguments] { run_view(*arguments); });
 }
 

@@ -19,7 +19,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kWorkExamples = R"(
 Examples:
   isoweave work tasks                all tasks that no other process works on
   isoweave work tasks --task 12      one task, for a scheduler
@@ -142,7 +142,7 @@ void add_work_verb(CLI::App& app) {
       ->needs(task);
   verb->add_option("--threads", arguments->threads, "Number of threads, or all")->capture_default_str();
   verb->add_flag("--quiet", arguments->quiet, "Print errors alone");
-  verb->footer(kExamples);
+  verb->footer(kWorkExamples);
   verb->callback([arguments] { run_work(*arguments); });
 }
 

@@ -25,7 +25,7 @@ constexpr std::size_t kMostWaiting = 64;
 constexpr std::size_t kMostAsked =
     16'384;  // bytes: what browsers send, with the cookies of other pages of this machine
 constexpr auto kToAsk = 1s;
-constexpr int kLook = 20;  // ms between two looks for connections that are out of time
+constexpr int kBetweenLooks = 20;  // ms between two looks for connections that are out of time
 constexpr std::string_view kEnd = "\r\n\r\n";
 
 void close_socket(int socket) {
@@ -118,7 +118,7 @@ void WatchConnections::add_new() {
 void WatchConnections::wait() const {
   std::vector<pollfd> events{{wake_, POLLIN, 0}};
   for (const Asking& asking : asking_) events.push_back({asking.socket, POLLIN, 0});
-  ::poll(events.data(), events.size(), asking_.empty() ? -1 : kLook);
+  ::poll(events.data(), events.size(), asking_.empty() ? -1 : kBetweenLooks);
 }
 
 WatchConnections::State WatchConnections::read_some(Asking& asking) const {

@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr Clock::duration kToTake = 2s;      // a part of the answer
 constexpr Clock::duration kToTakeAll = 60s;  // the address may have been forwarded over a slow line
-constexpr int kLook = 20;                    // ms between two looks whether the server ends
+constexpr int kBetweenLooksAtEnd = 20;       // ms between two looks whether the server ends
 
 // A token of 128 random bits.
 std::string random_token() {
@@ -56,7 +56,7 @@ class Connection final : public httplib::Stream {
     while (!over_) {
       const bool last = Clock::now() >= until;
       pollfd ready{question_.socket, POLLOUT, 0};
-      if (::poll(&ready, 1, last ? 0 : kLook) > 0) return true;
+      if (::poll(&ready, 1, last ? 0 : kBetweenLooksAtEnd) > 0) return true;
       if (last) return false;
     }
     return false;

@@ -11,7 +11,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kClusterBlock = 4096;
 constexpr std::size_t kFewTriangles = std::size_t{1} << 16;
 
 // The corners in the same direction, from the least one on.
@@ -37,7 +37,7 @@ void Clusters::find_cells(const SurfacePiece& piece) {
   positions_.resize(inherited + added);
   cells_.resize(inherited + added);
   keys_.resize(added);
-  executor_.for_each(static_cast<std::int64_t>(added), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(added), kClusterBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     positions_[inherited + n] = piece.positions[n];
     keys_[n] = grid_.key(piece.positions[n]);
@@ -47,7 +47,7 @@ void Clusters::find_cells(const SurfacePiece& piece) {
     cells_[inherited + n] = same ? cells_[inherited + n - 1] : table_.number(keys_[n]);
   }
   corners_.resize(piece.triangles.size());
-  executor_.for_each(static_cast<std::int64_t>(corners_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(corners_.size()), kClusterBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     for (std::size_t c = 0; c < 3; ++c) corners_[n][c] = cells_[piece.triangles[n][c]];
   });
@@ -76,7 +76,7 @@ void Clusters::sum_planes(const SurfacePiece& piece) {
 
 void Clusters::keep_triangles() {
   collect(
-      executor_, static_cast<std::int64_t>(corners_.size()), kBlock,
+      executor_, static_cast<std::int64_t>(corners_.size()), kClusterBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Corners>& list) {
         for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
           const Corners& cells = corners_[n];
@@ -128,7 +128,7 @@ std::vector<std::uint32_t> Clusters::cells_with_triangles() const {
 void Clusters::place(const std::vector<std::uint32_t>& cells, ClusteredSurface& surface) const {
   std::vector<double> errors(cells.size());
   surface.positions.resize(cells.size());
-  executor_.for_each(static_cast<std::int64_t>(cells.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(cells.size()), kClusterBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const CellSum& sum = sums_[cells[n]];
     const Vec3 place = grid_.within(sum.best());

@@ -94,7 +94,7 @@ std::uint32_t CellSlab::find_crossed(std::ptrdiff_t n, std::size_t row, std::spa
   }
   kernels_.cells_crossed(rows_around(n, row), edge_mask_.data(), words_, crossed.data());
   std::uint32_t count = 0;
-  for (const std::uint64_t word : crossed) count += static_cast<std::uint32_t>(std::popcount(word));
+  for (const std::uint64_t word : crossed) count += ones(word);
   return count;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +22,9 @@
 #include "volume/slice_window.hpp"
 
 namespace isoweave {
+
+// How many bits of a word are set.
+inline std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
 
 class CellSlab {
  public:

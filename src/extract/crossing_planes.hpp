@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -42,7 +41,6 @@ class CrossingPlanes {
   }
 
  private:
-  static std::uint64_t ones(std::uint64_t word) { return static_cast<std::uint64_t>(std::popcount(word)); }
   void place_rows(std::size_t slices);
   template <class MakePlane>
   void make_row(std::size_t slice, std::size_t row, const MakePlane& make_plane);

@@ -14,8 +14,6 @@
 namespace isoweave {
 namespace {
 
-std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
-
 bool is_incomplete(const DualVertex& vertex) { return (vertex.edges & dual::kTopEdges) != 0; }
 
 // The number of the cell edge along an axis at an offset of 0 or 1 along the two axes that follow it.

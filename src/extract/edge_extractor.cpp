@@ -9,8 +9,6 @@
 namespace isoweave {
 namespace {
 
-std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
-
 // Calls visit(bit within the row) for every set bit of word w.
 template <class Visit>
 void for_each_bit(std::uint64_t word, std::size_t w, Visit&& visit) {

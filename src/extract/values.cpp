@@ -7,7 +7,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kValuesBlock = 4096;
 
 // The value at an index: interpolated along the axes on which a vertex lies between samples.
 template <class T>
@@ -37,7 +37,7 @@ void sample_values(const SliceWindow& window, const VertexNumbering& numbering, 
   piece.values.resize(piece.positions.size());
   visit_sample_type(volume.type, [&]<class T>() {
     const SampleView<T> samples(window);
-    executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
+    executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kValuesBlock, [&](std::int64_t n) {
       const auto v = static_cast<std::size_t>(n);
       const VertexNumbering::Place place = numbering.place(piece.ids[v]);
       const auto& at = piece.positions[v];

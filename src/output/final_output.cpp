@@ -5,7 +5,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kFinalBlock = 4096;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void FinalOutput::serialize(StateReader& state) {
 
 void FinalOutput::write(std::uint64_t first_number) {
   corners_.resize(piece_.known.size());
-  executor_.for_each(static_cast<std::int64_t>(corners_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(corners_.size()), kFinalBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const KnownVertex& vertex = piece_.known[n];
     ISOWEAVE_CHECK(vertex.receipt.number < first_number);

@@ -7,7 +7,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kFullBlock = 4096;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void FullOutput::take(const SurfacePiece& piece) {
   std::vector<OutputCorner> front;
   front.reserve(piece.incomplete.size() + 1);
   front.resize(piece.incomplete.size());
-  executor_.for_each(static_cast<std::int64_t>(front.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(static_cast<std::int64_t>(front.size()), kFullBlock, [&](std::int64_t n) {
     const auto at = static_cast<std::size_t>(n);
     const std::uint32_t v = piece.incomplete[at];
     const std::uint32_t added = v - piece.inherited;

@@ -15,7 +15,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kSurfaceBlock = 4096;
 constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 constexpr std::uint64_t kInheritedPart = 4;  // one vertex in so many may be incomplete between two pieces
 
@@ -74,7 +74,7 @@ void MeshSurface::find_uses() {
 // The number of vertices, over all pieces, that pieces of so many triangles would inherit.
 std::uint64_t MeshSurface::inherited_with(std::uint64_t piece) const {
   std::atomic<std::uint64_t> sum{0};
-  executor_.for_blocks(static_cast<std::int64_t>(mesh_.vertices.size()), kBlock,
+  executor_.for_blocks(static_cast<std::int64_t>(mesh_.vertices.size()), kSurfaceBlock,
                        [&](std::int64_t begin, std::int64_t end) {
                          std::uint64_t own = 0;
                          for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
@@ -107,7 +107,7 @@ void MeshSurface::make(SurfacePiece& piece, MeshReport& report) {
 // Adds the new vertices in the order in which triangles name them.
 void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
   collect(
-      executor_, static_cast<std::int64_t>(end - next_), kBlock,
+      executor_, static_cast<std::int64_t>(end - next_), kSurfaceBlock,
       [&](std::int64_t from, std::int64_t to, std::vector<std::uint32_t>& list) {
         for (std::uint64_t t = next_ + static_cast<std::uint64_t>(from); t < next_ + static_cast<std::uint64_t>(to);
              ++t) {
@@ -120,7 +120,7 @@ void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
   piece.positions.resize(vertices_.size());
   piece.ids.resize(vertices_.size());
   piece.values.resize(mesh_.values.empty() ? 0 : vertices_.size());
-  executor_.for_each(static_cast<std::int64_t>(vertices_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(vertices_.size()), kSurfaceBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const std::uint32_t v = vertices_[n];
     piece.positions[n] = position_of(mesh_.vertices[v]);
@@ -133,7 +133,7 @@ void MeshSurface::add_new_vertices(std::uint64_t end, SurfacePiece& piece) {
 void MeshSurface::add_triangles(std::uint64_t end, SurfacePiece& piece) {
   piece.triangles.resize(end - next_);
   std::atomic<bool> any_repeats{false};
-  executor_.for_each(static_cast<std::int64_t>(end - next_), kBlock, [&](std::int64_t n) {
+  executor_.for_each(static_cast<std::int64_t>(end - next_), kSurfaceBlock, [&](std::int64_t n) {
     const auto& triangle = mesh_.triangles[next_ + static_cast<std::uint64_t>(n)];
     const bool repeats = repeats_a_vertex(triangle);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -154,7 +154,7 @@ void MeshSurface::list_incomplete(std::uint64_t end, SurfacePiece& piece) {
     return n < piece.inherited ? incomplete_[n] : vertices_[n - piece.inherited];
   };
   collect(
-      executor_, static_cast<std::int64_t>(incomplete_.size() + vertices_.size()), kBlock,
+      executor_, static_cast<std::int64_t>(incomplete_.size() + vertices_.size()), kSurfaceBlock,
       [&](std::int64_t from, std::int64_t to, std::vector<std::uint32_t>& list) {
         for (auto n = static_cast<std::uint32_t>(from); n < static_cast<std::uint32_t>(to); ++n) {
           if (last_[vertex(n)] >= end) list.push_back(n);
@@ -172,9 +172,9 @@ void MeshSurface::list_incomplete(std::uint64_t end, SurfacePiece& piece) {
 double mean_triangle_area(const TriangleMesh& mesh, const Executor& executor) {
   if (mesh.triangles.empty()) return 0;
   const auto count = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<double> sums(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
-  executor.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
-    sums[static_cast<std::size_t>(begin / kBlock)] = sum_areas(mesh, begin, end);
+  std::vector<double> sums(static_cast<std::size_t>((count + kSurfaceBlock - 1) / kSurfaceBlock));
+  executor.for_blocks(count, kSurfaceBlock, [&](std::int64_t begin, std::int64_t end) {
+    sums[static_cast<std::size_t>(begin / kSurfaceBlock)] = sum_areas(mesh, begin, end);
   });
   double sum = 0;
   for (const double block : sums) sum += block;

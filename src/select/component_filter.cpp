@@ -10,9 +10,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
-
-std::span<std::uint32_t> span_of(Array<std::uint32_t>& array) { return {array.data(), array.size()}; }
+constexpr std::int64_t kFilterBlock = 4096;
 
 }  // namespace
 
@@ -50,12 +48,12 @@ void ComponentFilter::refuse() const {
 
 void ComponentFilter::find_parts(const SurfacePiece& piece) {
   parents_.resize(piece.inherited + piece.positions.size());
-  executor_.for_each(static_cast<std::int64_t>(parents_.size()), kBlock,
+  executor_.for_each(static_cast<std::int64_t>(parents_.size()), kFilterBlock,
                      [&](std::int64_t n) { parents_[static_cast<std::size_t>(n)] = static_cast<std::uint32_t>(n); });
-  executor_.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(static_cast<std::int64_t>(piece.triangles.size()), kFilterBlock, [&](std::int64_t n) {
     const auto& [a, b, c] = piece.triangles[static_cast<std::size_t>(n)];
-    join_sets(span_of(parents_), a, b);
-    join_sets(span_of(parents_), a, c);
+    join_sets(parents_, a, b);
+    join_sets(parents_, a, c);
   });
 }
 
@@ -63,7 +61,7 @@ void ComponentFilter::find_parts(const SurfacePiece& piece) {
 void ComponentFilter::judge_parts(const SurfacePiece& piece) {
   kept_.resize(parents_.size());
   const auto each_vertex = [&](const auto& visit) {
-    executor_.for_each(static_cast<std::int64_t>(parents_.size()), kBlock,
+    executor_.for_each(static_cast<std::int64_t>(parents_.size()), kFilterBlock,
                        [&](std::int64_t n) { visit(static_cast<std::uint32_t>(n)); });
   };
   each_vertex([&](std::uint32_t v) {
@@ -71,7 +69,7 @@ void ComponentFilter::judge_parts(const SurfacePiece& piece) {
     kept_[v] = v < piece.inherited ? front_is_kept_[v] : std::uint8_t{keeps_seed(piece.ids[v - piece.inherited])};
   });
   each_vertex([&](std::uint32_t v) {
-    const std::uint32_t root = find_root(span_of(parents_), v);
+    const std::uint32_t root = find_root(parents_, v);
     if (root != v) kept_[v] = kept_[root];
   });
 }

@@ -14,9 +14,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
-
-std::span<std::uint32_t> span_of(Array<std::uint32_t>& array) { return {array.data(), array.size()}; }
+constexpr std::int64_t kFinderBlock = 4096;
 
 }  // namespace
 
@@ -39,7 +37,7 @@ void ComponentFinder::apply(SurfacePiece& piece) {
 void ComponentFinder::begin(const SurfacePiece& piece) {
   parents_.resize(piece.inherited + piece.positions.size());
   labels_.resize(parents_.size());
-  executor_.for_each(static_cast<std::int64_t>(parents_.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(static_cast<std::int64_t>(parents_.size()), kFinderBlock, [&](std::int64_t n) {
     const auto v = static_cast<std::uint32_t>(n);
     parents_[v] = v;
     if (v < piece.inherited) labels_[v] = front_[v];
@@ -63,10 +61,10 @@ ComponentFinder::LayerEnd ComponentFinder::end_of_layer(const SurfacePiece& piec
 }
 
 void ComponentFinder::join_triangles(const SurfacePiece& piece, std::size_t first, std::size_t end) {
-  executor_.for_each(static_cast<std::int64_t>(end - first), kBlock, [&](std::int64_t n) {
+  executor_.for_each(static_cast<std::int64_t>(end - first), kFinderBlock, [&](std::int64_t n) {
     const auto& [a, b, c] = piece.triangles[first + static_cast<std::size_t>(n)];
-    join_sets(span_of(parents_), a, b);
-    join_sets(span_of(parents_), a, c);
+    join_sets(parents_, a, b);
+    join_sets(parents_, a, c);
   });
 }
 
@@ -74,7 +72,7 @@ void ComponentFinder::join_triangles(const SurfacePiece& piece, std::size_t firs
 // vertices.
 void ComponentFinder::add_seeds(const SurfacePiece& piece, std::uint32_t first, std::uint32_t end) {
   collect(
-      executor_, end - first, kBlock,
+      executor_, end - first, kFinderBlock,
       [&](std::int64_t block_begin, std::int64_t block_end, std::vector<std::uint32_t>& list) {
         for (auto v = first + static_cast<std::uint32_t>(block_begin);
              v < first + static_cast<std::uint32_t>(block_end); ++v) {
@@ -98,25 +96,25 @@ void ComponentFinder::add_seeds(const SurfacePiece& piece, std::uint32_t first, 
 // Joins the seeds whose parts of the surface a later layer has joined: their components are one.
 void ComponentFinder::join_seeds(std::uint32_t inherited) {
   const auto join = [&](std::uint32_t v) {
-    const std::uint32_t root = find_root(span_of(parents_), v);
+    const std::uint32_t root = find_root(parents_, v);
     if (root != v) join_sets(seed_parents_, labels_[v], labels_[root]);
   };
-  executor_.for_each(inherited, kBlock, [&](std::int64_t v) { join(static_cast<std::uint32_t>(v)); });
-  executor_.for_each(static_cast<std::int64_t>(new_roots_.size()), kBlock,
+  executor_.for_each(inherited, kFinderBlock, [&](std::int64_t v) { join(static_cast<std::uint32_t>(v)); });
+  executor_.for_each(static_cast<std::int64_t>(new_roots_.size()), kFinderBlock,
                      [&](std::int64_t n) { join(new_roots_[static_cast<std::size_t>(n)]); });
 }
 
 // Counts triangles by component. Consecutive triangles are of one component as a rule, and are counted together.
 void ComponentFinder::count_triangles(const SurfacePiece& piece) {
   const auto count = static_cast<std::int64_t>(piece.triangles.size());
-  executor_.for_blocks(count, kBlock, [&](std::int64_t begin, std::int64_t end) {
+  executor_.for_blocks(count, kFinderBlock, [&](std::int64_t begin, std::int64_t end) {
     std::uint32_t root = 0;
     std::uint64_t run = 0;
     const auto add = [&] {
       if (run > 0) fetch_add(seed_triangles_[labels_[root]], run);
     };
     for (std::int64_t n = begin; n < end; ++n) {
-      const std::uint32_t own = find_root(span_of(parents_), piece.triangles[static_cast<std::size_t>(n)][0]);
+      const std::uint32_t own = find_root(parents_, piece.triangles[static_cast<std::size_t>(n)][0]);
       if (own != root) {
         add();
         root = own;
@@ -130,9 +128,9 @@ void ComponentFinder::count_triangles(const SurfacePiece& piece) {
 
 void ComponentFinder::list_front(const SurfacePiece& piece) {
   front_.resize(piece.incomplete.size());
-  executor_.for_each(static_cast<std::int64_t>(front_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(static_cast<std::int64_t>(front_.size()), kFinderBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
-    front_[n] = find_root(seed_parents_, labels_[find_root(span_of(parents_), piece.incomplete[n])]);
+    front_[n] = find_root(seed_parents_, labels_[find_root(parents_, piece.incomplete[n])]);
   });
 }
 

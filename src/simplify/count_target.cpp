@@ -10,7 +10,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 8192;
+constexpr std::int64_t kCountBlock = 8192;
 constexpr std::uint64_t kInOrder = 4000;  // the last triangles are left to one queue
 constexpr std::uint64_t kShown = 32'000;  // edges that the queue is shown first
 
@@ -19,7 +19,7 @@ template <class Add>
 CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add& add) {
   CostHistogram sum;
   std::mutex merging;
-  executor.for_blocks(zone.triangle_count(), 16 * kBlock, [&](std::int64_t begin, std::int64_t end) {
+  executor.for_blocks(zone.triangle_count(), 16 * kCountBlock, [&](std::int64_t begin, std::int64_t end) {
     CostHistogram own;
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
       if (zone.alive(half_edge(t, 0))) add(t, own);

@@ -5,7 +5,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kHandOverBlock = 4096;
 
 std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(count); }
 
@@ -18,7 +18,7 @@ void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, F
   piece.locked.resize(0);
   if (zone_.locked > 0) mark_locked(piece);
   open_edges_ = 0;
-  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t n) {
     const Index t = triangles[static_cast<std::size_t>(n)];
     is_last() ? close_sides(t) : keep(t);
   });
@@ -28,20 +28,20 @@ void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, F
 // Lists the vertices that triangles name, and final ones where they go early, in memory order, and numbers them.
 void HandOver::list_vertices(const std::vector<Index>& triangles) {
   place_.assign(zone_.vertices.size(), 0);
-  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t n) {
     for (const HalfEdge& side : zone_.triangles[triangles[static_cast<std::size_t>(n)]].sides) {
       std::atomic_ref(place_[side.vertex]).store(1, std::memory_order_relaxed);
     }
   });
   if (early_) {
-    executor_.for_each(signed_count(place_.size()), kBlock, [&](std::int64_t n) {
+    executor_.for_each(signed_count(place_.size()), kHandOverBlock, [&](std::int64_t n) {
       const auto v = static_cast<Index>(n);
       if (is_final(v) && number(v) == kNotHandedOver && exists(zone_.vertices[v].half_edge)) place_[v] = 1;
     });
   }
   const auto list = [&](bool known, std::uint32_t first, std::vector<Index>& vertices) {
     collect(
-        executor_, signed_count(place_.size()), kBlock,
+        executor_, signed_count(place_.size()), kHandOverBlock,
         [&](std::int64_t begin, std::int64_t end, std::vector<Index>& out) {
           for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
             if (place_[v] != 0 && (number(v) != kNotHandedOver) == known) out.push_back(v);
@@ -52,10 +52,10 @@ void HandOver::list_vertices(const std::vector<Index>& triangles) {
   };
   list(false, list(true, 0, known_), new_);
   const auto first_new = static_cast<std::uint32_t>(known_.size());
-  executor_.for_each(signed_count(known_.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(signed_count(known_.size()), kHandOverBlock, [&](std::int64_t n) {
     place_[known_[static_cast<std::size_t>(n)]] = static_cast<std::uint32_t>(n);
   });
-  executor_.for_each(signed_count(new_.size()), kBlock, [&](std::int64_t n) {
+  executor_.for_each(signed_count(new_.size()), kHandOverBlock, [&](std::int64_t n) {
     place_[new_[static_cast<std::size_t>(n)]] = first_new + static_cast<std::uint32_t>(n);
   });
 }
@@ -65,12 +65,12 @@ void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
   piece.positions.resize(new_.size());
   piece.normals.resize(zone_.normals.empty() ? 0 : new_.size());
   piece.values.resize(zone_.values.empty() ? 0 : new_.size());
-  executor_.for_each(signed_count(known_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(signed_count(known_.size()), kHandOverBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const Index v = known_[n];
     piece.known[n] = {zone_.vertices[v].position, {number(v), label(v)}};
   });
-  executor_.for_each(signed_count(new_.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(signed_count(new_.size()), kHandOverBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const Index v = new_[n];
     piece.positions[n] = zone_.vertices[v].position;
@@ -83,7 +83,7 @@ void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
 
 void HandOver::fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const {
   piece.triangles.resize(triangles.size());
-  executor_.for_each(signed_count(triangles.size()), kBlock, [&](std::int64_t i) {
+  executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const Triangle& triangle = zone_.triangles[triangles[n]];
     for (std::size_t c = 0; c < 3; ++c) piece.triangles[n][c] = place_[triangle.sides[c].vertex];

@@ -7,7 +7,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kPieceBlock = 4096;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void PieceOrder::find_columns(const SurfacePiece& piece, const ZoneView& zone, s
     return n < front.size() ? zone.vertices[front[n]].position : piece.positions[n - front.size()];
   };
   columns_.resize(front.size() + piece.positions.size());
-  executor.for_each(static_cast<std::int64_t>(columns_.size()), kBlock, [&](std::int64_t i) {
+  executor.for_each(static_cast<std::int64_t>(columns_.size()), kPieceBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     columns_[n] = static_cast<std::uint16_t>(column(position(n)));
   });
@@ -37,7 +37,7 @@ void PieceOrder::number_vertices(const SurfacePiece& piece, const Executor& exec
       [&](std::uint32_t n) { return std::size_t{columns_[piece.inherited + n]}; }, new_vertices_);
   numbers_.resize(columns_.size());
   std::iota(numbers_.begin(), numbers_.begin() + piece.inherited, 0);
-  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t i) {
+  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kPieceBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
     numbers_[piece.inherited + new_vertices_.items[n]] = piece.inherited + n;
   });
@@ -48,7 +48,7 @@ void PieceOrder::move_triangles(const SurfacePiece& piece, const Executor& execu
       executor, static_cast<std::uint32_t>(piece.triangles.size()), Columns::kCount,
       [&](std::uint32_t n) { return std::size_t{columns_[piece.triangles[n][0]]}; }, by_column_);
   triangles_.resize(piece.triangles.size());
-  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kBlock, [&](std::int64_t i) {
+  executor.for_each(static_cast<std::int64_t>(piece.triangles.size()), kPieceBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const auto& corners = piece.triangles[by_column_.items[n]];
     for (std::size_t c = 0; c < 3; ++c) triangles_[n][c] = numbers_[corners[c]];

@@ -6,7 +6,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 1024;
+constexpr std::int64_t kRoundBlock = 1024;
 
 }  // namespace
 
@@ -26,11 +26,11 @@ void Rounds::run(const std::atomic<bool>* stop) {
 
 void Rounds::run_round(const RoundPasses<VectorArithmetic>& passes) {
   candidates_.size = minima_.size = 0;
-  executor_.for_each(changed_.size, kBlock, [&](std::int64_t n) { passes.list_candidates(n); });
-  executor_.for_each(candidates_.size, kBlock, [&](std::int64_t n) { passes.pick_minimum(n); });
+  executor_.for_each(changed_.size, kRoundBlock, [&](std::int64_t n) { passes.list_candidates(n); });
+  executor_.for_each(candidates_.size, kRoundBlock, [&](std::int64_t n) { passes.pick_minimum(n); });
   changed_.size = 0;
   std::mutex counting;
-  executor_.for_blocks(minima_.size, kBlock / 16, [&](std::int64_t begin, std::int64_t end) {
+  executor_.for_blocks(minima_.size, kRoundBlock / 16, [&](std::int64_t begin, std::int64_t end) {
     DecisionCounts counts;
     std::vector<std::pair<CostBits, std::uint64_t>> removed;  // by the decision of each key, and those before it
     for (std::int64_t n = begin; n < end; ++n) {
@@ -43,8 +43,8 @@ void Rounds::run_round(const RoundPasses<VectorArithmetic>& passes) {
     std::uint64_t before = 0;
     for (const auto& [key, with] : removed) removed_by_key_.add(key, with - std::exchange(before, with));
   });
-  executor_.for_each(changed_.size, kBlock, [&](std::int64_t n) { passes.renew(n); });
-  executor_.for_each(candidates_.size, kBlock, [&](std::int64_t n) { passes.forget_candidate(n); });
+  executor_.for_each(changed_.size, kRoundBlock, [&](std::int64_t n) { passes.renew(n); });
+  executor_.for_each(candidates_.size, kRoundBlock, [&](std::int64_t n) { passes.forget_candidate(n); });
   ++rounds_;
 }
 

@@ -15,7 +15,7 @@ namespace isoweave {
 
 namespace {
 
-constexpr std::int64_t kBlock = 8192;
+constexpr std::int64_t kSimplifierBlock = 8192;
 
 std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, const Executor& executor) {
   switch (schedule) {
@@ -108,7 +108,7 @@ std::vector<Index> Simplifier::final_triangles(std::size_t level, CostBits withi
   std::vector<std::uint32_t> corners(inspects_ ? zone_.vertices.size() : 0, 0);
   std::vector<Index> triangles;
   collect(
-      executor_, zone_.triangle_count(), kBlock,
+      executor_, zone_.triangle_count(), kSimplifierBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
           if (zone_.triangles[t].sides[0].vertex == kNone) continue;
@@ -131,7 +131,7 @@ std::vector<Index> Simplifier::name_final_vertices(std::size_t level, CostBits w
   undecided_.resize(zone_.vertices.size());
   std::vector<Index> walkable;
   collect(
-      executor_, static_cast<std::int64_t>(zone_.vertices.size()), kBlock,
+      executor_, static_cast<std::int64_t>(zone_.vertices.size()), kSimplifierBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
           undecided_[v] = zone_.states[v] == VertexState::kIncomplete || cost_of(zone_.turn_keys[v]) <= within;
@@ -152,7 +152,7 @@ bool Simplifier::make_final(Index v, std::size_t level) {
 
 // Removes triangles that have been handed over.
 void Simplifier::drop(const std::vector<Index>& triangles) {
-  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kBlock,
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kSimplifierBlock,
                      [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });
   dropped_ += triangles.size();
   close_gaps();

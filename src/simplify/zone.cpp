@@ -17,7 +17,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 2048;
+constexpr std::int64_t kZoneBlock = 2048;
 
 }  // namespace
 
@@ -179,7 +179,7 @@ void Zone::add_vertices(const SurfacePiece& piece, const Executor& executor) {
   if (!piece.manifold) corner_array_.resize(end);
   show_arrays();
   touch(std::span(vertex_array_.begin() + first, vertex_array_.end()), executor);
-  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(piece.positions.size()), kZoneBlock, [&](std::int64_t n) {
     const std::size_t from = order_.place_of_vertex(static_cast<std::size_t>(n));
     const std::size_t v = first + static_cast<std::size_t>(n);
     vertices[v] = Vertex();
@@ -214,7 +214,7 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
   extracted_surface_->forget_below(lowest);
   Array<ExtractedSurface::Corners> corners;
   corners.resize(piece.triangles.size());
-  executor.for_each(static_cast<std::int64_t>(corners.size()), kBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(corners.size()), kZoneBlock, [&](std::int64_t n) {
     for (std::size_t c = 0; c < 3; ++c) {
       const Index v = triangles[first_triangle + static_cast<Index>(n)].sides[c].vertex;
       const Vec3& p = vertices[v].position;
@@ -227,7 +227,7 @@ void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Exec
 // Completes the vertices that later pieces do not add to: they get their quadrics, or are locked.
 void Zone::settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor) {
   std::atomic<std::uint64_t> newly_locked{0};
-  executor.for_each(static_cast<std::int64_t>(settled.size()), kBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(settled.size()), kZoneBlock, [&](std::int64_t n) {
     const Index v = settled[static_cast<std::size_t>(n)];
     if (states[v] != VertexState::kIncomplete || on_front[v] != 0) return;
     states[v] = VertexState::kComplete;
@@ -276,7 +276,7 @@ void Zone::settle_edges(const Executor& executor) {
   settle_waiting_edges(executor);
   std::vector<Index> unkeyed;
   collect(
-      executor, triangle_count() - first_unsettled_, kBlock,
+      executor, triangle_count() - first_unsettled_, kZoneBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         settle_edges({first_unsettled_ + static_cast<Index>(begin), first_unsettled_ + static_cast<Index>(end)}, list);
       },
@@ -288,7 +288,7 @@ void Zone::settle_edges(const Executor& executor) {
 void Zone::settle_waiting_edges(const Executor& executor) {
   std::vector<Index> waiting;
   collect(
-      executor, static_cast<std::int64_t>(unkeyed_edges_.size()), kBlock,
+      executor, static_cast<std::int64_t>(unkeyed_edges_.size()), kZoneBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         EdgeBatch batch;
         for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {

@@ -9,7 +9,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 2048;
+constexpr std::int64_t kCutBlock = 2048;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ ZonePart Zone::take_part(const std::function<bool(std::uint64_t, std::uint64_t)>
     return states[a] == VertexState::kIncomplete && states[b] == VertexState::kIncomplete &&
            !is_border(vertices[a].id, vertices[b].id);
   };
-  executor.for_each(static_cast<std::int64_t>(triangle_count()), kBlock, [&](std::int64_t t) {
+  executor.for_each(static_cast<std::int64_t>(triangle_count()), kCutBlock, [&](std::int64_t t) {
     for (Index h = half_edge(static_cast<Index>(t), 0); h <= half_edge(static_cast<Index>(t), 2); ++h) {
       if (exists(twin(h)) || (twin(h) == kNone && is_cut(h))) set_twin(h, kWritten);
     }
@@ -54,7 +54,7 @@ void Zone::put_part(ZonePart part, const Executor& executor) {
   const std::vector<Index> completed = std::move(part.completed);
   take_arrays(part);
   countdown.begin(vertices.size());
-  executor.for_each(static_cast<std::int64_t>(completed.size()), kBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(completed.size()), kCutBlock, [&](std::int64_t n) {
     const Index v = completed[static_cast<std::size_t>(n)];
     start_fan(*this, v);
     Star star;

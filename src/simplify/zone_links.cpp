@@ -14,7 +14,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlock = 2048;
+constexpr std::int64_t kLinksBlock = 2048;
 constexpr std::uint32_t kNoFan = std::uint32_t{1} << 31;  // beside a number of triangles
 
 using Four [[gnu::vector_size(16), gnu::may_alias]] = std::uint32_t;
@@ -239,7 +239,7 @@ void Zone::link(const SurfacePiece& piece, Index first_triangle, std::span<const
   const Linker linker(*this, piece, first_triangle, executor);
   std::vector<Index> bad;
   collect(
-      executor, static_cast<std::int64_t>(first_side_.size()), kBlock,
+      executor, static_cast<std::int64_t>(first_side_.size()), kLinksBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<Index>& list) {
         std::size_t column = 0;
         for (auto n = static_cast<Index>(begin); n < static_cast<Index>(end); ++n) {

@@ -87,18 +87,19 @@ class PartOrder {
 // The three half-edges of a triangle from one of them on.
 std::array<Index, 3> sides_from(Index h) { return {h, next(h), previous(h)}; }
 
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool all_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-bool is_finite(const Quadric& q) {
-  return is_finite(Vec3{q.xx, q.xy, q.xz}) && is_finite(Vec3{q.yy, q.yz, q.zz}) && is_finite(q.b) && std::isfinite(q.c);
+bool all_finite(const Quadric& q) {
+  return all_finite(Vec3{q.xx, q.xy, q.xz}) && all_finite(Vec3{q.yy, q.yz, q.zz}) && all_finite(q.b) &&
+         std::isfinite(q.c);
 }
 
-bool is_finite(const NormalQuadric& q) {
-  return is_finite(q.gradient[0]) && is_finite(q.gradient[1]) && is_finite(q.gradient[2]) && is_finite(q.offset) &&
+bool all_finite(const NormalQuadric& q) {
+  return all_finite(q.gradient[0]) && all_finite(q.gradient[1]) && all_finite(q.gradient[2]) && all_finite(q.offset) &&
          std::isfinite(q.weight);
 }
 
-bool is_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+bool all_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
 // Reads the fields of a part, each of which is checked by itself.
 class PartReader {
@@ -134,7 +135,7 @@ class PartReader {
       part_.vertices[n].position = position;
     });
     state_.each<Quadric>(count, [&](std::size_t n, const Quadric& quadric) {
-      state_.require(is_finite(quadric), "quadrics that are finite");
+      state_.require(all_finite(quadric), "quadrics that are finite");
       part_.vertices[n].quadric = quadric;
     });
     read_receipts(
@@ -165,7 +166,7 @@ class PartReader {
       using T = std::remove_cvref_t<decltype(array[0])>;
       array.resize(has ? vertices() : 0);
       state_.each<T>(array.size(), [&](std::size_t n, const T& value) {
-        if constexpr (!std::is_same_v<T, float>) state_.require(is_finite(value), what);
+        if constexpr (!std::is_same_v<T, float>) state_.require(all_finite(value), what);
         array[n] = value;
       });
     };

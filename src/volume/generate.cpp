@@ -12,6 +12,7 @@
 #include "parallel/size.hpp"
 #include "volume/fields.hpp"
 #include "volume/row_source.hpp"
+#include "volume/samples.hpp"
 #include "volume/volume_sizes.hpp"
 
 namespace isoweave {
@@ -32,8 +33,6 @@ struct Mapping {
   double shift = 0;
   double base = 0;
 };
-
-bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
 
 Mapping mapping_of(const FieldKind& kind, SampleType type) {
   if (!is_integer(type)) return {};

@@ -14,7 +14,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kBlockBytes = 4 << 20;  // read at a time
+constexpr std::int64_t kHistogramBytes = 4 << 20;  // read at a time
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Histogram read_histogram(SliceSource& volume, const std::atomic<bool>* stop) {
     return counter.histogram(info.slope, info.intercept);
   }
   const std::int64_t row = info.dims[0] * static_cast<std::int64_t>(sample_bytes(info.type));
-  const std::int64_t rows = std::clamp<std::int64_t>(kBlockBytes / row, 1, info.dims[1]);
+  const std::int64_t rows = std::clamp<std::int64_t>(kHistogramBytes / row, 1, info.dims[1]);
   std::vector<std::byte> block(to_size(rows * row));
   RowReader reader(volume);
   for (std::int64_t k = 0; k < info.dims[2]; ++k) {

@@ -16,10 +16,8 @@ constexpr std::int64_t kFineBins = 65536;
 constexpr int kNarrowest = -1000;  // its inverse is still a number
 constexpr int kMantissaBits = 52;
 
-bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
-
 template <class T>
-bool is_finite(T value) {
+bool is_finite_sample(T value) {
   if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
   return true;
 }
@@ -74,7 +72,7 @@ void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
   std::int64_t finite = 0;
   for (std::int64_t n = 0; n < count; ++n) {
     const T value = samples[n];
-    if (is_finite(value)) {
+    if (is_finite_sample(value)) {
       low = std::min(low, value);
       high = std::max(high, value);
       ++finite;
@@ -90,7 +88,7 @@ void HistogramCounter::add_typed(const T* samples, std::int64_t count) {
   make_room(static_cast<double>(low), static_cast<double>(high));
   const double scale = std::ldexp(1.0, -exponent_);
   for (std::int64_t n = 0; n < count; ++n) {
-    if (!is_finite(samples[n])) continue;
+    if (!is_finite_sample(samples[n])) continue;
     const auto bin = static_cast<std::int64_t>(std::floor(static_cast<double>(samples[n]) * scale));
     ++counts_[static_cast<std::size_t>(bin - first_)];
   }

@@ -14,8 +14,6 @@ constexpr double kLargestWhole = 0x1p53;  // whole numbers up to it are doubles,
 
 bool is_whole(double number) { return std::abs(number) <= kLargestWhole && number == std::floor(number); }
 
-bool is_float(SampleType type) { return type == SampleType::kFloat32 || type == SampleType::kFloat64; }
-
 VolumeInfo info_of(const VolumeInfo& volume) {
   if (!is_whole(volume.slope) || !is_whole(volume.intercept)) {
     bad_input(volume.path, "labels without a scaling, or scaled by whole numbers",
@@ -23,7 +21,7 @@ VolumeInfo info_of(const VolumeInfo& volume) {
   }
   VolumeInfo info = volume;
   const bool is_scaled = volume.slope != 1 || volume.intercept != 0;
-  if (is_scaled || is_float(volume.type)) info.type = SampleType::kInt64;
+  if (is_scaled || !is_integer(volume.type)) info.type = SampleType::kInt64;
   info.slope = 1;
   info.intercept = 0;
   return info;

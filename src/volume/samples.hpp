@@ -9,6 +9,8 @@
 
 namespace isoweave {
 
+inline bool is_integer(SampleType type) { return type != SampleType::kFloat32 && type != SampleType::kFloat64; }
+
 // Calls visit.template operator()<T>() with the C++ type of the samples. Chosen once per pass, never per sample.
 template <class Visitor>
 decltype(auto) visit_sample_type(SampleType type, Visitor&& visit) {

@@ -15,7 +15,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::size_t kCard = 80;
-constexpr std::size_t kBlock = 2880;
+constexpr std::size_t kFitsBlock = 2880;
 
 struct FitsHeader {
   std::map<std::string, std::string, std::less<>> values;  // by keyword, without comments
@@ -29,7 +29,7 @@ FitsHeader read_header(const FilePtr& file) {
     const std::string_view card = std::string_view(head).substr(at, kCard);
     const std::string key(trimmed(card.substr(0, 8)));
     if (key == "END") {
-      header.data = (at + kCard + kBlock - 1) / kBlock * kBlock;
+      header.data = (at + kCard + kFitsBlock - 1) / kFitsBlock * kFitsBlock;
       return header;
     }
     if (card.substr(8, 2) != "= ") continue;

@@ -1,0 +1,57 @@
+# With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the core or of the command line, so
+# that what they all include is read once. Builds that are only tested gain by it; in those that people work with, a change
+# compiles one source. Names inside of two sources of a folder must differ then. Readers of formats are compiled one by one:
+# each has a `kMagic` and a `bad_input` of its own.
+option(ISOWEAVE_UNITY "Compile the sources of a folder together: faster where most of them have changed" OFF)
+
+if(ISOWEAVE_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wno-subobject-linkage)  # names without linkage are of a source, though a file includes it
+endif()
+
+# Sources at a time: as many as leave enough to do for every processor.
+set(ISOWEAVE_UNITY_SIZE 8)
+
+# isoweave_gather(OUT NAME ROOT SOURCE...): what is to be compiled in place of the sources, which lie under ROOT, in files
+# under unity/NAME. Sources with options of their own are compiled by themselves.
+function(isoweave_gather out name root)
+  set(gathered)
+  set(folders)
+  foreach(source ${ARGN})
+    get_source_file_property(definitions ${source} COMPILE_DEFINITIONS)
+    get_source_file_property(options ${source} COMPILE_OPTIONS)
+    if(NOT ISOWEAVE_UNITY OR definitions OR options)
+      list(APPEND gathered ${source})
+    else()
+      file(RELATIVE_PATH path ${root} ${source})
+      string(REGEX REPLACE "/.*|^[^/]+$" "" folder ${path})
+      list(APPEND folders ${folder})
+      list(APPEND sources_of_${folder} ${path})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder ${folders})
+    isoweave_write_unity(files ${PROJECT_BINARY_DIR}/unity/${name}/${folder} ${sources_of_${folder}})
+    list(APPEND gathered ${files})
+  endforeach()
+  set(${out} ${gathered} PARENT_SCOPE)
+endfunction()
+
+# isoweave_write_unity(OUT FOLDER SOURCE...)
+function(isoweave_write_unity out folder)
+  set(files)
+  set(text)
+  set(count 0)
+  list(LENGTH ARGN total)
+  foreach(source ${ARGN})
+    string(APPEND text "#include \"${source}\"  // NOLINT(bugprone-suspicious-include)\n")
+    math(EXPR count "${count} + 1")
+    math(EXPR rest "${count} % ${ISOWEAVE_UNITY_SIZE}")
+    if(rest EQUAL 0 OR count EQUAL total)
+      list(LENGTH files number)
+      file(CONFIGURE OUTPUT ${folder}/${number}.cpp CONTENT "${text}" @ONLY)
+      list(APPEND files ${folder}/${number}.cpp)
+      set(text)
+    endif()
+  endforeach()
+  set(${out} ${files} PARENT_SCOPE)
+endfunction()
