@@ -49,7 +49,7 @@ isoweave_reader(HTTP "curl_library.cpp;http_client.cpp;remote_store.cpp" $<BUILD
                 IsoweaveCurl 7.87)
 # Packed meshes: GLB is written and read, precomputed is written.
 isoweave_reader(MESHOPTIMIZER "glb_packed.cpp;gltf_packed.cpp" meshoptimizer::meshoptimizer meshoptimizer)
-isoweave_reader(DRACO precomputed_packed.cpp draco::draco draco)
+isoweave_reader(DRACO "packed_object.cpp;precomputed_packed.cpp" draco::draco draco)
 
 # The libraries, and what tells the sources which of them are there.
 function(isoweave_link_readers target)

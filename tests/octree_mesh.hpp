@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -88,21 +89,48 @@ inline std::vector<Triangle> unpacked(const char* bytes, std::size_t size) {
   return triangles;
 }
 
-// The object of a folder with one shard and one minishard, neither hashed nor packed.
-inline Mesh read(const std::string& folder, std::uint64_t segment) {
+// Where the manifest of an object lies in a shard.
+struct Entry {
+  std::uint64_t first = 0, bytes = 0;
+};
+
+// The objects of a folder with one shard whose indices are not packed.
+inline std::map<std::uint64_t, Entry> objects(const std::string& folder) {
   const auto info = nlohmann::json::parse(files::read_bytes(folder + "/info"));
   EXPECT_EQ(info["@type"], "neuroglancer_multilod_draco");
   EXPECT_EQ(info["vertex_quantization_bits"], 16);
   EXPECT_EQ(info["sharding"]["@type"], "neuroglancer_uint64_sharded_v1");
-  for (const char* bits : {"preshift_bits", "minishard_bits", "shard_bits"}) EXPECT_EQ(info["sharding"][bits], 0);
+  for (const char* bits : {"preshift_bits", "shard_bits"}) EXPECT_EQ(info["sharding"][bits], 0);
   const std::string shard = files::read_bytes(folder + "/0.shard");
-  const auto minishard = Bytes(shard, 0).several<std::uint64_t, 2>();
-  EXPECT_EQ(minishard[1] - minishard[0], 24U);
-  EXPECT_EQ(16 + minishard[1], shard.size());
-  const auto [key, start, size] = Bytes(shard, 16 + minishard[0]).several<std::uint64_t, 3>();
-  EXPECT_EQ(key, segment);
+  const std::uint64_t minishards = std::uint64_t{1} << info["sharding"]["minishard_bits"].get<unsigned>();
+  std::map<std::uint64_t, Entry> found;
+  std::uint64_t end = 0;
+  for (std::uint64_t n = 0; n < minishards; ++n) {
+    const auto place = Bytes(shard, 16 * n).several<std::uint64_t, 2>();
+    const std::uint64_t count = (place[1] - place[0]) / 24;
+    std::uint64_t segment = 0, at = 0;
+    for (std::uint64_t entry = 0; entry < count; ++entry) {
+      const auto number = [&](std::uint64_t row) {
+        return Bytes(shard, 16 * minishards + place[0] + 8 * (row * count + entry)).next<std::uint64_t>();
+      };
+      segment += number(0);
+      at += number(1);
+      EXPECT_TRUE(found.emplace(segment, Entry{16 * minishards + at, number(2)}).second) << segment;
+      at += number(2);
+    }
+    end = 16 * minishards + place[1];
+  }
+  EXPECT_EQ(end, shard.size());
+  return found;
+}
+
+// An object of such a folder.
+inline Mesh read(const std::string& folder, std::uint64_t segment) {
+  const std::map<std::uint64_t, Entry> all = objects(folder);
+  const auto [first, size] = all.at(segment);
+  const std::string shard = files::read_bytes(folder + "/0.shard");
   Mesh mesh;
-  Bytes manifest(shard, 16 + start);
+  Bytes manifest(shard, first);
   mesh.side = manifest.several<float, 3>();
   mesh.origin = manifest.several<float, 3>();
   mesh.levels.resize(manifest.next<std::uint32_t>());
@@ -116,9 +144,11 @@ inline Mesh read(const std::string& folder, std::uint64_t segment) {
     }
     for (Fragment& fragment : level) bytes += fragment.bytes = manifest.next<std::uint32_t>();
   }
-  EXPECT_EQ(manifest.at(), 16 + start + size);
-  std::size_t at = 16 + start - bytes;
-  EXPECT_EQ(at, 16U) << "the fragments lie before the manifest";
+  EXPECT_EQ(manifest.at(), first + size);
+  std::size_t at = first - bytes;
+  if (all.size() == 1) {
+    EXPECT_EQ(at, 16U) << "the fragments lie before the manifest";
+  }
   for (auto& level : mesh.levels) {
     for (Fragment& fragment : level) {
       if (fragment.bytes > 0) fragment.triangles = unpacked(shard.data() + at, fragment.bytes);

@@ -94,6 +94,7 @@ constexpr std::array kEntries{
     Entry{"self-intersections", "", kMeasures},
     Entry{"labels", "LIST", kLabels},
     Entry{"label-names", "FILE", kLabels},
+    Entry{"min-label", "N", kLabels},
     Entry{"report", "FILE", kEvidence},
     Entry{"html", "FILE", kEvidence},
     Entry{"page-triangles", "N", kEvidence},

@@ -52,11 +52,15 @@ OutputOptions surface_output(const OutputOptions& output, std::string_view word)
   return of_surface;
 }
 
-void check_parts(const OutputOptions& output) {
+void check_parts(const OutputOptions& output, bool of_labels) {
   if (!output.one_file) return;
   const MeshFormat format = output_format(output);
   if (format == MeshFormat::kGlb || format == MeshFormat::kVtp) return;
-  wrong_value("--one-file", "a mesh named .glb or .vtp for several iso-values or labels", output.path);
+  if (of_labels && format == MeshFormat::kPrecomputed && output.compress) return;
+  wrong_value("--one-file",
+              of_labels ? "a mesh named .glb or .vtp, or .precomputed with --compress, for several labels"
+                        : "a mesh named .glb or .vtp for several iso-values",
+              output.path);
 }
 
 std::vector<std::unique_ptr<MeshSink>> open_surfaces(std::span<const SurfaceOutput> surfaces) {

@@ -36,8 +36,8 @@ struct SurfaceOutput {
 // The output of a surface: a.ply becomes a_WORD.ply, but stays as it is where one file has them all.
 OutputOptions surface_output(const OutputOptions& output, std::string_view word);
 
-// Refuses a file that cannot hold several parts.
-void check_parts(const OutputOptions& output);
+// Refuses a file that cannot hold several parts: iso-values, or labels.
+void check_parts(const OutputOptions& output, bool of_labels);
 
 // Opens the files of all surfaces: a sink for each, in their order.
 std::vector<std::unique_ptr<MeshSink>> open_surfaces(std::span<const SurfaceOutput> surfaces);

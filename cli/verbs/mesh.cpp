@@ -24,7 +24,7 @@
 namespace isoweave::cli {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kMeshExamples = R"(
 Examples:
   isoweave mesh ct.nii.gz --iso bone -o bone.ply
   isoweave mesh foot_256x256x256_uint8.raw --iso auto --error 0.5vox -o foot.stl
@@ -74,6 +74,8 @@ void add_label_options(CLI::App& verb, MeshArguments& arguments) {
       "in one with --one-file");
   verb.add_option("--label-names", arguments.label_names,
                   "Names of labels for files and reports: a FreeSurfer, ITK-SNAP or BIDS table")
+      ->needs("--labels");
+  verb.add_option("--min-label", arguments.min_label, "Leave out labels of fewer samples (with --labels all)")
       ->needs("--labels");
 }
 
@@ -141,7 +143,7 @@ void add_mesh_verb(CLI::App& app) {
   for (CLI::Option* option : task) {
     if (option != verb->get_help_ptr()) resume->excludes(option);
   }
-  verb->footer(kExamples);
+  verb->footer(kMeshExamples);
   verb->callback([arguments, verb] {
     arguments->numbered = verb->count("--segment") > 0;
     run_mesh(*arguments);

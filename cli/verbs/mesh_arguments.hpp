@@ -28,7 +28,7 @@ struct MeshArguments {
   WatchOptions watch;
   IndexOptions index;
   std::string iso, quality = "normal", slab, inside = "above", normals = "auto", extractor = "cubes";
-  std::string color_by, space, memory, blocks, checkpoint, every, resume, labels, label_names, smooth;
+  std::string color_by, space, memory, blocks, checkpoint, every, resume, labels, label_names, min_label, smooth;
   bool open = false, closed = false, dry_run = false, numbered = false;
 };
 

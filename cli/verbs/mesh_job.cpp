@@ -79,10 +79,19 @@ PageContents page_contents(const MeshArguments& arguments, const MeshOptions& op
   return contents;
 }
 
+// The fewest samples of a label that is meshed.
+std::uint64_t min_samples(const MeshArguments& arguments) {
+  if (arguments.min_label.empty()) return 0;
+  return static_cast<std::uint64_t>(parse_count("--min-label", arguments.min_label));
+}
+
 // Refuses options that do not go with --labels, before any file is looked at.
 void check_labels(const MeshArguments& arguments) {
   if (arguments.labels.empty()) return;
-  parse_labels(arguments.labels);
+  const LabelChoice choice = parse_labels(arguments.labels);
+  if (min_samples(arguments) > 0 && !choice.all) {
+    wrong_value("--min-label", "--labels all, as labels that are named are always taken", arguments.labels);
+  }
   if (arguments.input.even_spacing == "resample") {
     wrong_value("--even-spacing", "mean or refuse with --labels, as nothing lies between two labels", "resample");
   }
@@ -92,9 +101,17 @@ void check_labels(const MeshArguments& arguments) {
 void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, const VolumeInfo& info,
                  const RunControl& control) {
   Evidence evidence(arguments.run, arguments.page);
-  LabelsTask task{
-      arguments.input,         arguments.output,      arguments.run,      options, parse_labels(arguments.labels),
-      asked_blocks(arguments), arguments.label_names, arguments.numbered, {},      {}};
+  LabelsTask task{arguments.input,
+                  arguments.output,
+                  arguments.run,
+                  options,
+                  parse_labels(arguments.labels),
+                  asked_blocks(arguments),
+                  arguments.label_names,
+                  min_samples(arguments),
+                  arguments.numbered,
+                  {},
+                  {}};
   task.file = [&](const LabelName& label) {
     MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
@@ -181,7 +198,7 @@ class MeshJob {
     check_absent(no_clobber(), {arguments_.run.report, arguments_.page.path});
     check_page(arguments_.page, arguments_.output);
     check_placing(arguments_.output, outputs_.size() > 1 || !one_surface());
-    if (!one_surface()) check_parts(arguments_.output);
+    if (!one_surface()) check_parts(arguments_.output, !arguments_.labels.empty());
   }
 
   // The volumes, and the options that depend on their units and sizes.

@@ -21,7 +21,7 @@ std::vector<std::int64_t> layers_of(std::span<const LabelName> segments) {
 }
 
 // Adds the numbers of a range such as "1-10". False for anything else.
-bool add_range(std::string_view word, std::vector<std::string>& words) {
+bool add_numbers(std::string_view word, std::vector<std::string>& words) {
   const std::size_t dash = word.find('-');
   if (dash == std::string_view::npos || word.find_first_not_of("0123456789-") != std::string_view::npos) return false;
   const auto first = to_number<std::uint64_t>(word.substr(0, dash));
@@ -42,7 +42,7 @@ LabelChoice parse_labels(std::string_view text) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view word = text.substr(begin, end - begin);
     if (word.empty()) wrong_value("--labels", "all, or whole numbers or names such as 1,2,5 or 1-10", text);
-    if (!add_range(word, choice.words)) choice.words.emplace_back(word);
+    if (!add_numbers(word, choice.words)) choice.words.emplace_back(word);
     begin = end + 1;
   }
   if (choice.words.size() > kMostLabels) {
@@ -57,12 +57,18 @@ LabelBook::LabelBook(const std::string& path, const VolumeInfo& map, const std::
   if (layer) std::erase_if(segments_, [&](const LabelName& segment) { return segment.layer != *layer; });
   if (of_map_) names_ = segments_;
   layers_ = layers_of(segments_);
+  number_names();
+}
+
+// Names of a file are for the labels of all layers. The first of several names counts.
+void LabelBook::number_names() {
+  for (std::size_t n = 0; n < names_.size(); ++n)
+    numbers_.emplace(std::pair(names_[n].label, of_map_ ? names_[n].layer : 0), n);
 }
 
 LabelName LabelBook::entry(Label label, std::int64_t layer) const {
-  const auto found = std::ranges::find_if(
-      names_, [&](const LabelName& name) { return name.label == label && (!of_map_ || name.layer == layer); });
-  LabelName entry = found == names_.end() ? LabelName{label, {}, {}, layer} : *found;
+  const auto found = numbers_.find({label, of_map_ ? layer : 0});
+  LabelName entry = found == numbers_.end() ? LabelName{label, {}, {}, layer} : names_[found->second];
   entry.layer = layer;
   return entry;
 }

@@ -1,9 +1,12 @@
 // The labels of a map that mesh --labels asks for, and their names.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "isoweave/volume.hpp"
@@ -41,9 +44,11 @@ class LabelBook {
 
  private:
   std::vector<LabelName> matches(const std::string& word) const;
+  void number_names();
 
   bool of_map_ = false;
   std::vector<LabelName> names_;
+  std::map<std::pair<Label, std::int64_t>, std::size_t> numbers_;  // of names, by label and layer
   std::vector<LabelName> segments_;
   std::vector<std::int64_t> layers_;
 };

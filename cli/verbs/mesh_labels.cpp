@@ -18,6 +18,8 @@
 #include "options/values.hpp"
 #include "report/print.hpp"
 #include "report/progress.hpp"
+#include "verbs/mesh_label_layers.hpp"
+#include "verbs/mesh_label_objects.hpp"
 
 namespace isoweave::cli {
 namespace {
@@ -29,23 +31,6 @@ void allow_many_files() {
   limit.rlim_cur = limit.rlim_max;
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
-
-// Whether labels are the numbers of their objects in the file.
-bool numbers_objects(const LabelsTask& task) {
-  return !task.numbered && output_format(task.output) == MeshFormat::kPrecomputed;
-}
-
-// A label that is meshed.
-struct MeshedLabel {
-  LabelName name;
-  LabelExtent extent;
-};
-
-// A map of labels that do not overlap: a layer of a segmentation, or the whole map.
-struct LabelLayer {
-  InputOptions input;
-  std::vector<MeshedLabel> labels;
-};
 
 // The outputs of labels, in their order: a file each, by the name, or the parts of one.
 std::vector<SurfaceOutput> label_surfaces(const LabelsTask& task, std::span<const LabelName> labels) {
@@ -100,80 +85,6 @@ struct LabelFiles {
     tell_digests(files, report.labels, report.total);
   }
 };
-
-void check_numbers(const LabelsTask& task, std::span<const LabelName> labels) {
-  if (!numbers_objects(task)) return;
-  for (const LabelName& label : labels) {
-    if (!label.label.is_negative()) continue;
-    wrong_value("--labels", "labels of 0 or more as numbers of objects in .precomputed", label.label.text());
-  }
-}
-
-// Refuses a map whose labels look like the values of a grey image.
-void check_is_label_map(const LabelsTask& task, std::span<const LabelExtent> labels) {
-  if (task.choice.insists || look_like_labels(labels)) return;
-  throw BadInput(
-      fmt::format("{}: --labels all expects a label map, found {} values of which {} are scattered like those "
-                  "of a grey image (--iso meshes one; --labels all! takes them for labels)",
-                  task.input.path, labels.size(), count_scattered(labels)));
-}
-
-std::vector<LabelExtent> find_in(const LabelsTask& task, const InputOptions& input, std::span<const Label> wanted,
-                                 const std::atomic<bool>* stop) {
-  if (!task.blocks) return find_labels(*open_input(input), wanted, stop);
-  return find_labels_in_blocks([&] { return open_input(input); }, *task.blocks, wanted, stop);
-}
-
-// All labels that occur, and the segments that do not.
-std::vector<MeshedLabel> all_labels(const LabelsTask& task, const LabelBook& book, const InputOptions& input,
-                                    std::int64_t layer, const std::atomic<bool>* stop) {
-  const std::vector<LabelExtent> extents = find_in(task, input, {}, stop);
-  if (book.segments(layer).empty()) check_is_label_map(task, extents);
-  std::vector<MeshedLabel> labels;
-  labels.reserve(extents.size());
-  for (const LabelExtent& extent : extents) labels.push_back({book.entry(extent.label, layer), extent});
-  for (LabelName& segment : book.segments(layer)) {
-    const bool occurs = std::ranges::find(extents, segment.label, &LabelExtent::label) != extents.end();
-    if (!occurs) labels.push_back({segment, LabelExtent{segment.label, 0, {}}});
-  }
-  return labels;
-}
-
-// The labels that are named. One that does not occur is refused, unless --allow-empty lets its mesh be empty.
-std::vector<MeshedLabel> chosen_labels(const LabelsTask& task, std::span<const LabelName> chosen,
-                                       const InputOptions& input, std::int64_t layer, const std::atomic<bool>* stop) {
-  std::vector<LabelName> here;
-  std::vector<Label> wanted;
-  for (const LabelName& name : chosen) {
-    if (name.layer != layer) continue;
-    here.push_back(name);
-    wanted.push_back(name.label);
-  }
-  if (here.empty()) return {};
-  const std::vector<LabelExtent> extents = find_in(task, input, wanted, stop);
-  std::vector<MeshedLabel> labels;
-  for (std::size_t n = 0; n < here.size(); ++n) {
-    if (extents[n].samples == 0 && !task.run.allow_empty) {
-      throw EmptySurface(fmt::format("{}: label {} does not occur", task.input.path, here[n].label.text()));
-    }
-    labels.push_back({std::move(here[n]), extents[n]});
-  }
-  return labels;
-}
-
-std::vector<LabelLayer> find_layers(const LabelsTask& task, const LabelBook& book, std::span<const LabelName> chosen,
-                                    const std::atomic<bool>* stop) {
-  std::vector<LabelLayer> layers;
-  for (const std::int64_t number : book.layers()) {
-    LabelLayer layer{task.input, {}};
-    if (number > 0 || book.layers().size() > 1) layer.input.channel = std::to_string(number);
-    layer.labels = task.choice.all ? all_labels(task, book, layer.input, number, stop)
-                                   : chosen_labels(task, chosen, layer.input, number, stop);
-    if (!layer.labels.empty()) layers.push_back(std::move(layer));
-  }
-  if (layers.empty()) throw BadInput(task.input.path + ": --labels all expects a label other than 0, found none");
-  return layers;
-}
 
 LabelsReport mesh_layer(const LabelsTask& task, const LabelLayer& layer, std::span<const LabelSink> sinks,
                         const RunControl& control) {
@@ -251,6 +162,7 @@ void print_labels(const LabelsTask& task, const VolumeInfo& info, const LabelsRe
 }  // namespace
 
 void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl control, Evidence& evidence) {
+  if (is_container(task)) return mesh_label_objects(task, info, std::move(control), evidence);
   const RunOptions& run = task.run;
   allow_many_files();
   const LabelBook book(task.names, info, task.input.channel);
@@ -261,9 +173,6 @@ void mesh_label_files(const LabelsTask& task, const VolumeInfo& info, RunControl
   std::vector<std::unique_ptr<MeshSink>> any_file = open_surfaces(label_surfaces(task, std::span(&any, 1)));
   const std::vector<LabelLayer> layers = find_layers(task, book, chosen, control.stop.get());
   any_file.clear();
-  for (const LabelLayer& layer : layers) {
-    for (const MeshedLabel& label : layer.labels) check_numbers(task, std::span(&label.name, 1));
-  }
   LabelFiles files(task, layers);
   if (!run.quiet) {
     const std::unique_ptr<SliceSource> first = open_input(layers.front().input);

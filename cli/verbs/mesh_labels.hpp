@@ -1,4 +1,4 @@
-// mesh --labels: a mesh for each label, each in a file of its own.
+// mesh --labels: a mesh for each label, each in a file of its own, or all in one file or folder.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,11 @@ struct LabelsTask {
   const RunOptions& run;
   const MeshOptions& options;
   LabelChoice choice;
-  std::optional<std::int64_t>
-      blocks;             // samples along each side of the boxes in which labels are meshed; none: one sweep
-  std::string names;      // a file of names, or none
-  bool numbered = false;  // --segment is given: else a label is the number of its object
+  // Samples along each side of the boxes in which labels are meshed; none: one sweep.
+  std::optional<std::int64_t> blocks;
+  std::string names;              // a file of names, or none
+  std::uint64_t min_samples = 0;  // labels of fewer are left out, where all are asked for
+  bool numbered = false;          // --segment is given: else a label is the number of its object
   // Gives the options of a label's file, and the task for the report.
   std::function<MeshFileOptions(const LabelName& label)> file;
   std::function<void(Json& report)> describe;

@@ -69,6 +69,29 @@ LabelsReport mesh_labels_in_blocks(const VolumeOpener& open, std::span<const Lab
                                    const MeshOptions& options, const BlockOptions& blocks = {},
                                    const RunControl& control = {});
 
+// Takes the meshes of many labels, one group after the other.
+class LabelOutput {
+ public:
+  virtual ~LabelOutput() = default;
+
+  // The offset of all sinks, as MeshSink::offset.
+  virtual std::array<double, 3> offset() const = 0;
+
+  // The sink of label n of the list, which is not called for any more once end(n) has been called. A label that does
+  // not occur has none.
+  virtual MeshSink& begin(std::size_t n) = 0;
+
+  // The mesh of label n is complete; its sink has not been finished. report: as one of LabelsReport::labels.
+  virtual void end(std::size_t n, MeshReport report) = 0;
+};
+
+// The same for any number of labels, as find_labels_in_blocks found them: only those of one box are open at a time.
+// Returns the total. What `output` throws comes out. Its members are called by the calling thread.
+// @cost Memory: as above, and 100 bytes for each label.
+MeshReport mesh_labels_in_blocks(const VolumeOpener& open, std::span<const LabelExtent> labels, LabelOutput& output,
+                                 const MeshOptions& options, const BlockOptions& blocks = {},
+                                 const RunControl& control = {});
+
 // The number of triangles of the full surface, counted block by block.
 // @throws what mesh_in_blocks throws
 std::uint64_t count_triangles_in_blocks(const VolumeOpener& open, const SurfaceOptions& options,

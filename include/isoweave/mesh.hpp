@@ -246,6 +246,38 @@ struct MeshPart {
 //   everything that has been packed.
 std::vector<std::unique_ptr<MeshSink>> open_mesh_parts(const std::string& path, std::span<const MeshPart> parts);
 
+// One of many objects in a folder, as neuroglancer lists it.
+struct MeshObject {
+  std::uint64_t segment = 1;  // its number
+  std::string name{};         // any bytes; those that are no UTF-8 are replaced
+  std::uint64_t samples = 0;  // of the label, from which one can tell large objects from small ones
+};
+
+// A folder of objects. They may come in any order, and the folder is the same.
+class MeshObjects {
+ public:
+  virtual ~MeshObjects() = default;
+
+  // A sink for an object, whose mesh is complete when that is finished. Sinks may be open and filled by several threads
+  // at the same time; each waits for the others while it finishes. An object without triangles is left out.
+  virtual std::unique_ptr<MeshSink> begin(const MeshObject& object) = 0;
+
+  // Writes the folder. All sinks have been finished and destroyed.
+  // @throws std::invalid_argument for a number that two objects have; CannotWrite
+  virtual void finish() = 0;
+
+  // As those of a sink.
+  virtual std::vector<std::string> notes() const = 0;
+};
+
+// Writes millions of objects into one folder, named .precomputed and with `compress`, as open_mesh_file writes one; the
+// number of the options is not used. The folder has the names and sizes of its objects as neuroglancer's segment
+// properties. It appears when finish() is called; destroying the object before discards everything.
+// @throws what open_mesh_file throws; CannotWrite for other names and without `compress`
+// @cost Disk: what has been packed twice, and 12 bytes for each vertex and 24 for each triangle of objects that are not
+//   finished. Memory: 32 KB for each of those, and some 100 bytes for each other.
+std::unique_ptr<MeshObjects> open_mesh_objects(const std::string& path, const MeshFileOptions& options = {});
+
 // Writes a mesh in memory, through open_mesh_file, with its offset, and with its normals and values if the options ask
 // for them. Unit and space are those of the mesh where the options do not name others.
 // @throws what open_mesh_file and its sink throw

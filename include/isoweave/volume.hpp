@@ -241,14 +241,16 @@ struct LabelExtent {
   std::uint64_t runs = 0;  // of samples that follow each other along i
 };
 
-inline constexpr std::size_t kMostLabels = 4096;
+inline constexpr std::size_t kMostLabels = 4096;                   // in a file each
+inline constexpr std::size_t kMostObjects = std::size_t{1} << 24;  // in one folder: see open_mesh_objects
 
 // Finds labels in a label map: the `wanted` ones in their order, also those that do not occur. Where none are named,
 // all labels that occur, ascending, but 0, which is background. Reads the volume once.
-// @throws BadInput when all labels are more than kMostLabels, and for a volume that is no label map; Interrupted when
+// @throws BadInput when all labels are more than `most`, and for a volume that is no label map; Interrupted when
 //   `stop` is set
+// @cost Memory: some 200 bytes for each label.
 std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted = {},
-                                     const std::atomic<bool>* stop = nullptr);
+                                     const std::atomic<bool>* stop = nullptr, std::size_t most = kMostLabels);
 
 // Opens a volume once more, from its beginning.
 using VolumeOpener = std::function<std::unique_ptr<SliceSource>()>;
@@ -260,7 +262,7 @@ using VolumeOpener = std::function<std::unique_ptr<SliceSource>()>;
 //   box along x and y that they touch.
 std::vector<LabelExtent> find_labels_in_blocks(const VolumeOpener& open, std::int64_t size,
                                                std::span<const Label> wanted = {},
-                                               const std::atomic<bool>* stop = nullptr);
+                                               const std::atomic<bool>* stop = nullptr, std::size_t most = kMostLabels);
 
 // The number of labels that are spread like the grey values of an image: thin, and hardly filling their box. A volume
 // in which most labels are is no label map, as a rule; docs/labels.md has the measurements.

@@ -53,6 +53,10 @@ AtomicFolder::~AtomicFolder() {
   if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
 }
 
+void AtomicFolder::make_folder(const std::string& name) const {
+  if (!system::make_folder(file(name))) cannot_write(path_, "cannot create the folder '" + name + "' in it", errno);
+}
+
 void AtomicFolder::write_file(const std::string& name, std::span<const std::byte> bytes) {
   AtomicFile out(file(name));
   out.write(bytes);

@@ -23,6 +23,9 @@ class AtomicFolder {
   // Creates a file in the folder.
   void write_file(const std::string& name, std::span<const std::byte> bytes);
 
+  // Creates a folder in the folder.
+  void make_folder(const std::string& name) const;
+
   // The path under which a file of this name can be written into the folder until it is committed.
   std::string file(const std::string& name) const { return temporary_ + "/" + name; }
 

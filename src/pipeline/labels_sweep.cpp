@@ -46,11 +46,11 @@ Region box_to_sweep(const Region& box, const VolumeInfo& volume, const SurfaceOp
   return swept;
 }
 
-void check_box(const VolumeInfo& map, const LabelSink& label, const Region& box) {
+void check_box(const VolumeInfo& map, Label label, const Region& box) {
   if (is_empty(box)) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (box.first[axis] >= 0 && box.end[axis] <= map.dims[axis]) continue;
-    throw std::invalid_argument(map.path + ": label " + label.label.text() + ": expected a box within 0:" +
+    throw std::invalid_argument(map.path + ": label " + label.text() + ": expected a box within 0:" +
                                 std::to_string(map.dims[axis]) + " on axis " + std::to_string(axis) + ", found " +
                                 std::to_string(box.first[axis]) + ":" + std::to_string(box.end[axis]));
   }
@@ -111,7 +111,7 @@ void LabelsSweep::make_strands() {
   double all = 0;
   for (const LabelSink& label : labels_) {
     const Region box = label.box.value_or(whole_of(volume_));
-    check_box(volume_, label, box);
+    check_box(volume_, label.label, box);
     boxes_.push_back(is_empty(box) ? Region{} : box_to_sweep(box, volume_, task_.surface));
     all += samples_in(boxes_.back());
   }

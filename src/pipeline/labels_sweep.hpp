@@ -18,18 +18,19 @@ namespace isoweave {
 MeshOptions mask_options(const MeshOptions& options);
 
 // Resolves the meshes of labels of a map. Throws what mesh_labels throws for its options and its volume.
-Task resolve_labels(SliceSource& map, std::span<const LabelSink> labels, const MeshOptions& options,
+Task resolve_labels(SliceSource& map, const std::array<double, 3>& offset, const MeshOptions& options,
                     const RunControl& control);
 
-// Warns of labels that float32 may have rounded.
-void warn_of_floats(const VolumeInfo& map, std::span<const LabelSink> labels, MeshReport& report);
+// Whether float32 may have rounded a label; a warning of it where some may be, and the map has such samples.
+bool may_be_rounded(Label label);
+void warn_of_floats(const VolumeInfo& map, bool may_be_rounded, MeshReport& report);
 
 // The box in which the surface around all samples of `box` lies. At its border, extraction and smoothing see the same
 // samples as in the whole volume.
 Region box_to_sweep(const Region& box, const VolumeInfo& volume, const SurfaceOptions& options);
 
 // Throws std::invalid_argument for a box of a label that is not within the map.
-void check_box(const VolumeInfo& map, const LabelSink& label, const Region& box);
+void check_box(const VolumeInfo& map, Label label, const Region& box);
 
 bool is_empty(const Region& box);
 

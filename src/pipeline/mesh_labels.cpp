@@ -24,20 +24,18 @@ void add_layer(LabelsReport& report, LabelsReport&& layer) {
   for (MeshReport& label : layer.labels) report.labels.push_back(std::move(label));
 }
 
-Task resolve_labels(SliceSource& map, std::span<const LabelSink> labels, const MeshOptions& options,
+Task resolve_labels(SliceSource& map, const std::array<double, 3>& offset, const MeshOptions& options,
                     const RunControl& control) {
-  std::vector<MeshSink*> sinks;
-  for (const LabelSink& label : labels) sinks.push_back(label.sink);
-  require_different(sinks);
-  return resolve(LabelNumbers(map).info(), mask_options(options), control, common_offset(sinks), RunKind::kLabels);
+  return resolve(LabelNumbers(map).info(), mask_options(options), control, offset, RunKind::kLabels);
 }
 
-void warn_of_floats(const VolumeInfo& map, std::span<const LabelSink> labels, MeshReport& report) {
+bool may_be_rounded(Label label) {
   constexpr std::uint64_t kLargestWhole = std::uint64_t{1} << 24;  // whole numbers up to it are float32, all of them
-  const bool large = std::ranges::any_of(labels, [](const LabelSink& sink) {
-    return (sink.label.is_negative() ? -sink.label.bits() : sink.label.bits()) > kLargestWhole;
-  });
-  if (map.type != SampleType::kFloat32 || !large) return;
+  return (label.is_negative() ? -label.bits() : label.bits()) > kLargestWhole;
+}
+
+void warn_of_floats(const VolumeInfo& map, bool may_be_rounded, MeshReport& report) {
+  if (map.type != SampleType::kFloat32 || !may_be_rounded) return;
   report.warnings.insert(report.warnings.begin(),
                          map.path + ": labels beyond 2^24 in float32 may have been rounded: several may be one");
 }
@@ -46,9 +44,13 @@ LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels,
                          const RunControl& control) {
   const StandardFloats floats;
   checked_volume(volume.info(), options.extractor);
-  const Task task = resolve_labels(volume, labels, options, control);
+  std::vector<MeshSink*> sinks;
+  for (const LabelSink& label : labels) sinks.push_back(label.sink);
+  require_different(sinks);
+  const Task task = resolve_labels(volume, common_offset(sinks), options, control);
   LabelsReport report = LabelsSweep(volume, {0, 0, 0}, task, labels, control).run();
-  warn_of_floats(volume.info(), labels, report.total);
+  const auto is_rounded = [](const LabelSink& label) { return may_be_rounded(label.label); };
+  warn_of_floats(volume.info(), std::ranges::any_of(labels, is_rounded), report.total);
   for (const LabelSink& label : labels) label.sink->finish();
   return report;
 }

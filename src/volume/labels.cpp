@@ -93,7 +93,9 @@ class LabelVolume final : public RowSource {
 // Finds extents, run by run of equal samples. Labels of one map differ in their bits.
 class ExtentFinder {
  public:
-  ExtentFinder(const VolumeInfo& volume, std::span<const Label> wanted) : volume_(volume), all_(wanted.empty()) {
+  // most: labels that there may be, where none are wanted by name.
+  ExtentFinder(const VolumeInfo& volume, std::span<const Label> wanted, std::size_t most)
+      : volume_(volume), all_(wanted.empty()), most_(most), most_counted_(std::max(kMostCounted, most)) {
     visit_sample_type(volume.type, [&]<class T>() {
       if constexpr (std::is_integral_v<T>) {
         for (const Label label : wanted) {
@@ -126,10 +128,10 @@ class ExtentFinder {
   }
 
   std::vector<LabelExtent> all() const {
-    if (extents_.size() > kMostLabels) {
-      const bool counted = extents_.size() <= kMostCounted;
-      bad_input(volume_.path, "a label map of at most " + std::to_string(kMostLabels) + " labels",
-                (counted ? "" : "more than ") + std::to_string(std::min(extents_.size(), kMostCounted)));
+    if (extents_.size() > most_) {
+      const bool counted = extents_.size() <= most_counted_;
+      bad_input(volume_.path, "a label map of at most " + std::to_string(most_) + " labels",
+                (counted ? "" : "more than ") + std::to_string(std::min(extents_.size(), most_counted_)));
     }
     std::vector<LabelExtent> list;
     for (const auto& [bits, extent] : extents_) list.push_back(extent);
@@ -168,12 +170,13 @@ class ExtentFinder {
     if (all_ && label == 0) return nullptr;
     const auto found = extents_.find(label.bits());
     if (found != extents_.end()) return &found->second;
-    if (!all_ || extents_.size() > kMostCounted) return nullptr;
+    if (!all_ || extents_.size() > most_counted_) return nullptr;
     return &extents_.emplace(label.bits(), LabelExtent{label, 0, {}}).first->second;
   }
 
   const VolumeInfo& volume_;
   bool all_;
+  std::size_t most_, most_counted_;
   std::unordered_map<std::uint64_t, LabelExtent> extents_;
 };
 
@@ -215,22 +218,23 @@ std::vector<LabelExtent> extents_in(const ExtentFinder& finder, std::span<const 
 
 }  // namespace
 
-std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted,
-                                     const std::atomic<bool>* stop) {
+std::vector<LabelExtent> find_labels(SliceSource& volume, std::span<const Label> wanted, const std::atomic<bool>* stop,
+                                     std::size_t most) {
   const StandardFloats floats;
   const VolumeInfo info = LabelNumbers(volume).info();
-  ExtentFinder finder(info, wanted);
+  ExtentFinder finder(info, wanted, most);
   finder.add(volume, {0, 0, 0}, stop);
   return extents_in(finder, wanted);
 }
 
 std::vector<LabelExtent> find_labels_in_blocks(const VolumeOpener& open, std::int64_t size,
-                                               std::span<const Label> wanted, const std::atomic<bool>* stop) {
+                                               std::span<const Label> wanted, const std::atomic<bool>* stop,
+                                               std::size_t most) {
   const StandardFloats floats;
   const std::unique_ptr<SliceSource> whole = open();
   require_skipping(*whole);
   const VolumeInfo info = LabelNumbers(*whole).info();
-  ExtentFinder finder(info, wanted);
+  ExtentFinder finder(info, wanted, most);
   Region box;
   for (box.first[2] = 0; box.first[2] < info.dims[2]; box.first[2] += size) {
     for (box.first[1] = 0; box.first[1] < info.dims[1]; box.first[1] += size) {

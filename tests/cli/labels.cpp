@@ -246,7 +246,7 @@ TEST_F(CliLabels, MapsThatAreNoneAreRefused) {
   std::string many;
   for (int n = 0; n < 32 * 32 * 8; ++n) many += std::string{static_cast<char>(n & 255), static_cast<char>(n >> 8)};
   files::write_bytes(folder_ / "many_32x32x8_uint16.raw", many);
-  refused("many_32x32x8_uint16.raw", "expected a label map of at most 4096 labels, found 8191");
+  refused("many_32x32x8_uint16.raw", "--labels all expects at most 4096 labels for a file each, found 8191");
   EXPECT_EQ(run(folder_.path(), {"mesh", "many_32x32x8_uint16.raw", "-o", "s.ply", "--labels", "5000"}).code, 0);
 }
 

@@ -112,6 +112,55 @@ TEST_P(LabelsInBlocks, AreThoseOfTheSweep) {
 INSTANTIATE_TEST_SUITE_P(Options, LabelsInBlocks, ::testing::ValuesIn(ways()),
                          [](const auto& one) { return one.param.name; });
 
+// Keeps digests, and how many labels were open at the same time.
+class CountedOutput final : public LabelOutput {
+ public:
+  explicit CountedOutput(std::size_t labels) : sinks_(labels), digests_(labels, kNone) {}
+
+  std::array<double, 3> offset() const override { return {0, 0, 0}; }
+
+  MeshSink& begin(std::size_t n) override {
+    EXPECT_EQ(sinks_[n], nullptr) << "begun once";
+    EXPECT_EQ(digests_[n], kNone) << "begun before it ends";
+    most_open = std::max(most_open, ++open_);
+    sinks_[n] = std::make_unique<MemorySink>();
+    return *sinks_[n];
+  }
+
+  void end(std::size_t n, MeshReport report) override {
+    EXPECT_EQ(digests_[n], kNone) << "ends once";
+    digests_[n] = report.digest;
+    if (sinks_[n] == nullptr) return;
+    EXPECT_EQ(check_mesh(sinks_[n]->mesh).digest, report.digest) << "complete when it ends";
+    --open_;
+  }
+
+  const std::vector<std::uint64_t>& digests() const { return digests_; }
+  std::size_t most_open = 0;
+
+ private:
+  static constexpr std::uint64_t kNone = 1;
+  std::vector<std::unique_ptr<MemorySink>> sinks_;
+  std::vector<std::uint64_t> digests_;
+  std::size_t open_ = 0;
+};
+
+TEST(LabelsOfBoxes, AreBegunAndEndedBoxByBox) {
+  std::vector<LabelExtent> labels = find_labels(*make_map());
+  labels.push_back({60'000, 0, {}});  // occurs nowhere
+  MeshOptions options;
+  options.error = Length::voxels(0.3);
+  const Made expected = run(labels, [&](auto sinks) { return mesh_labels(*make_map(), sinks, options); });
+  CountedOutput output(labels.size());
+  const MeshReport total = mesh_labels_in_blocks(kOpen, labels, output, options, {12});
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    EXPECT_EQ(output.digests()[n], expected.report.labels[n].digest) << labels[n].label.text();
+  }
+  EXPECT_EQ(total.digest, expected.report.total.digest);
+  EXPECT_EQ(total.triangles, expected.report.total.triangles);
+  EXPECT_LT(output.most_open, labels.size() / 4);
+}
+
 TEST(LabelExtents, InBlocksAreThoseOfTheMap) {
   const std::vector<LabelExtent> expected = find_labels(*make_map());
   const std::vector<Label> some{300, 1, 40'000, 7};

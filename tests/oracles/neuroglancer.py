@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reads meshes with levels of detail back by cloud-volume, as programs around neuroglancer do, and compares each level
 with the PLY file of the same run. Fragments must fit together without a gap, hold every triangle once, and lie where the
-manifest says.
+manifest says. The same for a folder of many objects.
 
     tests/oracles/neuroglancer.py build/release/isoweave
 
@@ -87,6 +87,38 @@ def check_level(oracle, source, level, expected):
     return len(nodes)
 
 
+def label_map(cubes):
+    """Boxes that lie apart, each with a number of its own, of up to 64 bits."""
+    samples = np.zeros((5 * cubes,) * 3, np.uint64)
+    numbers = np.arange(1, cubes**3 + 1, dtype=np.uint64) ** np.uint64(5) * np.uint64(1_000_003)
+    for n, (k, j, i) in enumerate(np.ndindex(cubes, cubes, cubes)):
+        samples[5 * k:5 * k + 1 + n % 4, 5 * j:5 * j + 3, 5 * i:5 * i + 2] = numbers[n]
+    return samples, numbers
+
+
+def check_objects(oracle, folder):
+    """Objects of a folder with many are where the hash of their numbers says."""
+    samples, numbers = label_map(11)
+    np.save(f"{folder}/labels.npy", samples)
+    chosen = numbers[::97]
+    run = ["mesh", f"{folder}/labels.npy", "--unit", "mm", "--normals", "none", "--quiet"]
+    oracle.run(*run, "--labels", "all", "--one-file", "--compress", "-o", f"{folder}/all.precomputed")
+    oracle.run(*run, "--labels", ",".join(map(str, chosen)), "-o", f"{folder}/one.ply")
+    source = open_mesh(folder, "all.precomputed")
+    with open(f"{folder}/all.precomputed/info") as info:
+        oracle.expect(json.load(info)["sharding"]["minishard_bits"] > 0, "objects are dealt out")
+    missing = [int(n) for n, there in zip(numbers, source.exists(list(map(int, numbers)))) if there is None]
+    oracle.expect_equal(missing, [], "objects that are not found")
+    for number in map(int, chosen):
+        manifest = source.get_manifest(number)
+        found = np.concatenate([in_steps(mesh, manifest, 0) for mesh in source.get(number, concat=False)[number]])
+        expected = ply_triangles(f"{folder}/one_label{number}.ply").astype(float)
+        exact = (expected - manifest.grid_origin) / float(manifest.chunk_shape[0]) * STEPS
+        oracle.expect_equal(open_edges(found), 0, f"open edges of {number}")
+        oracle.expect_near(volume_and_area(found)[0] / volume_and_area(exact)[0], 1, 1e-4, f"volume of {number}")
+    print(f"{len(numbers)} objects")
+
+
 def main():
     oracle = Oracle(os.path.abspath(sys.argv[1]))
     with tempfile.TemporaryDirectory() as folder:
@@ -97,6 +129,7 @@ def main():
         source = open_mesh(folder, "a.precomputed")
         fragments = [check_level(oracle, source, n, ply_triangles(f"{folder}/a_lod{n}.ply")) for n in range(3)]
         oracle.expect(min(fragments[:2]) > 1, "levels are cut")
+        check_objects(oracle, folder)
     oracle.finish()
 
 

@@ -162,7 +162,7 @@ TEST(TriangleSorter, SortsWhatDoesNotFit) {
   std::mt19937 random(10);
   for (const std::size_t count : {0U, 5U, 64U, 3000U}) {
     const files::Folder folder;
-    TriangleSorter sorter(OutputDescriptor(open_scratch(folder / "a"), "a"), {.at_once = 16, .ways = 3, .ahead = 5});
+    TriangleSorter sorter(folder / "a", {.at_once = 16, .ways = 3, .ahead = 5});
     std::vector<NodeTriangle> all(count);
     for (NodeTriangle& triangle : all) {
       for (std::uint16_t& word : triangle) word = static_cast<std::uint16_t>(random() % 3);
@@ -183,7 +183,8 @@ TEST(WaitingVertices, AreThoseOfTheFile) {
   std::vector<Point> points;
   for (std::uint64_t n = 0; n < kCount; ++n) points.push_back(expected(n));
   file.write(std::as_bytes(std::span(points)));
-  WaitingVertices vertices(file, kCount);
+  const ByteReader reader = [&](std::uint64_t first, std::span<std::byte> bytes) { file.read_back(first, bytes); };
+  WaitingVertices vertices(reader, kCount);
   std::mt19937_64 random(11);
   EXPECT_EQ(vertices.at(kCount - 1), expected(kCount - 1));
   for (int n = 0; n < 20'000; ++n) {

@@ -161,6 +161,13 @@ std::vector<std::unique_ptr<MeshSink>> open_mesh_levels(const std::string& path,
   return sinks_of(open_levels(path, levels), levels.size());
 }
 
+std::unique_ptr<MeshObjects> open_mesh_objects(const std::string& path, const MeshFileOptions& options) {
+  if (checked_mesh_format(path, options) != MeshFormat::kPrecomputed || !options.compress) {
+    throw CannotWrite(path + ": expected .precomputed that is compressed, for objects with numbers in one folder");
+  }
+  return open_packed_precomputed_objects(path, options);
+}
+
 std::vector<std::unique_ptr<MeshSink>> open_mesh_parts(const std::string& path, std::span<const MeshPart> parts) {
   check_alike(path, options_of(parts), "part");
   for (const MeshPart& part : parts) {

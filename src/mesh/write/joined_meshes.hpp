@@ -106,6 +106,9 @@ std::unique_ptr<JoinedFile> open_packed_glb_levels(const std::string& path, std:
 std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& path,
                                                            std::span<const MeshFileOptions> levels);
 
+// Objects with numbers.
+std::unique_ptr<MeshObjects> open_packed_precomputed_objects(const std::string& path, const MeshFileOptions& options);
+
 // Named parts.
 std::unique_ptr<JoinedFile> open_glb_parts(const std::string& path, std::span<const MeshPart> parts);
 std::unique_ptr<JoinedFile> open_packed_glb_parts(const std::string& path, std::span<const MeshPart> parts);

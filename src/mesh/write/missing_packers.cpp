@@ -33,6 +33,10 @@ std::unique_ptr<JoinedFile> open_packed_glb_parts(const std::string& path, std::
 std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& path, std::span<const MeshFileOptions>) {
   not_built(path, "Draco", "ISOWEAVE_DRACO");
 }
+
+std::unique_ptr<MeshObjects> open_packed_precomputed_objects(const std::string& path, const MeshFileOptions&) {
+  not_built(path, "Draco", "ISOWEAVE_DRACO");
+}
 #endif
 
 }  // namespace isoweave

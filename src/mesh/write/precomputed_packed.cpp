@@ -1,203 +1,28 @@
-// neuroglancer's multi-resolution meshes, packed by Draco: a folder with `info` and one shard, `0.shard`. Levels of
-// detail are cut along an octree, and what lies in a node is a fragment. Coordinates are those of the volume;
-// `transform` in `info` makes them nanometres.
-//
-// Levels wait in files until they are complete. Their box and their counts say how large nodes are, so a folder does
-// not depend on the order in which pieces came. Then each level is cut triangle by triangle, the triangles are sorted
-// by nodes, and one fragment at a time is packed.
-#include <draco/compression/encode.h>
-#include <draco/mesh/mesh.h>
-
+// neuroglancer's multi-resolution meshes with one object, or with many: a folder with `info` and one shard, `0.shard`.
 #include <algorithm>
-#include <cmath>
+#include <mutex>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <stdexcept>
 
 #include "files/atomic_folder.hpp"
-#include "files/length_units.hpp"
+#include "files/waiting_bytes.hpp"
 #include "isoweave/error.hpp"
-#include "lattice/triangles.hpp"
 #include "mesh/write/joined_meshes.hpp"
 #include "mesh/write/mesh_format.hpp"
-#include "mesh/write/octree_manifest.hpp"
-#include "mesh/write/triangle_sorter.hpp"
-#include "mesh/write/waiting_vertices.hpp"
+#include "mesh/write/multilod_info.hpp"
+#include "mesh/write/object_shard.hpp"
+#include "mesh/write/packed_object.hpp"
 #include "parallel/size.hpp"
 
 namespace isoweave {
 namespace {
 
-constexpr std::uint64_t kShardIndexBytes = 16;
-
-// The triangles of one node. Corners in one place become one vertex.
-class Fragment {
- public:
-  void add(const NodeTriangle& triangle) {
-    for (std::size_t corner = 3; corner < triangle.size(); corner += 3) {
-      corners_.push_back({triangle[corner], triangle[corner + 1], triangle[corner + 2]});
-    }
-  }
-
-  bool empty() const { return corners_.empty(); }
-
-  // Packs the triangles, and forgets them.
-  std::vector<std::byte> pack(const std::string& path) {
-    check_count_fits(path, "triangles of a fragment", 0, corners_.size() / 3, kMostPackedTriangles);
-    draco::Encoder encoder;
-    draco::EncoderBuffer buffer;
-    const draco::Status status = encoder.EncodeMeshToBuffer(*mesh(), &buffer);
-    if (!status.ok()) throw CannotWrite(path + ": Draco could not pack the mesh: " + status.error_msg_string());
-    check_count_fits(path, "bytes of a fragment", 0, buffer.size());
-    const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
-    corners_.clear();
-    return {bytes.begin(), bytes.end()};
-  }
-
- private:
-  using Corner = std::array<std::uint16_t, 3>;
-
-  std::unique_ptr<draco::Mesh> mesh() const {
-    std::vector<Corner> places = corners_;
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    auto result = std::make_unique<draco::Mesh>();
-    set_places(*result, places);
-    const auto point = [&](const Corner& corner) {
-      const auto found = std::lower_bound(places.begin(), places.end(), corner);
-      return draco::PointIndex(static_cast<std::uint32_t>(found - places.begin()));
-    };
-    result->SetNumFaces(corners_.size() / 3);
-    for (std::uint32_t n = 0; n < corners_.size() / 3; ++n) {
-      const Corner* const t = &corners_[std::size_t{3} * n];
-      result->SetFace(draco::FaceIndex(n), {point(t[0]), point(t[1]), point(t[2])});
-    }
-    return result;
-  }
-
-  static void set_places(draco::Mesh& mesh, const std::vector<Corner>& places) {
-    const auto count = static_cast<std::uint32_t>(places.size());
-    mesh.set_num_points(count);
-    draco::GeometryAttribute layout;
-    layout.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_UINT32, false, 3 * sizeof(std::uint32_t), 0);
-    draco::PointAttribute& positions = *mesh.attribute(mesh.AddAttribute(layout, true, count));
-    for (std::uint32_t n = 0; n < count; ++n) {
-      const std::array<std::uint32_t, 3> wide{places[n][0], places[n][1], places[n][2]};
-      positions.SetAttributeValue(draco::AttributeValueIndex(n), wide.data());
-    }
-  }
-
-  std::vector<Corner> corners_;
-};
-
-// Cuts a level, and appends its fragments to the shard in the order of their nodes.
-class LevelPacker {
- public:
-  LevelPacker(const std::string& path, JoinedMesh& mesh, const NodeGrid& grid, std::size_t level, AtomicFile& shard)
-      : path_(path), mesh_(mesh), grid_(grid), level_(level), shard_(shard) {}
-
-  OctreeLevel pack() {
-    TriangleSorter sorter(OutputDescriptor(open_scratch_in(folder_of(without_slashes(path_)), path_), path_));
-    cut(sorter);
-    sorter.take_all([this](const NodeTriangle& triangle) { take(triangle); });
-    finish_node();
-    result_.scale = static_cast<float>(mean_edge());
-    return std::move(result_);
-  }
-
- private:
-  void cut(TriangleSorter& sorter) {
-    constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 14;
-    WaitingVertices vertices(mesh_.positions(), mesh_.vertices());
-    NodeCutter cutter(level_);
-    std::vector<Triangle64> triangles;
-    const auto place = [&](std::uint64_t vertex) { return grid_.place(vertices.at(vertex), level_); };
-    for (std::uint64_t first = 0; first < mesh_.triangles(); first += kAtOnce) {
-      triangles.resize(to_size(std::min(kAtOnce, mesh_.triangles() - first)));
-      mesh_.faces().read_back(first * sizeof(Triangle64), std::as_writable_bytes(std::span(triangles)));
-      for (const Triangle64& t : triangles) sorter.add(cutter.cut({place(t[0]), place(t[1]), place(t[2])}));
-    }
-  }
-
-  void take(const NodeTriangle& triangle) {
-    if (node_of(triangle) != node_) finish_node();
-    node_ = node_of(triangle);
-    eighths_ |= 1U << eighth_of(triangle);
-    fragment_.add(triangle);
-    const auto corner = [&](std::size_t at) {
-      return measure::Vector{double(triangle[at]), double(triangle[at + 1]), double(triangle[at + 2])};
-    };
-    area_ += measure::area_of({corner(3), corner(6), corner(9)});
-  }
-
-  void finish_node() {
-    if (fragment_.empty()) return;
-    const std::vector<std::byte> bytes = fragment_.pack(path_);
-    shard_.write(bytes);
-    result_.nodes.push_back({node_, static_cast<std::uint32_t>(bytes.size())});
-    for (std::uint64_t eighth = 0; eighth < 8; ++eighth) {
-      if ((eighths_ >> eighth & 1U) != 0) result_.eighths.push_back(node_ << 3 | eighth);
-    }
-    eighths_ = 0;
-  }
-
-  // The length of an edge if all triangles were equilateral and had the area of the mesh. neuroglancer draws the
-  // coarsest level in which that length spans few pixels. The area is summed in the order of nodes, so it has the same
-  // bits however the mesh came.
-  double mean_edge() const {
-    constexpr double kSquareOfSide = 2.3094010767585034;  // of an equilateral triangle, over its area: 4 / root of 3
-    return grid_.step(level_) * std::sqrt(kSquareOfSide * area_ / static_cast<double>(mesh_.triangles()));
-  }
-
-  const std::string& path_;
-  JoinedMesh& mesh_;
-  const NodeGrid& grid_;
-  std::size_t level_;
-  AtomicFile& shard_;
-  Fragment fragment_;
-  std::uint64_t node_ = 0;
-  unsigned eighths_ = 0;  // a bit each
-  double area_ = 0;       // in steps
-  OctreeLevel result_;
-};
-
-void store_u64(std::byte*& out, std::uint64_t value) {
-  store_u32(out, static_cast<std::uint32_t>(value));
-  store_u32(out, static_cast<std::uint32_t>(value >> 32));
+ByteReader reader_of(OutputDescriptor& file) {
+  return [&file](std::uint64_t first, std::span<std::byte> bytes) { file.read_back(first, bytes); };
 }
 
-// Appends the manifest behind the fragments, and the two indices of the shard: the one of its only minishard at the
-// end, and the place of that one at the beginning. Offsets count from behind the index at the beginning.
-void finish_shard(AtomicFile& shard, std::uint64_t segment, std::span<const std::byte> manifest) {
-  const std::uint64_t fragments = shard.size() - kShardIndexBytes;
-  shard.write(manifest);
-  std::array<std::byte, 24> minishard{};
-  std::byte* out = minishard.data();
-  for (const std::uint64_t value : {segment, fragments, std::uint64_t{manifest.size()}}) store_u64(out, value);
-  shard.write(minishard);
-  std::array<std::byte, kShardIndexBytes> index{};
-  out = index.data();
-  store_u64(out, fragments + manifest.size());
-  store_u64(out, fragments + manifest.size() + minishard.size());
-  shard.overwrite(0, index);
-}
-
-std::string info_of(const MeshFileOptions& options) {
-  const double scale = unit_in(unit_or_usual(options.unit), "nm").value_or(1);
-  const nlohmann::ordered_json info{{"@type", "neuroglancer_multilod_draco"},
-                                    {"vertex_quantization_bits", 16},
-                                    {"transform",
-                                     {scale, 0, 0, scale * options.offset[0], 0, scale, 0, scale * options.offset[1], 0,
-                                      0, scale, scale * options.offset[2]}},
-                                    {"lod_scale_multiplier", 1},
-                                    {"sharding",
-                                     {{"@type", "neuroglancer_uint64_sharded_v1"},
-                                      {"preshift_bits", 0},
-                                      {"hash", "identity"},
-                                      {"minishard_bits", 0},
-                                      {"shard_bits", 0},
-                                      {"minishard_index_encoding", "raw"},
-                                      {"data_encoding", "raw"}}}};
-  return info.dump() + "\n";
+void write_text(AtomicFolder& folder, const std::string& name, const std::string& text) {
+  folder.write_file(name, std::as_bytes(std::span(text)));
 }
 
 class PackedPrecomputedLevels final : public JoinedFile {
@@ -209,51 +34,196 @@ class PackedPrecomputedLevels final : public JoinedFile {
 
  private:
   // The levels before the first one of which nothing is left, as nothing is left of those behind it.
-  std::vector<std::uint64_t> counts() {
-    std::vector<std::uint64_t> triangles;
-    for (const JoinedMesh& level : meshes()) {
-      if (level.triangles() == 0) break;
-      triangles.push_back(level.triangles());
+  std::vector<WaitingLevel> waiting() {
+    std::vector<WaitingLevel> levels;
+    for (JoinedMesh& mesh : meshes()) {
+      if (mesh.triangles() == 0) break;
+      levels.push_back({mesh.vertices(), mesh.triangles(), reader_of(mesh.positions()), reader_of(mesh.faces())});
     }
-    return triangles;
+    return levels;
   }
 
   void write() override {
-    if (options().unit.empty()) note(path() + ": the unit is not said, coordinates were taken for mm");
-    const std::vector<std::uint64_t> triangles = counts();
+    for (std::string& line : multilod_unit_notes(path(), options().unit)) note(std::move(line));
+    const std::vector<WaitingLevel> levels = waiting();
+    std::vector<std::uint64_t> triangles;
+    triangles.reserve(levels.size());
+    for (const WaitingLevel& level : levels) triangles.push_back(level.triangles);
     const NodeGrid grid(corners(), triangles);
     AtomicFolder folder(path());
-    AtomicFile shard(folder.file("0.shard"));
-    shard.write(std::array<std::byte, kShardIndexBytes>{});
-    std::vector<OctreeLevel> levels;
-    for (std::size_t level = 0; level < triangles.size(); ++level) {
-      levels.push_back(LevelPacker(path(), meshes()[level], grid, level, shard).pack());
-      if (level > 0) levels[level].scale = std::max(levels[level - 1].scale, levels[level].scale);
-    }
-    if (levels.empty()) {
-      levels.emplace_back().scale = 1;
-    } else {
-      note(rounding(grid, levels.size() - 1));
-    }
-    complete_octree(levels);
-    finish_shard(shard, options().segment, octree_manifest(grid, levels));
-    shard.commit();
-    const std::string info = info_of(options());
-    folder.write_file("info", std::as_bytes(std::span(info)));
+    AtomicFile file(folder.file("0.shard"));
+    ObjectShard shard(file, 0);
+    const std::vector<std::byte> manifest =
+        pack_object(path(), grid, levels, [&](std::span<const std::byte> bytes) { shard.write(bytes); });
+    if (!levels.empty()) note(multilod_rounding(path(), options().unit, grid.error(0), levels.size() - 1));
+    shard.add(options().segment, manifest);
+    shard.finish();
+    file.commit();
+    write_text(folder, "info", multilod_info(options(), 0, ""));
     folder.commit();
   }
-
-  std::string rounding(const NodeGrid& grid, std::size_t coarsest) {
-    std::ostringstream text;
-    text.precision(3);
-    text << path() << ": positions were rounded to 1/65535 of the side of a fragment, by at most " << grid.error(0);
-    if (!options().unit.empty()) text << ' ' << options().unit;
-    if (coarsest > 0) {
-      text << "; level " << coarsest << ", the coarsest, by " << (std::uint64_t{1} << coarsest) << " times that";
-    }
-    return text.str();
-  }
 };
+
+// An object that was packed. Its fragments and its manifest wait in a file, one behind the other.
+struct PackedObject {
+  MeshObject object;
+  std::uint64_t first = 0, fragments = 0, manifest = 0;  // place, and bytes
+};
+
+class PackedPrecomputedObjects final : public MeshObjects {
+ public:
+  PackedPrecomputedObjects(const std::string& path, const MeshFileOptions& options)
+      : path_(path),
+        options_(options),
+        pieces_(folder_of(without_slashes(path)), path),
+        packed_(folder_of(without_slashes(path)), path) {
+    AtomicFolder::check_free(path);
+  }
+
+  std::unique_ptr<MeshSink> begin(const MeshObject& object) override;
+  void finish() override;
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> lines = multilod_unit_notes(path_, options_.unit);
+    if (!objects_.empty()) lines.push_back(multilod_rounding(path_, options_.unit, error_, 0));
+    return lines;
+  }
+
+  const std::string& path() const { return path_; }
+  WaitingFile& pieces() { return pieces_; }
+
+  // Keeps an object whose mesh is complete. Objects are packed one at a time.
+  void add(const MeshObject& object, const Bounds& bounds, const WaitingLevel& level) {
+    const std::scoped_lock lock(mutex_);
+    const std::array<Point, 2> corners{bounds.low, bounds.high};
+    const NodeGrid grid(corners, std::span(&level.triangles, 1));
+    PackedObject packed{object, packed_.size(), 0, 0};
+    const std::vector<std::byte> manifest =
+        pack_object(path_, grid, std::span(&level, 1), [&](std::span<const std::byte> bytes) {
+          packed_.append(bytes);
+          packed.fragments += bytes.size();
+        });
+    packed_.append(manifest);
+    packed.manifest = manifest.size();
+    error_ = std::max(error_, grid.error(0));
+    objects_.push_back(std::move(packed));
+  }
+
+ private:
+  void sort_objects(unsigned bits);
+  void copy(std::uint64_t first, std::uint64_t count, ObjectShard& shard);
+  void write_shard(AtomicFile& file, unsigned bits);
+  std::string path_;
+  MeshFileOptions options_;
+  WaitingFile pieces_;  // of meshes that are not complete
+  WaitingFile packed_;
+  std::mutex mutex_;
+  std::vector<PackedObject> objects_;
+  double error_ = 0;
+};
+
+// The mesh of an object until it is complete.
+class ObjectSink final : public MeshFileSink {
+ public:
+  ObjectSink(PackedPrecomputedObjects& file, const MeshObject& object, const MeshFileOptions& options)
+      : MeshFileSink({file.path(), MeshTarget::Kind::kJoined}, options),
+        file_(file),
+        object_(object),
+        positions_(file.pieces()),
+        faces_(file.pieces()) {}
+
+ private:
+  void write_piece(const MeshPiece& piece) override {
+    bounds_.add(piece.vertices);
+    positions_.write(std::as_bytes(piece.vertices));
+    faces_.write(std::as_bytes(piece.triangles));
+  }
+
+  // An object of which nothing is left is none.
+  void complete() override {
+    if (triangles() == 0) return;
+    const auto reader = [](const WaitingBytes& bytes) -> ByteReader {
+      return [&bytes](std::uint64_t first, std::span<std::byte> out) { bytes.read_back(first, out); };
+    };
+    file_.add(object_, bounds_, {vertices(), triangles(), reader(positions_), reader(faces_)});
+  }
+
+  PackedPrecomputedObjects& file_;
+  MeshObject object_;
+  Bounds bounds_;
+  WaitingBytes positions_, faces_;
+};
+
+std::unique_ptr<MeshSink> PackedPrecomputedObjects::begin(const MeshObject& object) {
+  if (object.segment == 0) throw CannotWrite(path_ + ": expected a number of 1 or more for the object, found 0");
+  return std::make_unique<ObjectSink>(*this, object, options_);
+}
+
+// In the order of the shard, whatever the order in which they came.
+void PackedPrecomputedObjects::sort_objects(unsigned bits) {
+  const auto key = [&](const PackedObject& packed) {
+    return std::pair(ObjectShard::minishard_of(packed.object.segment, bits), packed.object.segment);
+  };
+  std::ranges::sort(objects_, {}, key);
+  const auto same = std::ranges::adjacent_find(objects_, {}, key);
+  if (same == objects_.end()) return;
+  throw std::invalid_argument(path_ + ": expected each object once, found " + std::to_string(same->object.segment) +
+                              " twice");
+}
+
+void PackedPrecomputedObjects::copy(std::uint64_t first, std::uint64_t count, ObjectShard& shard) {
+  constexpr std::uint64_t kAtOnce = 1 << 20;
+  std::vector<std::byte> bytes;
+  for (std::uint64_t done = 0; done < count; done += bytes.size()) {
+    bytes.resize(to_size(std::min(kAtOnce, count - done)));
+    packed_.read_back(first + done, bytes);
+    shard.write(bytes);
+  }
+}
+
+void PackedPrecomputedObjects::write_shard(AtomicFile& file, unsigned bits) {
+  ObjectShard shard(file, bits);
+  for (const PackedObject& packed : objects_) {
+    copy(packed.first, packed.fragments, shard);
+    std::vector<std::byte> manifest(to_size(packed.manifest));
+    packed_.read_back(packed.first + packed.fragments, manifest);
+    shard.add(packed.object.segment, manifest);
+  }
+  shard.finish();
+}
+
+// The text with numbers, names and sizes of the objects, which neuroglancer lists.
+std::string properties_of(std::span<const PackedObject> objects) {
+  using Json = nlohmann::ordered_json;
+  Json ids = Json::array(), names = Json::array(), samples = Json::array();
+  for (const PackedObject& packed : objects) {
+    ids.push_back(std::to_string(packed.object.segment));
+    names.push_back(packed.object.name);
+    samples.push_back(static_cast<float>(packed.object.samples));
+  }
+  Json properties = Json::array();
+  properties.push_back(Json{{"id", "name"}, {"type", "label"}, {"values", std::move(names)}});
+  properties.push_back(
+      Json{{"id", "samples"}, {"type", "number"}, {"data_type", "float32"}, {"values", std::move(samples)}});
+  Json info{{"@type", "neuroglancer_segment_properties"}};
+  info["inline"]["ids"] = std::move(ids);
+  info["inline"]["properties"] = std::move(properties);
+  return info.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void PackedPrecomputedObjects::finish() {
+  const std::scoped_lock lock(mutex_);
+  const unsigned bits = ObjectShard::bits_for(objects_.size());
+  sort_objects(bits);
+  AtomicFolder folder(path_);
+  AtomicFile file(folder.file("0.shard"));
+  write_shard(file, bits);
+  file.commit();
+  folder.make_folder("properties");
+  std::ranges::sort(objects_, {}, [](const PackedObject& packed) { return packed.object.segment; });
+  write_text(folder, "properties/info", properties_of(objects_));
+  write_text(folder, "info", multilod_info(options_, bits, "properties"));
+  folder.commit();
+}
 
 }  // namespace
 
@@ -263,6 +233,10 @@ std::unique_ptr<JoinedFile> open_packed_precomputed_levels(const std::string& pa
   std::vector<MeshFileOptions> plain;
   for (const MeshFileOptions& options : levels) plain.push_back(without_normals(options));
   return std::make_unique<PackedPrecomputedLevels>(path, plain);
+}
+
+std::unique_ptr<MeshObjects> open_packed_precomputed_objects(const std::string& path, const MeshFileOptions& options) {
+  return std::make_unique<PackedPrecomputedObjects>(path, without_normals(options));
 }
 
 }  // namespace isoweave

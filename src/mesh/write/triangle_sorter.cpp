@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "files/atomic_folder.hpp"
 #include "parallel/size.hpp"
 
 namespace isoweave {
@@ -9,7 +10,7 @@ namespace isoweave {
 // A run on its way through a merge. What has been read gives its room back.
 class TriangleSorter::Reader {
  public:
-  Reader(OutputDescriptor& file, const Run& run, std::size_t ahead) : file_(&file), run_(run), ahead_(ahead) { read(); }
+  Reader(WaitingFile& file, const Run& run, std::size_t ahead) : file_(&file), run_(run), ahead_(ahead) { read(); }
 
   const NodeTriangle& front() const { return block_[next_]; }
 
@@ -30,12 +31,15 @@ class TriangleSorter::Reader {
     run_.count -= block_.size();
   }
 
-  OutputDescriptor* file_;
+  WaitingFile* file_;
   Run run_;
   std::size_t ahead_;
   std::vector<NodeTriangle> block_;
   std::size_t next_ = 0;
 };
+
+TriangleSorter::TriangleSorter(const std::string& path, const Limits& limits)
+    : file_(folder_of(without_slashes(path)), path), limits_(limits) {}
 
 void TriangleSorter::add(std::span<const NodeTriangle> triangles) {
   held_.insert(held_.end(), triangles.begin(), triangles.end());
@@ -50,9 +54,15 @@ void TriangleSorter::write_run() {
   held_.clear();
 }
 
-void TriangleSorter::write(std::span<const NodeTriangle> triangles) { file_.write(std::as_bytes(triangles)); }
+void TriangleSorter::write(std::span<const NodeTriangle> triangles) { file_.append(std::as_bytes(triangles)); }
 
 void TriangleSorter::take_all(const std::function<void(const NodeTriangle&)>& take) {
+  if (runs_.empty()) {
+    std::sort(held_.begin(), held_.end());
+    for (const NodeTriangle& triangle : held_) take(triangle);
+    held_ = {};
+    return;
+  }
   write_run();
   held_ = {};
   while (runs_.size() > limits_.ways) {

@@ -1,14 +1,15 @@
-// Sorts the triangles of nodes in bounded memory: sorted runs wait in a file, and are merged.
+// Sorts the triangles of nodes in bounded memory: sorted runs wait in a file, and are merged. A few are sorted in
+// memory.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <utility>
+#include <string>
 #include <vector>
 
-#include "files/atomic_file.hpp"
+#include "files/waiting_bytes.hpp"
 #include "mesh/write/node_grid.hpp"
 
 namespace isoweave {
@@ -21,9 +22,9 @@ class TriangleSorter {
     std::size_t ahead = std::size_t{1} << 12;    // triangles of each run that are read at a time
   };
 
-  // file: where runs wait, empty.
-  explicit TriangleSorter(OutputDescriptor file) : TriangleSorter(std::move(file), Limits{}) {}
-  TriangleSorter(OutputDescriptor file, const Limits& limits) : file_(std::move(file)), limits_(limits) {}
+  // path: the name in messages. Runs wait in a file beside it, which is made where there is more than one.
+  explicit TriangleSorter(const std::string& path) : TriangleSorter(path, Limits{}) {}
+  TriangleSorter(const std::string& path, const Limits& limits);
 
   void add(std::span<const NodeTriangle> triangles);
 
@@ -42,7 +43,7 @@ class TriangleSorter {
   void merge(std::span<const Run> runs, const std::function<void(const NodeTriangle&)>& take);
   Run merge_into_one(std::span<const Run> runs);
 
-  OutputDescriptor file_;
+  WaitingFile file_;
   Limits limits_;
   std::vector<NodeTriangle> held_;
   std::vector<Run> runs_;

@@ -14,7 +14,7 @@ Point WaitingVertices::at(std::uint64_t vertex) {
     const std::uint64_t first = number * kBlockVertices;
     block.points.resize(to_size(std::min(kBlockVertices, count_ - first)));
     block.number = kNone;
-    file_.read_back(first * sizeof(Point), std::as_writable_bytes(std::span(block.points)));
+    positions_(first * sizeof(Point), std::as_writable_bytes(std::span(block.points)));
     block.number = number;
   }
   return block.points[to_size(vertex % kBlockVertices)];

@@ -6,15 +6,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "files/atomic_file.hpp"
 #include "isoweave/mesh.hpp"
+#include "mesh/write/packed_object.hpp"
 
 namespace isoweave {
 
 class WaitingVertices {
  public:
-  // file: of `count` positions. It must outlive this.
-  WaitingVertices(OutputDescriptor& file, std::uint64_t count) : file_(file), count_(count), blocks_(kBlocks) {}
+  // positions: reads a file of `count` of them. It must outlive this.
+  WaitingVertices(const ByteReader& positions, std::uint64_t count)
+      : positions_(positions), count_(count), blocks_(kBlocks) {}
 
   // Throws CannotWrite where the file cannot be read.
   Point at(std::uint64_t vertex);
@@ -29,7 +30,7 @@ class WaitingVertices {
     std::vector<Point> points;
   };
 
-  OutputDescriptor& file_;
+  const ByteReader& positions_;
   std::uint64_t count_;
   std::vector<Block> blocks_;  // that of a number is where its remainder says
 };

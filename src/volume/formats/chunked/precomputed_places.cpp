@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/input_file.hpp"
+#include "files/murmur_hash.hpp"
 
 namespace isoweave {
 namespace {

@@ -15,7 +15,4 @@ std::unique_ptr<ChunkPlaces> precomputed_places(const ChunkedArray& array);
 // The number of a chunk in shards: the bits of its numbers along x, y, z in turn, as many as the grid needs.
 std::uint64_t compressed_morton(const std::array<std::uint64_t, 3>& chunk, const std::array<std::uint64_t, 3>& grid);
 
-// The lower half of MurmurHash3_x86_128 of a number, least significant byte first, with the seed 0.
-std::uint64_t murmur_hash(std::uint64_t number);
-
 }  // namespace isoweave

@@ -1,8 +1,8 @@
 // MurmurHash3 by Austin Appleby, in the public domain: its variant of 128 bits for processors of 32.
+#include "files/murmur_hash.hpp"
+
 #include <array>
 #include <bit>
-
-#include "volume/formats/chunked/precomputed_places.hpp"
 
 namespace isoweave {
 namespace {
