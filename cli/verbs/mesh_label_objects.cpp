@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -48,7 +49,7 @@ class LabelObjects final : public LabelOutput {
     keep(n, std::move(report));
   }
 
-  // Sinks for all labels, which whoever has them finishes.
+  // Sinks for all labels at once. mesh_labels finishes them.
   std::vector<LabelSink> sinks() {
     std::vector<LabelSink> sinks;
     for (std::size_t n = 0; n < labels_.size(); ++n) {
@@ -157,6 +158,10 @@ void print_objects(const LabelsTask& task, const VolumeInfo& info, const MeshRep
 
 void mesh_label_objects(const LabelsTask& task, const VolumeInfo& info, RunControl control, Evidence& evidence) {
   const RunOptions& run = task.run;
+  if (task.numbered) {
+    throw std::invalid_argument(
+        "--segment: expected one label in a folder, as objects of one folder have the numbers of their labels");
+  }
   check_different({task.input.path, task.output.path, run.report, task.names});
   check_absent(run.no_clobber, {task.output.path});
   const MeshFileOptions file = task.file({});

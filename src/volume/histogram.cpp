@@ -151,7 +151,8 @@ std::span<const HounsfieldPreset> hounsfield_presets() {
 bool is_hounsfield_range(double min, double max) {
   constexpr double kAir = -500;
   constexpr double kDense = 150;
-  return min <= kAir && max >= kDense;
+  constexpr double kLeast = -32768, kMost = 65535;  // that scanners write
+  return kLeast <= min && min <= kAir && kDense <= max && max <= kMost;
 }
 
 std::vector<std::uint64_t> coarser_bins(const Histogram& histogram, std::size_t parts) {

@@ -158,7 +158,7 @@ class SmallerVolume final : public BufferedSource {
   bool skips() const override { return whole_->skips(); }
   std::uint64_t held_bytes() const override {
     return held_by_slices(*whole_) + slice_.size() + (sums_.size() + small_sums_.size()) * sizeof(double) +
-           counts_.size() * sizeof(std::uint32_t);
+           counts_.size() * sizeof(std::uint64_t);
   }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
@@ -206,9 +206,10 @@ class SmallerVolume final : public BufferedSource {
   }
 
   double mean_of(std::size_t block) const {
-    const double mean = sums_[block] / counts_[block];
+    const auto count = static_cast<double>(counts_[block]);
+    const double mean = sums_[block] / count;
     if (std::isfinite(mean) || small_sums_.empty()) return mean;
-    return small_sums_[block] / counts_[block] / kSmall;
+    return small_sums_[block] / count / kSmall;
   }
 
   template <class T>
@@ -227,7 +228,7 @@ class SmallerVolume final : public BufferedSource {
   std::vector<std::byte> slice_;    // of the whole
   std::vector<double> sums_;        // of the blocks of one slice
   std::vector<double> small_sums_;  // the same of samples times kSmall, where samples are float64
-  std::vector<std::uint32_t> counts_;
+  std::vector<std::uint64_t> counts_;
 };
 
 }  // namespace

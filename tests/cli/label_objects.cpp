@@ -110,6 +110,7 @@ TEST_F(CliLabelObjects, SmallOnesCanBeLeftOut) {
   program::expect_failed(run(folder_.path(), mesh({"--labels", "all", "--min-label", "100"})), 3,
                          "expected a label of 100 samples or more (--min-label), found 5832 smaller ones");
   program::expect_failed(run(folder_.path(), mesh({"--labels", "70001", "--min-label", "2"})), 2, "--labels all");
+  program::expect_failed(run(folder_.path(), mesh({"--labels", "all", "--segment", "7"})), 2, "--segment");
   EXPECT_EQ(listing(folder_), (Words{"a_label70001.precomputed", kMap, "r.json"}));
 }
 

@@ -166,6 +166,8 @@ TEST(Hounsfield, IsARangeFromAirToBone) {
   EXPECT_TRUE(is_hounsfield_range(-3024, 1500));
   EXPECT_FALSE(is_hounsfield_range(0, 4095));
   EXPECT_FALSE(is_hounsfield_range(-1, 1));
+  EXPECT_TRUE(is_hounsfield_range(-32768, 32767));
+  EXPECT_FALSE(is_hounsfield_range(-1e308, 1e308));
   EXPECT_FALSE(is_hounsfield_range(-1024, 50));
 }
 
