@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import pathlib
 import signal
@@ -61,12 +62,22 @@ def programs(folder: pathlib.Path) -> dict[Any, str]:
     return found
 
 
+def is_locked(path: pathlib.Path) -> bool:
+    """Whether somebody has the lock of a file, which may exist before it is locked."""
+    with contextlib.suppress(FileNotFoundError), path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
+
+
 def suspended(tasks: pathlib.Path) -> Any:
     """A program that holds still while it has the lock of its task, and the task."""
     for program, task in programs(tasks).items():
         with contextlib.suppress(psutil.NoSuchProcess):
             program.suspend()
-            if (tasks / f"{task}.lock").exists() and not (tasks / f"{task}.rest").exists():
+            if is_locked(tasks / f"{task}.lock") and not (tasks / f"{task}.rest").exists():
                 return program, task
             program.resume()
     return None
