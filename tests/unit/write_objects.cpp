@@ -26,7 +26,7 @@ std::uint64_t segment_of(std::uint64_t n) { return n % 2 == 0 ? n * n + 1 : ~std
 
 // A sheet of its own for each object. Number 7 is larger than what waits in memory.
 TriangleMesh mesh_of(std::uint64_t n) {
-  TriangleMesh mesh = meshes::grid(n == 7 ? 90 : 1 + static_cast<int>(n % 4));
+  TriangleMesh mesh = meshes::grid(n == 7 ? 90U : 1U + static_cast<std::uint32_t>(n % 4));
   for (Point& p : mesh.vertices) p[2] = static_cast<float>(n);
   return mesh;
 }
