@@ -147,6 +147,7 @@ class CountedOutput final : public LabelOutput {
 
 TEST(LabelsOfBoxes, AreBegunAndEndedBoxByBox) {
   std::vector<LabelExtent> labels = find_labels(*make_map());
+  if (kSanitized) labels.resize(60);
   labels.push_back({60'000, 0, {}});  // occurs nowhere
   MeshOptions options;
   options.error = Length::voxels(0.3);
