@@ -1,4 +1,4 @@
-// What mesh --labels finds in a label map before it meshes anything.
+// The labels that mesh --labels finds in a label map, in a pass before any is meshed.
 #pragma once
 
 #include <atomic>

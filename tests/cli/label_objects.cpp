@@ -56,7 +56,7 @@ class CliLabelObjects : public ::testing::Test {
     ASSERT_EQ(result.code, 0) << result.err;
   }
 
-  // What is written; removes it.
+  // The bytes of the folder that a run writes. The folder is removed.
   std::string made(const Words& more) {
     const Result result = run(folder_.path(), mesh(more));
     EXPECT_EQ(result.code, 0) << result.err;
