@@ -1,7 +1,7 @@
 # With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the core or of the command line, so
-# that what they all include is read once. Builds that are only tested gain by it; in those that people work with, a change
-# compiles one source. Names inside of two sources of a folder must differ then. Readers of formats are compiled one by one:
-# each has a `kMagic` and a `bad_input` of its own.
+# that what they all include is read once. It is on where all sources are compiled once, to be used or to be tested, and off
+# in `dev`, where a change compiles one source. Names inside of two sources of a folder must differ then. Readers of formats
+# are compiled one by one: each has a `kMagic` and a `bad_input` of its own.
 option(ISOWEAVE_UNITY "Compile the sources of a folder together: faster where most of them have changed" OFF)
 
 if(ISOWEAVE_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -11,8 +11,16 @@ endif()
 # Sources at a time: as many as leave enough to do for every processor.
 set(ISOWEAVE_UNITY_SIZE 8)
 
+# The builds of a clone share these files: a cache of compiled files would take the same file in two places for two.
+cmake_path(IS_PREFIX PROJECT_SOURCE_DIR ${PROJECT_BINARY_DIR} NORMALIZE ISOWEAVE_BUILT_INSIDE)
+if(ISOWEAVE_BUILT_INSIDE)
+  set(ISOWEAVE_UNITY_FOLDER ${PROJECT_SOURCE_DIR}/build/unity)
+else()
+  set(ISOWEAVE_UNITY_FOLDER ${PROJECT_BINARY_DIR}/unity)
+endif()
+
 # isoweave_gather(OUT NAME ROOT SOURCE...): what is to be compiled in place of the sources, which lie under ROOT, in files
-# under unity/NAME. Sources with options of their own are compiled by themselves.
+# of a folder NAME. Sources with options of their own are compiled by themselves.
 function(isoweave_gather out name root)
   set(gathered)
   set(folders)
@@ -33,13 +41,13 @@ function(isoweave_gather out name root)
   endforeach()
   list(REMOVE_DUPLICATES folders)
   foreach(folder ${folders})
-    isoweave_write_unity(files ${PROJECT_BINARY_DIR}/unity/${name}/${folder} ${sources_of_${folder}})
+    isoweave_write_unity(files ${ISOWEAVE_UNITY_FOLDER}/${name}/${folder} ${sources_of_${folder}})
     list(APPEND gathered ${files})
   endforeach()
   set(${out} ${gathered} PARENT_SCOPE)
 endfunction()
 
-# isoweave_write_unity(OUT FOLDER SOURCE...)
+# isoweave_write_unity(OUT FOLDER SOURCE...): a file has its sources in its name, as another build may have others.
 function(isoweave_write_unity out folder)
   set(files)
   set(text)
@@ -50,9 +58,10 @@ function(isoweave_write_unity out folder)
     math(EXPR count "${count} + 1")
     math(EXPR rest "${count} % ${ISOWEAVE_UNITY_SIZE}")
     if(rest EQUAL 0 OR count EQUAL total)
-      list(LENGTH files number)
-      file(CONFIGURE OUTPUT ${folder}/${number}.cpp CONTENT "${text}" @ONLY)
-      list(APPEND files ${folder}/${number}.cpp)
+      string(SHA1 hash "${text}")
+      string(SUBSTRING ${hash} 0 12 hash)
+      file(CONFIGURE OUTPUT ${folder}/${hash}.cpp CONTENT "${text}" @ONLY)
+      list(APPEND files ${folder}/${hash}.cpp)
       set(text)
     endif()
   endforeach()
