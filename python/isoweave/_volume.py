@@ -175,7 +175,8 @@ class Volume:
         """
         facts = self._call("iw_histogram")
         low, high = (1.0, 0.0) if facts["min"] is None else (facts["min"], facts["max"])
-        return np.array(facts["histogram"], dtype=np.uint64), np.linspace(low, high, 257)
+        part = np.linspace(0, 1, 257)  # the width of the range may be larger than any float
+        return np.array(facts["histogram"], dtype=np.uint64), low * (1 - part) + high * part
 
     def suggest_level(self) -> float:
         """Otsu's threshold, which parts bright from dark. Reads the whole volume once.

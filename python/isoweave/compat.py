@@ -52,7 +52,7 @@ def marching_cubes(
     opened = open_volume(volume, spacing=tuple(spacing)[::-1])
     if level is None:
         edges = opened.histogram()[1]
-        level = 0.5 * float(edges[0] + edges[-1])
+        level = float(0.5 * edges[0] + 0.5 * edges[-1])
     options.setdefault("closed", False)
     inside: Literal["above", "below"] = "above" if gradient_direction == "descent" else "below"
     surface = mesh(

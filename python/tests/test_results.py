@@ -288,6 +288,19 @@ def test_volumes(volume: np.ndarray) -> None:
             opened[key]
 
 
+def test_values_as_large_as_floats_go() -> None:
+    z, y, x = np.ogrid[-1:1:12j, -1:1:12j, -1:1:12j]
+    field = 0.8 - np.sqrt(x * x + y * y + z * z)
+    wide = field / np.abs(field).max() * 1.7e308
+    counts, edges = isoweave.open_volume(wide).histogram()
+    assert counts.sum() == wide.size
+    assert (edges[0], edges[-1]) == (wide.min(), wide.max())
+    assert np.all(np.diff(edges / 2) > 0)
+    high = (wide / 4 + 1.2e308).astype(np.float64)  # the sum of the least and the largest is none
+    faces = isoweave.compat.marching_cubes(high)[1]
+    assert len(faces) == len(isoweave.compat.marching_cubes(high / 1e300)[1]) > 100
+
+
 def test_drop_in_for_scikit_image(volume: np.ndarray) -> None:
     measure = pytest.importorskip("skimage.measure")
     smooth = volume.astype(np.float32)
