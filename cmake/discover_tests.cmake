@@ -1,11 +1,13 @@
 include(GoogleTest)
 
 # isoweave_discover_tests(PROGRAM PART FILTER [PROPERTY VALUE...]): the tests of a program that googletest's filter
-# names, each by its own name. A process with sanitizers takes a sixth of a second to begin and to end, so there the tests
-# share processes: PROGRAM.PART.1 and so on are lots that googletest itself deals out.
+# names, each by its own name. Names have no spaces, as ctest keeps the times of no others. A process with sanitizers takes
+# a sixth of a second to begin and to end, so there the tests share processes: PROGRAM.PART.1 and so on are lots that
+# googletest itself deals out.
 function(isoweave_discover_tests program part filter)
   if(NOT ISOWEAVE_SANITIZE)
-    gtest_discover_tests(${program} DISCOVERY_MODE PRE_TEST TEST_FILTER "${filter}" PROPERTIES TIMEOUT 300 ${ARGN})
+    gtest_discover_tests(${program} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES TEST_FILTER "${filter}" PROPERTIES TIMEOUT 300
+                         ${ARGN})
     return()
   endif()
   set(lots 32)
