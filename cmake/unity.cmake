@@ -47,7 +47,7 @@ function(isoweave_gather out name root)
   set(${out} ${gathered} PARENT_SCOPE)
 endfunction()
 
-# isoweave_write_unity(OUT FOLDER SOURCE...): a file has its sources in its name, as another build may have others.
+# isoweave_write_unity(OUT FOLDER SOURCE...): files are named by a hash, as another build may have other sources.
 function(isoweave_write_unity out folder)
   set(files)
   set(text)
