@@ -103,7 +103,7 @@ class SurfaceWidget(Container):
             return
         low, high = layer.contrast_limits_range
         self._level.min, self._level.max = min(low, self._level.value), max(high, self._level.value)
-        self._level.value = sum(layer.contrast_limits) / 2
+        self._level.value = sum(0.5 * limit for limit in layer.contrast_limits)
         self._level.min, self._level.max = low, high
 
     def _task(self) -> _Task:

@@ -296,7 +296,7 @@ def test_values_as_large_as_floats_go() -> None:
     assert counts.sum() == wide.size
     assert (edges[0], edges[-1]) == (wide.min(), wide.max())
     assert np.all(np.diff(edges / 2) > 0)
-    high = (wide / 4 + 1.2e308).astype(np.float64)  # the sum of the least and the largest is none
+    high = (wide / 4 + 1.2e308).astype(np.float64)  # the sum of the least and the largest value overflows
     faces = isoweave.compat.marching_cubes(high)[1]
     assert len(faces) == len(isoweave.compat.marching_cubes(high / 1e300)[1]) > 100
 
