@@ -52,7 +52,7 @@ struct MemoryModel {
 
  private:
   static constexpr double kBuffers = 6e6;
-  static constexpr double kBounded = 500;  // four extracted triangles for each that is held
+  static constexpr double kBounded = 250;  // four extracted triangles for each that is held
 
   double slices(double layers, double ring) const {
     constexpr double kBits = 0.75;  // bytes per sample: inside, crossings along three axes, cells, numbers of vertices

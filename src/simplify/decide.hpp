@@ -100,8 +100,8 @@ class BasicDecider {
   ISOWEAVE_HD double memory() const;
   ISOWEAVE_HD Quadric full_quadric(const Star& star, const Quadric& faces) const;
   ISOWEAVE_HD Quadric with_normals(const Quadric& full) const;
-  ISOWEAVE_HD Reach reach(Vec3 x) const;
-  ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const;
+  ISOWEAVE_HD Reach reach(Vec3 x);
+  ISOWEAVE_HD Reach place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x);
   ISOWEAVE_HD static CostBits cost_as_made(const Quadric& full, Vec3 x, CostBits key);
   ISOWEAVE_HD void defer();
   ISOWEAVE_HD void raise_key(CostBits cost);
@@ -126,6 +126,7 @@ class BasicDecider {
   bool vanished_ = false;
   bool deferred_ = false;
   DecisionCounts counts_;
+  [[no_unique_address]] typename Arithmetic::Bounds bounds_;  // of the faces around the place that was tried last
 };
 
 template <class Arithmetic>
@@ -177,6 +178,9 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::decide() {
   ++counts_.collapses;
   counts_.note_cost(cost_as_made(full, x, key));
   collapsed_ = true;
+  if constexpr (Arithmetic::kBoundsDistances) {
+    if (zone_.extracted != nullptr) keep_bounds(zone_, u_, v_, bounds_);
+  }
   collapse(x);
   update_keys(key);
 }
@@ -252,12 +256,14 @@ ISOWEAVE_HD Vec3 BasicDecider<Arithmetic>::best_place(const Quadric& full, Vec3 
   return strength > 0 ? best + ((offset - dot(gradient, best)) / strength) * response : best;
 }
 
-// Whether the faces around the merged vertex stay within the distance bound.
+// Whether the faces around the merged vertex stay within the distance that is allowed.
 template <class Arithmetic>
-ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) const {
-#ifndef __CUDA_ARCH__
-  if (zone_.extracted != nullptr) return reach_of_collapse(zone_, u_, v_, zone_.vertices[u_.vertex].position + x);
-#endif
+ISOWEAVE_HD Reach BasicDecider<Arithmetic>::reach([[maybe_unused]] Vec3 x) {
+  if constexpr (Arithmetic::kBoundsDistances) {
+    if (zone_.extracted != nullptr) {
+      return reach_of_collapse(zone_, u_, v_, zone_.vertices[u_.vertex].position + x, zone_.cost(edge_), bounds_);
+    }
+  }
   return Reach::kWithin;
 }
 
@@ -290,7 +296,7 @@ ISOWEAVE_HD Quadric BasicDecider<Arithmetic>::with_normals(const Quadric& full) 
 // Finds the first place that keeps every face on its side and within the distance bound. Tried are the best place, then
 // the two ends and the midpoint, cheapest first, as long as they cost no more than the limit.
 template <class Arithmetic>
-ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) const {
+ISOWEAVE_HD Reach BasicDecider<Arithmetic>::place(const Quadric& q, Vec3 best, CostBits limit, Vec3& x) {
   x = best;
   if (keeps_sides(x)) {
     const Reach found = reach(x);

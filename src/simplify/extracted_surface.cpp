@@ -17,8 +17,6 @@ using measure::cross;
 using measure::dot;
 using measure::Vector;
 
-// Below this sine of an angle the normal of a triangle is rounding noise. Its sides say where it is.
-constexpr double kLeastSine = 1e-12;
 constexpr std::size_t kMostCells = 256;  // of one grid that a triangle is listed in
 constexpr std::size_t kMixed = 16;       // triangles of a list: the order of more is mixed
 constexpr double kFewCells = 8;          // of a triangle's box: they are taken as they are
@@ -41,35 +39,6 @@ void turn_longest_side_first(ExtractedSurface::Corners& t) {
   }
   const auto longest = std::max_element(squared.begin(), squared.end()) - squared.begin();
   std::rotate(t.begin(), t.begin() + longest, t.end());
-}
-
-// Whether a triangle, seen from a point, comes within a distance, squared. Most often a corner does. Else the point may
-// lie above the triangle or beside a side of it; no quotient is needed to know.
-bool comes_within(double most, const ExtractedSurface::Corners& seen) {
-  const auto& [a, b, c] = seen;
-  if (dot(a, a) <= most || dot(b, b) <= most || dot(c, c) <= most) return true;
-  const Vector ab = b - a;
-  const Vector ac = c - a;
-  const Vector normal = cross(ab, ac);
-  const double squared = dot(normal, normal);
-  const double height = dot(a, normal);
-  const bool flat = squared > kLeastSine * kLeastSine * dot(ab, ab) * dot(ac, ac);
-  if (flat && height * height > most * squared) return false;
-  bool above = flat;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const Vector& from = seen[n];
-    const Vector side = seen[(n + 1) % 3] - from;
-    if (flat && dot(normal, cross(from, side)) >= 0) continue;
-    above = false;
-    const double along = -dot(from, side);
-    const double length = dot(side, side);
-    if (along > 0 && along < length && dot(from, from) * length - along * along <= most * length) return true;
-  }
-  return above;
-}
-
-bool is_within(double most, const Vector& p, const ExtractedSurface::Corners& triangle) {
-  return comes_within(most, {triangle[0] - p, triangle[1] - p, triangle[2] - p});
 }
 
 // A triangle, or the polygon that is left of it between planes.
@@ -163,14 +132,22 @@ ExtractedSurface::ExtractedSurface(double most, const Vec3& cell, const Vec3& la
   }
 }
 
-ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, std::uint64_t* looks) {
-  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), 0, looks};
-  for (const Vector& corner : corners) {
-    const Vector to = corner - part.centre;
+ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, double most, std::uint64_t* looks) {
+  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), {}, 0, most, looks};
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Vector& p = n < 3 ? corners[n] : part.centre;
+    part.points.x[n] = p[0];
+    part.points.y[n] = p[1];
+    part.points.z[n] = p[2];
+    const Vector to = p - part.centre;
     part.radius = std::max(part.radius, dot(to, to));
   }
-  part.radius = std::sqrt(part.radius);
   return part;
+}
+
+ExtractedSurface::Corners ExtractedSurface::corners_of(const Piece& piece, std::uint32_t number) {
+  const auto& [a, b, c] = piece.triangles[number];
+  return {vector_of(piece.positions[a]), vector_of(piece.positions[b]), vector_of(piece.positions[c])};
 }
 
 // Whether a part is too long to be near one triangle: such a part is cut at once. That is a guess, and cutting early is
@@ -178,7 +155,7 @@ ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, std::ui
 bool ExtractedSurface::is_long(const Part& part) const {
   for (std::size_t n = 0; n < 3; ++n) {
     const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
-    if (high - low > largest_[n] + kUsualReach * most_) return true;
+    if (high - low > largest_[n] + kUsualReach * part.most) return true;
   }
   return false;
 }
@@ -218,11 +195,11 @@ ExtractedSurface::CellBox ExtractedSurface::cells_of(const Corners& triangle, in
 }
 
 // The cells that a ball of the distance may touch.
-ExtractedSurface::CellBox ExtractedSurface::cells_around(const Vector& p, int level) const {
+ExtractedSurface::CellBox ExtractedSurface::cells_around(const Part& part, int level) const {
   CellBox box;
   for (std::size_t n = 0; n < 3; ++n) {
-    box.first[n] = cell_number((p[n] - most_) / length(level, n));
-    box.last[n] = cell_number((p[n] + most_) / length(level, n));
+    box.first[n] = cell_number((part.centre[n] - part.most) / length(level, n));
+    box.last[n] = cell_number((part.centre[n] + part.most) / length(level, n));
   }
   return box;
 }
@@ -283,21 +260,24 @@ int ExtractedSurface::list_in_cells(const Corners& triangle, std::uint32_t numbe
   }
 }
 
-void ExtractedSurface::append(const Array<Corners>& triangles, double complete_below) {
+void ExtractedSurface::append(Array<Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                              double complete_below) {
   complete_below_ = complete_below;
   if (triangles.empty()) return;
   Piece piece;
+  piece.positions = std::move(positions);
+  piece.triangles.resize(triangles.size());
+  std::ranges::copy(triangles, piece.triangles.begin());
   std::vector<Place> places;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const auto [low, high] = std::minmax({triangles[t][0][2], triangles[t][1][2], triangles[t][2][2]});
+    const Corners corners = corners_of(piece, t);
+    const auto [low, high] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
     piece.lowest = std::min(piece.lowest, low);
     piece.top = std::max(piece.top, high);
-    piece.levels |= std::uint64_t{1} << list_in_cells(triangles[t], t, places);
+    piece.levels |= std::uint64_t{1} << list_in_cells(corners, t, places);
   }
   make_slots(piece, places);
   fill_slots(piece, places);
-  piece.triangles.resize(triangles.size());
-  std::ranges::copy(triangles, piece.triangles.begin());
   push_piece(std::move(piece));
 }
 
@@ -316,7 +296,7 @@ void ExtractedSurface::make_slots(Piece& piece, std::span<const Place> places) {
   for (std::size_t n = 1; n < places.size(); ++n) {
     if (places[n].key != places[n - 1].key) ++cells;
   }
-  piece.slots.assign(std::bit_ceil(2 * cells), {});
+  piece.slots.assign(std::bit_ceil(cells + cells / 3 + 1), {});  // some free
   for (const Place& place : places) {
     Slot& slot = piece.slots[slot_of(piece, place.key)];
     slot.key = place.key;
@@ -352,39 +332,48 @@ void ExtractedSurface::forget_below(double z) {
 void ExtractedSurface::serialize(StateWriter& state) const {
   state.value(static_cast<std::uint64_t>(pieces_.size()));
   state.value(complete_below_);
-  for (const Piece& piece : pieces_) state.list(piece.triangles);
+  for (const Piece& piece : pieces_) {
+    state.list(piece.positions);
+    state.list(piece.triangles);
+  }
 }
 
 // Grids are made anew. An answer does not depend on them, nor on pieces that have been forgotten.
 void ExtractedSurface::serialize(StateReader& state, const Vec3& farthest) {
   const std::size_t pieces = state.count(sizeof(std::uint64_t));
   state.value(complete_below_);
-  Array<Corners> triangles;
   for (std::size_t n = 0; n < pieces; ++n) {
+    Array<Vec3> positions;
+    state.list(positions);
+    for (const Vec3& p : positions) state.require(lies_within(p, farthest), "a surface nearby");
+    Array<std::array<std::uint32_t, 3>> triangles;
     state.list(triangles);
     for (const auto& [a, b, c] : triangles) {
-      for (const Vector& p : {a, b, c}) state.require(lies_within({p[0], p[1], p[2]}, farthest), "a surface nearby");
+      state.require(std::max({a, b, c}) < positions.size(), "triangles of the vertices of a piece");
     }
-    append(triangles, complete_below_);
+    append(std::move(positions), {triangles.data(), triangles.size()}, complete_below_);
   }
 }
 
 std::uint64_t ExtractedSurface::bytes() const {
   std::uint64_t sum = 0;
   for (const Piece& piece : pieces_) {
-    sum += piece.triangles.capacity() * sizeof(Corners) + piece.slots.capacity() * sizeof(Slot) +
-           piece.listed.capacity() * sizeof(std::uint32_t);
+    sum += piece.positions.capacity() * sizeof(Vec3) + piece.triangles.capacity() * sizeof(piece.triangles[0]) +
+           piece.slots.capacity() * sizeof(Slot) + piece.listed.capacity() * sizeof(std::uint32_t);
   }
   return sum;
 }
 
 // Finds how much of a part is within the distance of a triangle, where `known` is what other triangles have given.
-ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Corners& triangle, Found known) const {
-  const double most = most_ * most_;
-  const bool all = std::all_of(part.corners.begin(), part.corners.end(),
-                               [&](const Vector& corner) { return is_within(most, corner, triangle); });
-  if (all) return Found::kAll;
-  return known == Found::kNothing && is_within(most, part.centre, triangle) ? Found::kCentre : known;
+ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Piece& piece, std::uint32_t number,
+                                                    Found known) const {
+  constexpr unsigned kCorners = 7;
+  constexpr unsigned kCentre = 8;
+  const auto& [a, b, c] = piece.triangles[number];
+  const unsigned near = kernels_.points_within(part.most * part.most, part.points,
+                                               {&piece.positions[a], &piece.positions[b], &piece.positions[c]});
+  if ((near & kCorners) == kCorners) return Found::kAll;
+  return (near & kCentre) != 0 ? std::max(known, Found::kCentre) : known;
 }
 
 ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
@@ -394,7 +383,7 @@ ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::ui
     const Slot& slot = piece.slots[slot_of(piece, key)];
     for (const std::uint32_t number : std::span(piece.listed.data() + slot.first, slot.count)) {
       if (part.looks != nullptr) ++*part.looks;
-      found = find_near(part, piece.triangles[number], found);
+      found = find_near(part, piece, number, found);
       if (found == Found::kAll) return found;
     }
   }
@@ -402,15 +391,15 @@ ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::ui
 }
 
 // Whether a cell comes within the distance of a point.
-bool ExtractedSurface::is_near(const Vector& p, int level, const Cell& cell) const {
+bool ExtractedSurface::is_near(const Part& part, int level, const Cell& cell) const {
   double squared = 0;
   for (std::size_t n = 0; n < 3; ++n) {
     const double side = length(level, n);
     const double low = static_cast<double>(cell[n]) * side;
-    const double outside = std::max({low - p[n], 0.0, p[n] - (low + side)});
+    const double outside = std::max({low - part.centre[n], 0.0, part.centre[n] - (low + side)});
     squared += outside * outside;
   }
-  return squared <= most_ * most_;
+  return squared <= part.most * part.most;
 }
 
 // Looks into the cells that are `ring` cells away from that of the centre.
@@ -423,7 +412,7 @@ ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const C
       const bool side = std::max(std::abs(cell[2] - centre[2]), std::abs(cell[1] - centre[1])) == ring;
       const std::int64_t step = side ? 1 : 2 * ring;
       for (cell[0] = centre[0] - ring; cell[0] <= centre[0] + ring; cell[0] += step) {
-        if (!is_near(part.centre, 0, cell)) continue;
+        if (!is_near(part, 0, cell)) continue;
         found = std::max(found, find_in_cell(part, key_of(0, cell), pieces));
         if (found == Found::kAll) return found;
       }
@@ -442,8 +431,8 @@ ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span
     const Cell own = cell_of(part.centre, level);
     found = std::max(found, find_in_cell(part, key_of(level, own), pieces));
     if (found == Found::kAll) break;
-    each_cell(cells_around(part.centre, level), [&](const Cell& cell) {
-      if (cell == own || !is_near(part.centre, level, cell)) return true;
+    each_cell(cells_around(part, level), [&](const Cell& cell) {
+      if (cell == own || !is_near(part, level, cell)) return true;
       found = std::max(found, find_in_cell(part, key_of(level, cell), pieces));
       return found != Found::kAll;
     });
@@ -452,9 +441,9 @@ ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span
 }
 
 // The pieces with triangles that may be within the distance of a point.
-std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Vector& p) const {
-  const auto first = std::ranges::lower_bound(pieces_, p[2] - most_, {}, &Piece::highest);
-  const auto end = std::upper_bound(first, pieces_.end(), p[2] + most_,
+std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Part& part) const {
+  const auto first = std::ranges::lower_bound(pieces_, part.centre[2] - part.most, {}, &Piece::highest);
+  const auto end = std::upper_bound(first, pieces_.end(), part.centre[2] + part.most,
                                     [](double z, const Piece& piece) { return z < piece.lowest; });
   return {first, end};
 }
@@ -462,29 +451,29 @@ std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Vec
 // Looks into the cells around the centre, ring by ring. For a part that can be cut some more, the search ends at the
 // first ring that is near: the surface farther away will do no better.
 ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
-  const std::span<const Piece> pieces = pieces_near(part.centre);
+  const std::span<const Piece> pieces = pieces_near(part);
   if (pieces.empty()) return Found::kNothing;
   Found found = find_above(part, pieces);
   const Cell centre = cell_of(part.centre, 0);
   const double smallest = *std::min_element(cell_.begin(), cell_.end());
-  const auto rings = static_cast<std::int64_t>(std::ceil(most_ / smallest));
+  const auto rings = static_cast<std::int64_t>(std::ceil(part.most / smallest));
   for (std::int64_t ring = 0; ring <= rings && found != Found::kAll; ++ring) {
-    if (found == Found::kCentre && part.radius > kSmall * most_) break;
+    if (found == Found::kCentre && !part.is_below(kSmall * part.most)) break;
     found = std::max(found, find_in_ring(part, centre, ring, pieces));
   }
   return found;
 }
 
-Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t* looks) const {
+Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks) const {
   std::array<Corners, 128> parts;  // cut in depth: one sibling waits for each cut
   std::size_t open = 0;
   parts[open++] = {vector_of(a), vector_of(b), vector_of(c)};
   for (int looked_at = 0; open > 0; ++looked_at) {
-    Part part = part_of(parts[--open], looks);
+    Part part = part_of(parts[--open], most, looks);
     const Found found = is_long(part) ? Found::kCentre : find(part);
     if (found == Found::kAll) continue;
-    if (part.centre[2] + most_ > complete_below_) return Reach::kUnknown;
-    if (found == Found::kNothing || part.radius <= kFinest * most_) return Reach::kBeyond;
+    if (part.centre[2] + most > complete_below_) return Reach::kUnknown;
+    if (found == Found::kNothing || part.is_below(kFinest * most)) return Reach::kBeyond;
     if (open + 2 > parts.size() || looked_at == kMostParts) return Reach::kBeyond;
     turn_longest_side_first(part.corners);
     const Vector middle = 0.5 * (part.corners[0] + part.corners[1]);

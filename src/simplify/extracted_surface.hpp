@@ -12,6 +12,7 @@
 #include "lattice/triangles.hpp"
 #include "lattice/vec3.hpp"
 #include "parallel/array.hpp"
+#include "simplify/kernels.hpp"
 #include "simplify/reach.hpp"
 
 namespace isoweave {
@@ -32,20 +33,21 @@ class ExtractedSurface {
   // The layer of cells that holds z.
   double layer_of(double z) const { return std::floor(z / cell_[2] + kShift); }
 
-  // Takes the triangles of a piece. No later piece has a point below `complete_below`.
-  void append(const Array<Corners>& triangles, double complete_below);
+  // Takes the triangles of a piece, which name vertices by their places in `positions`. No later piece has a point
+  // below `complete_below`.
+  void append(Array<Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles, double complete_below);
 
   // Forgets triangles that are not needed for questions about the layer of z and above.
   void forget_below(double z);
 
-  // Whether all of a triangle lies within the distance. The triangle is cut at its longest side until the corners of
-  // each part are within the distance of one and the same triangle of the surface. The points within the distance of a
-  // triangle form a convex set, so all of the part is within it then. Parts smaller than a sixteenth of the distance
-  // are not cut again. So a triangle within 15/16 of the distance is always found to be within it, unless that takes
-  // more parts than kMostParts. A triangle beyond the distance never is. May be called by several threads at the same
-  // time.
-  // looks: unless null, counts the comparisons of a part with a triangle.
-  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, std::uint64_t* looks = nullptr) const;
+  // Whether all of a triangle lies within a distance, which must be no larger than the one that was named first. The
+  // triangle is cut at its longest side until the corners of each part are within the distance of one and the same
+  // triangle of the surface. The points within the distance of a triangle form a convex set, so all of the part is
+  // within it then. Parts smaller than a sixteenth of the distance are not cut again. So a triangle within 15/16 of the
+  // distance is always found to be within it, unless that takes more parts than kMostParts. A triangle beyond the
+  // distance never is. May be called by several threads at the same time. looks: unless null, counts the comparisons of
+  // a part with a triangle.
+  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks = nullptr) const;
 
   std::uint64_t bytes() const;
 
@@ -79,7 +81,8 @@ class ExtractedSurface {
   };
 
   struct Piece {
-    Array<Corners> triangles;
+    Array<Vec3> positions;
+    Array<std::array<std::uint32_t, 3>> triangles;
     Array<std::uint32_t> listed;                                // triangles of one cell after the other
     std::vector<Slot> slots;                                    // a hash table with open addresses
     std::uint64_t levels = 0;                                   // bit n: grid n has triangles
@@ -92,8 +95,12 @@ class ExtractedSurface {
   struct Part {
     Corners corners;
     measure::Vector centre;
-    double radius;         // of the ball around the centre that holds it
+    FourPoints points;     // the corners and the centre
+    double radius;         // of the ball around the centre that holds it, squared
+    double most;           // distance
     std::uint64_t* looks;  // to be counted, or null
+
+    bool is_below(double length) const { return radius <= length * length; }
   };
 
   enum class Found : std::uint8_t { kNothing, kCentre, kAll };  // what is within the distance of some triangle
@@ -106,13 +113,13 @@ class ExtractedSurface {
     double longest() const;
   };
 
-  static Part part_of(const Corners& corners, std::uint64_t* looks);
+  static Part part_of(const Corners& corners, double most, std::uint64_t* looks);
   bool is_long(const Part& part) const;
   double length(int level, std::size_t axis) const { return lengths_[static_cast<std::size_t>(level)][axis]; }
   Cell cell_of(const measure::Vector& p, int level) const;
-  bool is_near(const measure::Vector& p, int level, const Cell& cell) const;
+  bool is_near(const Part& part, int level, const Cell& cell) const;
   CellBox cells_of(const Corners& triangle, int level) const;
-  CellBox cells_around(const measure::Vector& p, int level) const;
+  CellBox cells_around(const Part& part, int level) const;
   static std::uint64_t key_of(int level, const Cell& cell);
   template <class Visit>
   void each_touched(const Corners& triangle, const CellBox& box, int level, const Visit& visit) const;
@@ -121,13 +128,15 @@ class ExtractedSurface {
   static void fill_slots(Piece& piece, std::span<const Place> places);
   static std::size_t slot_of(const Piece& piece, std::uint64_t key);
   void push_piece(Piece&& piece);
-  std::span<const Piece> pieces_near(const measure::Vector& p) const;
+  std::span<const Piece> pieces_near(const Part& part) const;
   Found find(const Part& part) const;
   Found find_above(const Part& part, std::span<const Piece> pieces) const;
   Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring, std::span<const Piece> pieces) const;
   Found find_in_cell(const Part& part, std::uint64_t key, std::span<const Piece> pieces) const;
-  Found find_near(const Part& part, const Corners& triangle, Found known) const;
+  static Corners corners_of(const Piece& piece, std::uint32_t number);
+  Found find_near(const Part& part, const Piece& piece, std::uint32_t number, Found known) const;
 
+  const Kernels& kernels_ = kernels();
   double most_;
   std::array<double, 3> cell_;
   std::array<std::array<double, 3>, kLastLevel + 1> lengths_{};  // of the cells of each grid

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "simplify/face_bounds.hpp"
 #include "simplify/star.hpp"
 
 namespace isoweave {
@@ -33,6 +34,41 @@ struct FaceSums {
   Vec3 normal;
 };
 
+// Rounding, in terms of lengths and areas that are seen from above: what touches a side or a face counts as inside.
+inline constexpr double kTouching = 1e-9;
+
+// Sides of faces as they are seen from above: two coordinates across, and the height.
+struct alignas(64) SeenSides {
+  static constexpr std::size_t kRoom = 64;
+  static constexpr std::size_t kLanes = 8;  // of the widest vectors
+
+  double x[kRoom], y[kRoom], z[kRoom];                    // where a side begins
+  double along_x[kRoom], along_y[kRoom], along_z[kRoom];  // from there to its end
+  double bound[kRoom];                                    // of the faces beside it
+  std::size_t count = 0;
+
+  void add(const Vec3& from, const Vec3& to, double bound_beside) {
+    const Vec3 along = to - from;
+    x[count] = from.x;
+    y[count] = from.y;
+    z[count] = from.z;
+    along_x[count] = along.x;
+    along_y[count] = along.y;
+    along_z[count] = along.z;
+    bound[count++] = bound_beside;
+  }
+
+  // Fills the last vectors with sides that cross nothing.
+  void pad() {
+    while (count % kLanes != 0) add({}, {}, 0);
+  }
+};
+
+// Four points, by coordinates.
+struct alignas(32) FourPoints {
+  double x[4], y[4], z[4];
+};
+
 struct Kernels {
   // Costs of collapsing edges.
   void (*edge_costs)(std::span<const EdgeEnds> edges, CostBits* costs);
@@ -51,6 +87,13 @@ struct Kernels {
   // Counts the pairs of equal numbers in two lists. b has `count` numbers, and is filled up to a multiple of 16 with
   // numbers that a does not have.
   int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
+
+  // The largest sum, where a side from the origin crosses others, of the height between the two and the bound beside
+  // the other one. 0 where it crosses none.
+  double (*height_of_crossings)(const Vec3& to, const SeenSides& sides);
+
+  // Which of four points are within a distance of a triangle: bit n is for point n. most: the distance, squared.
+  unsigned (*points_within)(double most, const FourPoints& points, const std::array<const Vec3*, 3>& triangle);
 };
 
 // The best kernels for this processor.
@@ -62,7 +105,10 @@ std::span<const Kernels* const> all_kernels();
 // The kernels applied to stars.
 class VectorArithmetic {
  public:
+  static constexpr bool kBoundsDistances = true;
+
   using Fan = isoweave::Fan;
+  using Bounds = FaceBounds;
 
   // Fills the fan of a star that is not too large.
   void measure(const ZoneView& zone, Star& star, Fan& fan) const {

@@ -12,7 +12,9 @@ namespace isoweave {
 template <std::size_t N>
 class KernelsInLanes {
  public:
-  static constexpr Kernels table() { return {edge_costs, measure, sum_faces, keeps_sides, count_common}; }
+  static constexpr Kernels table() {
+    return {edge_costs, measure, sum_faces, keeps_sides, count_common, height_of_crossings, points_within};
+  }
 
  private:
   using Real = Lanes<N>;
@@ -146,6 +148,68 @@ class KernelsInLanes {
     std::int32_t common = 0;
     for (std::size_t n = 0; n < kWidth; ++n) common += equal[n];
     return common;
+  }
+
+  static double height_of_crossings(const Vec3& to, const SeenSides& sides) {
+    Real most = 0;
+    for (std::size_t n = 0; n < sides.count; n += N) {
+      const Real x = Real::load(sides.x + n);
+      const Real y = Real::load(sides.y + n);
+      const Real along_x = Real::load(sides.along_x + n);
+      const Real along_y = Real::load(sides.along_y + n);
+      const Real turn = to.x * along_y - to.y * along_x;
+      const Real s = (x * along_y - y * along_x) / turn;
+      const Real t = (x * to.y - y * to.x) / turn;
+      const Real difference = s * to.z - (Real::load(sides.z + n) + t * Real::load(sides.along_z + n));
+      const Real height = select<N>(difference > 0, difference, -difference) + Real::load(sides.bound + n);
+      const auto inside = (s > -kTouching) & (1 + kTouching > s) & (t > -kTouching) & (1 + kTouching > t);
+      most = select<N>(inside & (height > most), height, most);
+    }
+    double heights[N];
+    most.store(heights);
+    return *std::max_element(heights, heights + N);
+  }
+
+  static constexpr std::size_t kFew = std::min<std::size_t>(N, 4);  // lanes for four points
+  using Few = Lanes<kFew>;
+  using FewMask = typename Few::Mask;
+
+  static Few along(const BasicVec3<Few>& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+  // Which points are near a corner of a triangle, near one of its sides or near the triangle that they lie above. No
+  // quotient is needed to know. The normal of a triangle with sides in one direction is rounding noise.
+  static FewMask within(double most, const BasicVec3<Few>& points, const std::array<const Vec3*, 3>& triangle) {
+    constexpr double kLeastSine = 1e-12;
+    const Vec3 ab = *triangle[1] - *triangle[0];
+    const Vec3 ac = *triangle[2] - *triangle[0];
+    const Vec3 normal = cross(ab, ac);
+    const double size = dot(normal, normal);
+    const bool is_flat = size > kLeastSine * kLeastSine * dot(ab, ab) * dot(ac, ac);
+    FewMask near{};
+    FewMask above = FewMask{} - std::int64_t{is_flat};
+    unrolled<3>([&](auto n) {
+      const Vec3& corner = *triangle[n];
+      const Vec3 side = *triangle[(n + 1) % 3] - corner;
+      const double length = dot(side, side);
+      const BasicVec3<Few> from = points - BasicVec3<Few>{corner.x, corner.y, corner.z};
+      const Few squared = dot(from, from);
+      const Few forwards = along(from, side);
+      const Few height = along(from, normal);
+      near |= Few(most) >= squared;
+      near |= (forwards > 0) & (Few(length) > forwards) & (most * length >= squared * length - forwards * forwards);
+      above &= (along(from, cross(normal, side)) >= 0) & (most * size >= height * height);
+    });
+    return near | above;
+  }
+
+  static unsigned points_within(double most, const FourPoints& points, const std::array<const Vec3*, 3>& triangle) {
+    unsigned bits = 0;
+    for (std::size_t n = 0; n < 4; n += kFew) {
+      const BasicVec3<Few> some{Few::load(points.x + n), Few::load(points.y + n), Few::load(points.z + n)};
+      const FewMask mask = within(most, some, triangle);
+      unrolled<kFew>([&](auto lane) { bits |= static_cast<unsigned>(mask[lane.value] & 1) << (n + lane); });
+    }
+    return bits;
   }
 };
 

@@ -63,6 +63,7 @@ struct Lanes {
   friend Lanes operator/(const Lanes& a, const Lanes& b) { return a.v / b.v; }
   friend Lanes operator-(const Lanes& a) { return -a.v; }
   friend Mask operator>(const Lanes& a, const Lanes& b) { return a.v > b.v; }
+  friend Mask operator>=(const Lanes& a, const Lanes& b) { return a.v >= b.v; }
 };
 
 // Calls body(n) with the constants n = 0...N - 1.

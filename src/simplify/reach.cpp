@@ -1,8 +1,10 @@
 #include "simplify/reach.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "simplify/extracted_surface.hpp"
+#include "simplify/overlay.hpp"
 
 namespace isoweave {
 namespace {
@@ -24,23 +26,61 @@ bool stays_in_layers(const ZoneView& zone, const Star& u, const Star& v, const V
   return layer >= extracted.layer_of(low) && layer <= extracted.layer_of(high);
 }
 
+// Bounds the faces by the overlay with those that they replace. Returns whether that is known to lie above them.
+bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, FaceBounds& bounds) {
+  if (!u.border && !v.border && u.faces >= 3 && v.faces >= 3 && Overlay(zone, u, v, place).bound(bounds)) return true;
+  bounds.fill(kUnbounded);
+  return false;
+}
+
+// Whether some point of a face of which nothing is known is beyond the distance: a few are looked at, by which most
+// faces that are refused are found out.
+bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place,
+                       const FaceBounds& bounds) {
+  const auto is_beyond = [&](const Vec3& p) {
+    return zone.extracted->reach(p, p, p, zone.options.most_distance) == Reach::kBeyond;
+  };
+  bool beyond = false;
+  bool is_first = true;
+  std::size_t n = 0;
+  each_staying_face(u, v, [&](Index, Index from, Index to) {
+    if (bounds[n++] != kUnbounded) return true;
+    const Vec3& a = zone.vertices[from].position;
+    const Vec3& b = zone.vertices[to].position;
+    beyond = (std::exchange(is_first, false) && is_beyond(place)) || is_beyond((1.0 / 3) * (place + a + b)) ||
+             is_beyond(0.5 * (place + a)) || is_beyond(0.5 * (a + b));
+    return !beyond;
+  });
+  return beyond;
+}
+
+// Looks at a face around a place. Where no overlay has said anything, it is asked first whether the face is within half
+// of the distance, so that what comes after it has a bound to begin with.
+Reach look_at_face(const ZoneView& zone, const Vec3 (&corners)[3], bool overlaid, FaceBound& bound) {
+  const auto look = [&](double most) { return zone.extracted->reach(corners[0], corners[1], corners[2], most); };
+  const Reach half = overlaid ? Reach::kBeyond : look(zone.options.most_distance / 2);
+  if (half == Reach::kWithin) bound = kHalfBound;
+  return half == Reach::kBeyond ? look(zone.options.most_distance) : half;
+}
+
 }  // namespace
 
-Reach reach_of_collapse(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place) {
-  const ExtractedSurface& extracted = *zone.extracted;
+Reach reach_of_collapse(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, CostBits cost,
+                        FaceBounds& bounds) {
   if (!stays_in_layers(zone, u, v, place)) return Reach::kBeyond;
+  const bool overlaid = bound_by_overlay(zone, u, v, place, bounds);
+  const bool is_doubtful = cost > to_cost(zone.options.most_distance * zone.options.most_distance / zone.options.a0);
+  if (is_doubtful && is_plainly_beyond(zone, u, v, place, bounds)) return Reach::kBeyond;
   Reach all = Reach::kWithin;
-  for (const Star* star : {&u, &v}) {
-    const Index gone = star == &u ? v.vertex : u.vertex;
-    for (std::size_t n = 0; n < static_cast<std::size_t>(star->faces); ++n) {
-      const Index a = star->neighbour[n];
-      const Index b = star->neighbour[n + 1 < star->count() ? n + 1 : 0];
-      if (a == gone || b == gone) continue;
-      const Reach face = extracted.reach(place, zone.vertices[a].position, zone.vertices[b].position);
-      if (face == Reach::kBeyond) return face;
-      if (face == Reach::kUnknown) all = face;
-    }
-  }
+  std::size_t n = 0;
+  each_staying_face(u, v, [&](Index, Index a, Index b) {
+    FaceBound& bound = bounds[n++];
+    if (bound != kUnbounded) return true;
+    const Reach face =
+        look_at_face(zone, {place, zone.vertices[a].position, zone.vertices[b].position}, overlaid, bound);
+    all = std::max(all, face);
+    return face != Reach::kBeyond;
+  });
   return all;
 }
 

@@ -10,6 +10,10 @@ namespace isoweave {
 
 class ScalarArithmetic {
  public:
+  static constexpr bool kBoundsDistances = false;
+
+  struct Bounds {};
+
   // The faces around a vertex, with places measured from the vertex. Slot n holds the face between neighbours n and n +
   // 1.
   class Fan {

@@ -54,7 +54,7 @@ void Zone::append(const SurfacePiece& piece, const Executor& executor) {
     on_front[front[n]] = 1;
   }
   link(piece, first_triangle, on_front, executor);
-  if (extracted_surface_) know_more(piece, first_triangle, executor);
+  if (extracted_surface_) know_more(piece, executor);
   first_unsettled_ = first_triangle;
   column_starts_.assign(order_.column_starts().begin(), order_.column_starts().end());
   if (piece.incomplete.empty()) {  // no later piece links to this one
@@ -206,22 +206,18 @@ void Zone::add_triangles(const Executor& executor) {
 }
 
 // Shows the new triangles to the extracted surface, which forgets the triangles too far below everything that is held.
-void Zone::know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor) {
+void Zone::know_more(const SurfacePiece& piece, const Executor& executor) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Vertex& vertex : vertices) {
     if (exists(vertex.half_edge)) lowest = std::min(lowest, vertex.position.z);
   }
   extracted_surface_->forget_below(lowest);
-  Array<ExtractedSurface::Corners> corners;
-  corners.resize(piece.triangles.size());
-  executor.for_each(static_cast<std::int64_t>(corners.size()), kZoneBlock, [&](std::int64_t n) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Index v = triangles[first_triangle + static_cast<Index>(n)].sides[c].vertex;
-      const Vec3& p = vertices[v].position;
-      corners[static_cast<std::size_t>(n)][c] = {p.x, p.y, p.z};
-    }
+  Array<Vec3> positions;
+  positions.resize(piece.inherited + piece.positions.size());
+  executor.for_each(static_cast<std::int64_t>(positions.size()), kZoneBlock, [&](std::int64_t n) {
+    positions[static_cast<std::size_t>(n)] = vertices[index_of(static_cast<Index>(n))].position;
   });
-  extracted_surface_->append(corners, piece.complete_below);
+  extracted_surface_->append(std::move(positions), order_.triangles(), piece.complete_below);
 }
 
 // Completes the vertices that later pieces do not add to: they get their quadrics, or are locked.
@@ -310,6 +306,7 @@ void Zone::settle_edges(TriangleRange range, std::vector<Index>& unkeyed) {
   EdgeBatch batch;
   for (Index t = range.begin; t < range.end; ++t) {
     triangles[t].levels = 0;
+    triangles[t].bound = 0;
     // The sides that represent their edges cannot be predicted. So every side is written, and the next one overwrites
     // it if it does not represent its edge.
     Index edges[3];

@@ -121,7 +121,7 @@ class Zone : public ZoneView {
   void add_triangles(const Executor& executor);
   void link(const SurfacePiece& piece, Index first_triangle, std::span<const std::uint8_t> on_front,
             const Executor& executor);
-  void know_more(const SurfacePiece& piece, Index first_triangle, const Executor& executor);
+  void know_more(const SurfacePiece& piece, const Executor& executor);
   bool is_one_fan(const Star& star) const;
   std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor);

@@ -101,6 +101,8 @@ bool all_finite(const NormalQuadric& q) {
 
 bool all_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
+using LevelsAndBound = std::array<std::uint16_t, 2>;
+
 // Reads the fields of a part, each of which is checked by itself.
 class PartReader {
  public:
@@ -206,9 +208,10 @@ class PartReader {
       state_.require(written < 8, "bits for three sides");
       for (std::size_t c = 0; c < 3; ++c) side(t, c).twin = (written >> c & 1) != 0 ? kWritten : kNone;
     });
-    state_.each<std::uint32_t>(count, [&](std::size_t t, std::uint32_t levels) {
-      state_.require(levels < shape_.ends.size(), "triangles of the levels of the run");
-      part_.triangles[t].levels = levels;
+    state_.each<LevelsAndBound>(count, [&](std::size_t t, const LevelsAndBound& of) {
+      state_.require(of[0] < shape_.ends.size(), "triangles of the levels of the run");
+      part_.triangles[t].levels = of[0];
+      part_.triangles[t].bound = of[1];
     });
   }
 
@@ -280,7 +283,10 @@ void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<
     for (std::size_t c = 0; c < 3; ++c) written |= unsigned{zone.twin(sides[c]) == kWritten} << c;
     return static_cast<std::uint8_t>(written);
   });
-  each_triangle([&](const Sides& sides) { return zone.triangles[sides[0] >> 2].levels; });
+  each_triangle([&](const Sides& sides) {
+    const Triangle& triangle = zone.triangles[sides[0] >> 2];
+    return LevelsAndBound{triangle.levels, triangle.bound};
+  });
   state.value(static_cast<std::uint64_t>(front.size()));
   state.each(front.size(), [&](std::size_t n) { return order.place(front[n]); });
 }

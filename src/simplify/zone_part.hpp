@@ -8,7 +8,7 @@
 //     normals, quadrics of normals, values, where the run has them; for each finer level whether final, numbers, labels
 //   triangles, each from its vertex with the smallest id on, ascending by the first two vertices: vertices; keys and
 //     lower halves of the ties of the three sides; the sides beside which a triangle has been handed over, as bits; the
-//     levels that have the triangle
+//     number of levels that have the triangle, and the bound of its distance
 //   the front
 //
 // Twins, the starts of fans and turns are no part of it: who takes a part in finds them by ids.

@@ -64,6 +64,14 @@ inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
 
 ISOWEAVE_HD inline CostBits cost_of(Key key) { return static_cast<CostBits>(key >> 32); }
 
+// A bound on the distance of every point of a face from the extracted surface.
+using FaceBound = std::uint16_t;
+
+inline constexpr double kBoundUnits = 65536;  // in the distance that is allowed
+inline constexpr FaceBound kHalfBound = 32768;
+inline constexpr FaceBound kMostBound = 65534;
+inline constexpr FaceBound kUnbounded = 65535;  // nothing is known but that it is allowed
+
 struct HalfEdge {
   Index vertex = kNone;  // where it starts
   Index twin = kNone;
@@ -75,7 +83,8 @@ struct HalfEdge {
 struct alignas(64) Triangle {
   std::array<HalfEdge, 3> sides;
   std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
-  std::uint32_t levels = 0;                // meshes of finer levels that have it
+  std::uint16_t levels = 0;                // meshes of finer levels that have it
+  FaceBound bound = 0;  // of its distance from the extracted surface, where such distances are bounded
 };
 
 static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);

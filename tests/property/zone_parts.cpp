@@ -2,6 +2,7 @@
 // Threads: ZoneParts.GoFromAnyHolderToAnyOther
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -104,12 +105,13 @@ class Stretch {
   SurfacePiece piece_;
 };
 
-// The part that a zone holds at a layer when nothing has left it: output would number the vertices by slabs.
-std::string part_at(const Holder& holder, std::int64_t end, const std::string& path) {
+// Shows take() a simplifier that holds all of a surface up to a layer: output would number the vertices by slabs.
+template <class Take>
+void hold_up_to(std::int64_t end, const SurfaceCase& surface, const Holder& holder, const Take& take) {
   const Executor executor(holder.threads);
-  const auto source = generate_volume(kSurface.volume);
-  Simplifier simplifier({kSurface.zone(), holder.schedule}, executor, nullptr);
-  MarchingCubes extractor(source->info(), ExtractOptions{kSurface.rule()}, executor);
+  const auto source = generate_volume(surface.volume);
+  Simplifier simplifier({surface.zone(), holder.schedule}, executor, nullptr);
+  MarchingCubes extractor(source->info(), ExtractOptions{surface.rule()}, executor);
   SliceWindow window(*source);
   SurfacePiece piece;
   for (std::int64_t layer = -1; layer < end; layer = extractor.slices_for(1).first) {
@@ -119,9 +121,15 @@ std::string part_at(const Holder& holder, std::int64_t end, const std::string& p
     simplifier.append(piece);
     simplifier.decide();
   }
-  StateWriter writer(path);
-  simplifier.zone().serialize(writer);
-  writer.commit();
+  take(simplifier);
+}
+
+std::string part_at(const Holder& holder, std::int64_t end, const std::string& path) {
+  hold_up_to(end, kSurface, holder, [&](Simplifier& simplifier) {
+    StateWriter writer(path);
+    simplifier.zone().serialize(writer);
+    writer.commit();
+  });
   return files::read_bytes(path);
 }
 
@@ -134,6 +142,39 @@ TEST(ZoneParts, AreTheSameForAnySlabThreadsAndSchedule) {
     EXPECT_EQ(part_at(holder, 14, folder / "part"), expected) << holder.slab;
   }
   EXPECT_NE(part_at(kHolders[0], 15, folder / "part"), expected);
+}
+
+// Where distances are bounded, each face has a bound.
+TEST(ZoneParts, HaveTheSameBoundsForAnySlabThreadsAndSchedule) {
+  for (const double distance : {0.2, 0.6}) {
+    SurfaceCase surface = kSurface;
+    surface.max_distance = distance;
+    std::vector<std::byte> expected;
+    for (const Holder& holder : kHolders) {
+      if (holder.on_device) continue;
+      hold_up_to(14, surface, holder, [&](Simplifier& simplifier) {
+        const auto bounds = [](const auto& triangles) {
+          std::map<FaceBound, int> counts;
+          for (const Triangle& t : triangles) counts[t.bound] += t.sides[0].vertex == kNone ? 0 : 1;
+          return counts;
+        };
+        const std::map<FaceBound, int> held = bounds(simplifier.zone().triangles);
+        EXPECT_GT(held.size(), 100U);
+        ZonePart part = simplifier.take_part([](std::uint64_t, std::uint64_t) { return false; });
+        StateWriter writer;
+        write_part(writer, part);
+        const std::vector<std::byte> bytes = writer.take();
+        if (expected.empty()) expected = bytes;
+        EXPECT_TRUE(bytes == expected) << holder.slab;
+        StateReader reader(bytes, "a part", "part");
+        const PartShape shape{
+            .retire = surface.zone().retire, .end_id = ~std::uint64_t{0}, .farthest = {99, 99, 99}, .ends = {{}}};
+        for (const auto& [bound, count] : bounds(read_cut_part(reader, shape).triangles)) {
+          EXPECT_EQ(count, held.at(bound)) << bound;
+        }
+      });
+    }
+  }
 }
 
 TEST(ZoneParts, GoFromAnyHolderToAnyOther) {

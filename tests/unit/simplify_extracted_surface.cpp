@@ -27,11 +27,16 @@ class Random {
   std::mt19937 engine_;
 };
 
-Array<Corners> array_of(const std::vector<Corners>& triangles) {
-  Array<Corners> array;
-  array.resize(triangles.size());
-  std::copy(triangles.begin(), triangles.end(), array.begin());
-  return array;
+void append(ExtractedSurface& surface, std::span<const Corners> triangles, double complete_below) {
+  Array<Vec3> positions;
+  positions.resize(3 * triangles.size());
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (const Corners& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(3 * corners.size());
+    for (std::uint32_t c = 0; c < 3; ++c) positions[first + c] = {triangle[c][0], triangle[c][1], triangle[c][2]};
+    corners.push_back({first, first + 1, first + 2});
+  }
+  surface.append(std::move(positions), corners, complete_below);
 }
 
 // A rough sheet over [0, 6] x [0, 6], with some degenerate triangles and a large one.
@@ -91,8 +96,8 @@ double farthest(const std::vector<Corners>& surface, const Corners& t) {
 
 Vec3 vec(const Vector& p) { return {p[0], p[1], p[2]}; }
 
-Reach reach(const ExtractedSurface& surface, const Corners& t) {
-  return surface.reach(vec(t[0]), vec(t[1]), vec(t[2]));
+Reach reach(const ExtractedSurface& surface, const Corners& t, double most) {
+  return surface.reach(vec(t[0]), vec(t[1]), vec(t[2]), most);
 }
 
 Corners random_triangle(Random& random) {
@@ -106,14 +111,14 @@ TEST(ExtractedSurface, SaysWhatDistancesSay) {
     if (testing::kSanitized && most != 0.4) continue;
     const std::vector<Corners> triangles = sheet(1);
     ExtractedSurface surface(most, {0.5, 0.5, 0.7}, largest_of(triangles));
-    surface.append(array_of(triangles), kAll);
+    append(surface, triangles, kAll);
     Random random(2);
     int within = 0;
     int beyond = 0;
     for (int trial = 0; trial < 400; ++trial) {
       const Corners triangle = random_triangle(random);
       const double distance = farthest(triangles, triangle);
-      const Reach found = reach(surface, triangle);
+      const Reach found = reach(surface, triangle, most);
       ASSERT_NE(found, Reach::kUnknown);
       if (found == Reach::kWithin) {
         ++within;
@@ -141,8 +146,10 @@ TEST(ExtractedSurface, IsExactToASixteenth) {
     }
   }
   ExtractedSurface surface(1, {1, 1, 1}, {1, 1, 0});
-  surface.append(array_of(plane), kAll);
-  const auto at = [&](double z) { return reach(surface, {Vector{0.2, 0.3, z}, Vector{7.1, 0.4, z}, Vector{3, 8, z}}); };
+  append(surface, plane, kAll);
+  const auto at = [&](double z) {
+    return reach(surface, {Vector{0.2, 0.3, z}, Vector{7.1, 0.4, z}, Vector{3, 8, z}}, 1);
+  };
   EXPECT_EQ(at(0), Reach::kWithin);
   EXPECT_EQ(at(0.93), Reach::kWithin);
   EXPECT_EQ(at(-0.93), Reach::kWithin);
@@ -161,7 +168,7 @@ TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
   });
   for (const double most : {0.2, 0.8}) {
     ExtractedSurface whole(most, {0.5, 0.5, 0.5}, largest_of(triangles));
-    whole.append(array_of(triangles), kAll);
+    append(whole, triangles, kAll);
     ExtractedSurface pieces(most, {0.5, 0.5, 0.5}, largest_of(triangles));
     int unknown = 0;
     for (std::size_t begin = 0; begin < triangles.size(); begin += 40) {
@@ -170,17 +177,15 @@ TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
       for (std::size_t n = end; n < triangles.size(); ++n) {
         for (const Vector& p : triangles[n]) next = std::min(next, p[2]);
       }
-      pieces.append(array_of({triangles.begin() + static_cast<std::ptrdiff_t>(begin),
-                              triangles.begin() + static_cast<std::ptrdiff_t>(end)}),
-                    next);
+      append(pieces, std::span(triangles).subspan(begin, end - begin), next);
       Random random(4);
       for (int trial = 0; trial < 300; ++trial) {
         const Corners triangle = random_triangle(random);
-        const Reach found = reach(pieces, triangle);
+        const Reach found = reach(pieces, triangle, most);
         if (found == Reach::kUnknown) {
           ++unknown;
         } else {
-          EXPECT_EQ(found, reach(whole, triangle)) << trial;
+          EXPECT_EQ(found, reach(whole, triangle, most)) << trial;
         }
       }
     }
@@ -200,12 +205,12 @@ TEST(ExtractedSurface, SaysWhatDistancesSayAmongNeedles) {
   }
   constexpr double kMost = 0.3;
   ExtractedSurface surface(kMost, {0.2, 0.4, 0.3}, largest_of(needles));
-  surface.append(array_of(needles), kAll);
+  append(surface, needles, kAll);
   int within = 0;
   for (int trial = 0; trial < (testing::kSanitized ? 40 : 400); ++trial) {
     const Corners triangle = random_triangle(random);
     const double distance = farthest(needles, triangle);
-    if (reach(surface, triangle) == Reach::kWithin) {
+    if (reach(surface, triangle, kMost) == Reach::kWithin) {
       ++within;
       EXPECT_LE(distance, kMost * (1 + 1e-9)) << "trial " << trial;
     } else {
@@ -217,7 +222,7 @@ TEST(ExtractedSurface, SaysWhatDistancesSayAmongNeedles) {
     const Vector side = t[1] + -1.0 * t[0];
     return measure::dot(side, side);
   });
-  EXPECT_EQ(reach(surface, longest), Reach::kWithin) << "a triangle is near itself";
+  EXPECT_EQ(reach(surface, longest, kMost), Reach::kWithin) << "a triangle is near itself";
 }
 
 // A strip of 4,000 needles side by side, 100 long and 0.02 wide, that lies oblique to all axes; `turn`: of the strip in
@@ -244,12 +249,12 @@ std::vector<Corners> strip(double turn, double lift) {
 // Triangles that a face between a needle and the next but one is compared with, on average.
 double looks_per_face(const std::vector<Corners>& needles, double most) {
   ExtractedSurface surface(most, {2, 2, 2}, largest_of(needles));
-  surface.append(array_of(needles), kAll);
+  append(surface, needles, kAll);
   std::uint64_t looks = 0;
   int faces = 0;
   for (std::size_t n = 0; n + 2 < needles.size(); n += 16, ++faces) {
     const Corners& from = needles[n];
-    EXPECT_EQ(surface.reach(vec(from[0]), vec(from[1]), vec(needles[n + 2][2]), &looks), Reach::kWithin);
+    EXPECT_EQ(surface.reach(vec(from[0]), vec(from[1]), vec(needles[n + 2][2]), most, &looks), Reach::kWithin);
   }
   return static_cast<double>(looks) / faces;
 }
@@ -271,13 +276,13 @@ TEST(ExtractedSurface, ComparesFacesWithFewOfManyNeedles) {
 TEST(ExtractedSurface, PiecesMayOverlap) {
   const std::vector<Corners> triangles = sheet(9);
   ExtractedSurface whole(0.4, {0.5, 0.5, 0.5}, largest_of(triangles));
-  whole.append(array_of(triangles), kAll);
+  append(whole, triangles, kAll);
   ExtractedSurface pieces(0.4, {0.5, 0.5, 0.5}, largest_of(triangles));
-  for (std::size_t n = triangles.size(); n > 0; --n) pieces.append(array_of({triangles[n - 1]}), kAll);
+  for (std::size_t n = triangles.size(); n > 0; --n) append(pieces, std::span(triangles).subspan(n - 1, 1), kAll);
   Random random(10);
   for (int trial = 0; trial < 300; ++trial) {
     const Corners triangle = random_triangle(random);
-    EXPECT_EQ(reach(pieces, triangle), reach(whole, triangle)) << trial;
+    EXPECT_EQ(reach(pieces, triangle, 0.4), reach(whole, triangle, 0.4)) << trial;
   }
 }
 
@@ -291,8 +296,8 @@ TEST(ExtractedSurface, ForgetsOnlyWhatNobodyAsksAbout) {
     for (Corners& t : layer) {
       for (Vector& p : t) p[2] += k - 2.5;
     }
-    all.append(array_of(layer), k + 1);
-    recent.append(array_of(layer), k + 1);
+    append(all, layer, k + 1);
+    append(recent, layer, k + 1);
   }
   const std::uint64_t before = recent.bytes();
   recent.forget_below(10);
@@ -303,7 +308,7 @@ TEST(ExtractedSurface, ForgetsOnlyWhatNobodyAsksAbout) {
     double low = kAll;
     for (const Vector& p : triangle) low = std::min(low, p[2]);
     for (Vector& p : triangle) p[2] += 10 - low;
-    EXPECT_EQ(reach(recent, triangle), reach(all, triangle));
+    EXPECT_EQ(reach(recent, triangle, kMost), reach(all, triangle, kMost));
   }
 }
 

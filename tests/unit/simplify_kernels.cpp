@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "measure/triangle_tree.hpp"
 #include "simplify/kernels.hpp"
 
 namespace isoweave {
@@ -113,6 +114,54 @@ TEST_P(EachSet, OneTurnedFaceIsSeenWhereverItIs) {
       EXPECT_TRUE(kernels().keeps_sides(without, count, beyond)) << n << " of " << count;
     }
   }
+}
+
+// Against doubles one after the other: the bits are those of the rules.
+TEST_P(EachSet, FindsTheHighestCrossing) {
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vec3 to = vector();
+    SeenSides sides;
+    double most = 0;
+    for (int n = 0; n < 1 + trial % 27; ++n) {
+      const Vec3 from = n == 3 ? Vec3{} : vector();
+      const Vec3 end = n == 5 ? to : vector();
+      const double bound = std::abs(real());
+      sides.add(from, end, bound);
+      const Vec3 along = end - from;
+      const double turn = to.x * along.y - to.y * along.x;
+      const double s = (from.x * along.y - from.y * along.x) / turn;
+      const double t = (from.x * to.y - from.y * to.x) / turn;
+      if (!(s > -1e-9 && s < 1 + 1e-9 && t > -1e-9 && t < 1 + 1e-9)) continue;
+      most = std::max(most, std::abs(s * to.z - (from.z + t * along.z)) + bound);
+    }
+    sides.pad();
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(kernels().height_of_crossings(to, sides)),
+              std::bit_cast<std::uint64_t>(most));
+  }
+}
+
+TEST_P(EachSet, FindsThePointsNearATriangle) {
+  int near = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Vec3 corners[3] = {vector(), vector(), vector()};
+    if (trial % 50 == 0) corners[2] = 0.5 * (corners[0] + corners[1]);
+    if (trial % 50 == 1) corners[2] = corners[1] = corners[0];
+    FourPoints points;
+    unsigned expected = 0;
+    for (std::size_t n = 0; n < 4; ++n) {
+      const Vec3 p = vector();
+      points.x[n] = p.x;
+      points.y[n] = p.y;
+      points.z[n] = p.z;
+      const auto vector_at = [](const Vec3& v) { return measure::Vector{v.x, v.y, v.z}; };
+      const double squared = measure::squared_distance(
+          vector_at(p), {vector_at(corners[0]), vector_at(corners[1]), vector_at(corners[2])});
+      if (squared <= 0.49) expected |= 1U << n;
+    }
+    EXPECT_EQ(kernels().points_within(0.49, points, {&corners[0], &corners[1], &corners[2]}), expected) << trial;
+    near += static_cast<int>(std::popcount(expected));
+  }
+  EXPECT_GT(near, 500);
 }
 
 TEST_P(EachSet, CountsCommonNumbers) {
