@@ -40,13 +40,13 @@ class ExtractedSurface {
   // Forgets triangles that are not needed for questions about the layer of z and above.
   void forget_below(double z);
 
-  // Whether all of a triangle lies within a distance, which must be no larger than the one that was named first. The
-  // triangle is cut at its longest side until the corners of each part are within the distance of one and the same
-  // triangle of the surface. The points within the distance of a triangle form a convex set, so all of the part is
-  // within it then. Parts smaller than a sixteenth of the distance are not cut again. So a triangle within 15/16 of the
-  // distance is always found to be within it, unless that takes more parts than kMostParts. A triangle beyond the
-  // distance never is. May be called by several threads at the same time. looks: unless null, counts the comparisons of
-  // a part with a triangle.
+  // Whether all of a triangle lies within a distance, which must be no larger, but for rounding, than the one that was
+  // named first. The triangle is cut at its longest side until the corners of each part are within the distance of one
+  // and the same triangle of the surface. The points within the distance of a triangle form a convex set, so all of the
+  // part is within it then. Parts smaller than a sixteenth of the distance are not cut again. So a triangle within
+  // 15/16 of the distance is always found to be within it, unless that takes more parts than kMostParts. A triangle
+  // beyond the distance never is. May be called by several threads at the same time. looks: unless null, counts the
+  // comparisons of a part with a triangle.
   Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks = nullptr) const;
 
   std::uint64_t bytes() const;

@@ -34,11 +34,12 @@ bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const 
 }
 
 // Whether some point of a face of which nothing is known is beyond the distance: a few are looked at, by which most
-// faces that are refused are found out.
+// faces that are refused are found out. They are farther beyond than rounding goes, so a look at the whole face would
+// say the same.
 bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place,
                        const FaceBounds& bounds) {
   const auto is_beyond = [&](const Vec3& p) {
-    return zone.extracted->reach(p, p, p, zone.options.most_distance) == Reach::kBeyond;
+    return zone.extracted->reach(p, p, p, (1 + 1e-9) * zone.options.most_distance) == Reach::kBeyond;
   };
   bool beyond = false;
   bool is_first = true;

@@ -1,12 +1,8 @@
 // A guaranteed distance holds, and changes nothing about who decides what: every schedule, slab and number of threads
 // gives the mesh of the reference queue.
-// Threads: none, schedules.cpp has the same loops
+// Threads: Volumes/Distances.EverySchedule*/noiseClosed
 #include <gtest/gtest.h>
 
-#include <map>
-#include <set>
-
-#include "conformance/plain_scenes.hpp"
 #include "oracle.hpp"
 
 namespace isoweave::testing {
@@ -131,34 +127,6 @@ TEST(DistancesBeside, LevelsAndNumbersOfTrianglesHold) {
   queue.schedule = Schedule::kQueue;
   const std::uint64_t counted = digest_of(surface, options, queue);
   EXPECT_EQ(digest_text(digest_of(surface, options, {.slab = 3})), digest_text(counted));
-}
-
-// Of the whole surface at once, before any of it is handed over.
-TEST(DistancesBeside, BoundsAreThoseOfTheRulesWrittenASecondTime) {
-  for (const bool closed : {true, false}) {
-    for (const char* kind : {"noise", "gyroid", "box"}) {
-      SurfaceCase surface = make_case(kind, closed);
-      surface.volume.dims = {11, 9, 12};
-      surface.max_distance = 0.5;
-      plain_scenes::Scene scene = plain_scenes::generated(surface.volume);
-      scene.options.closed = closed;
-      scene.options.error.value = surface.error;
-      scene.options.max_distance = Length::voxels(surface.max_distance);
-      const plain::Outcome plain = plain_scenes::plain_run(scene, plain_scenes::extracted_surface(scene));
-      const Executor executor(1);
-      Simplifier simplifier({surface.zone(), Schedule::kLocal}, executor, nullptr);
-      std::map<std::set<std::uint64_t>, unsigned> bounds;
-      sweep(surface, kWholeVolume, executor, simplifier, [&] {
-        simplifier.decide();
-        const Zone& zone = simplifier.zone();
-        for (const Triangle& triangle : zone.triangles) {
-          const auto id = [&](std::size_t c) { return zone.vertices[triangle.sides[c].vertex].id; };
-          if (triangle.sides[0].vertex != kNone) bounds[{id(0), id(1), id(2)}] = triangle.bound;
-        }
-      });
-      EXPECT_TRUE(bounds == plain.bounds) << kind << (closed ? " closed" : " open");
-    }
-  }
 }
 
 // A face of a large flat has more parts than a look takes: its bound has to be known.
