@@ -45,7 +45,7 @@ void Overlay::list_old_faces(const ZoneView& zone, const Star& u, const Star& v)
     const double bound = zone.triangles[side >> 2].bound;
     old_faces_[old_count_++] = {a, b, c, bound};
     for (const std::size_t corner : {a, b, c}) {
-      if (corner >= at_u()) most_[corner - at_u()] = std::max(most_[corner - at_u()], bound);
+      if (corner >= at_u()) end_bounds_[corner - at_u()] = std::max(end_bounds_[corner - at_u()], bound);
     }
   };
   for (std::size_t n = 0; n < u_faces_; ++n) {
@@ -169,7 +169,7 @@ bool Overlay::see_old_vertex(std::size_t old, std::size_t face, double& most) co
   const double of_b = turn(a, p);
   const Weights weights{areas_[face] - of_a - of_b, of_a, of_b};
   if (!weights.are_inside()) return false;
-  most = std::max(most, std::abs(p.z - weights.height({}, a, b)) + most_[old - at_u()]);
+  most = std::max(most, std::abs(p.z - weights.height({}, a, b)) + end_bounds_[old - at_u()]);
   return true;
 }
 

@@ -52,7 +52,7 @@ class Overlay {
   std::size_t u_faces_, v_faces_;
   std::size_t count_;                      // of the ring's vertices, and of the new faces
   std::array<Vec3, kRoom> places_, seen_;  // of the ring and of both ends; seen: two coordinates across, and the height
-  std::array<double, 2> most_{};           // bound of the old faces at each end
+  std::array<double, 2> end_bounds_{};     // the largest of the old faces at each end
   std::array<OldFace, kRoom> old_faces_;
   std::size_t old_count_ = 0;
   std::array<Vec3, kRoom> normals_;  // of the old faces and the new ones

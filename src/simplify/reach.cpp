@@ -28,7 +28,7 @@ bool stays_in_layers(const ZoneView& zone, const Star& u, const Star& v, const V
 
 // Bounds the faces by the overlay with those that they replace. Returns whether that is known to lie above them.
 bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, FaceBounds& bounds) {
-  if (!u.border && !v.border && u.faces >= 3 && v.faces >= 3 && Overlay(zone, u, v, place).bound(bounds)) return true;
+  if (!u.border && !v.border && Overlay(zone, u, v, place).bound(bounds)) return true;
   bounds.fill(kUnbounded);
   return false;
 }

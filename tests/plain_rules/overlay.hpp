@@ -13,7 +13,7 @@ namespace isoweave::plain {
 inline constexpr unsigned kNoBound = 65535;
 inline constexpr unsigned kHalfBound = 32768;
 
-// What two ends have around them, with places measured from where they are to merge.
+// The faces around the two ends of an edge that is to collapse. Places are measured from the merged vertex.
 struct Overlaid {
   struct Face {
     std::array<std::size_t, 3> corners;  // counter-clockwise from an end on
