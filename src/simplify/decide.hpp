@@ -8,6 +8,7 @@
 #include "isoweave/simplify_options.hpp"
 #include "lattice/value_rules.hpp"
 #include "parallel/atomics.hpp"
+#include "parallel/prefetch.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/reach.hpp"
 #include "simplify/simplify_totals.hpp"
@@ -109,6 +110,7 @@ class BasicDecider {
   ISOWEAVE_HD void merge_normals(Vec3 x);
   ISOWEAVE_HD void join_rings();
   ISOWEAVE_HD void merge_sides(Index h);
+  ISOWEAVE_HD void prefetch_beyond(std::size_t n) const;
   ISOWEAVE_HD void update_keys(CostBits collapse_cost);
 
   const ZoneView& zone_;
@@ -430,6 +432,14 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::join_rings() {
   start = merged_.out[0];
 }
 
+// Fetches the triangle beyond the n-th face of the merged star, which a walk around a neighbour begins with.
+template <class Arithmetic>
+ISOWEAVE_HD void BasicDecider<Arithmetic>::prefetch_beyond(std::size_t n) const {
+  if (n == static_cast<std::size_t>(merged_.faces)) return;
+  const Index beyond = zone_.twin(next(merged_.out[n]));
+  prefetch(&zone_.half(exists(beyond) ? beyond : 0));
+}
+
 // Gives keys to the edges around the merged vertex. Keys never decrease: an edge keeps at least the smaller key of the
 // edges that it replaces, and comes after the collapse that made it.
 template <class Arithmetic>
@@ -444,6 +454,7 @@ ISOWEAVE_HD void BasicDecider<Arithmetic>::update_keys(CostBits collapse_cost) {
     const Key before = zone_.key(h);
     const Vertex* const both[2] = {&merged, &zone_.vertices[star.neighbour[n]]};
     const std::size_t first = both[1]->id < merged.id;
+    prefetch_beyond(n);
     changed_[count] = h;
     changed_end_[count] = star.neighbour[n];
     before_[count] = before;

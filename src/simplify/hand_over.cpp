@@ -6,6 +6,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kHandOverBlock = 4096;
+constexpr std::uint32_t kNew = 2;  // instead of a place: a vertex of the piece that was not handed over before
 
 std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(count); }
 
@@ -14,15 +15,9 @@ std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(
 void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece) {
   list_vertices(triangles);
   fill_vertices(first, piece);
-  fill_triangles(triangles, piece);
   piece.locked.resize(0);
   if (zone_.locked > 0) mark_locked(piece);
-  open_edges_ = 0;
-  executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t n) {
-    const Index t = triangles[static_cast<std::size_t>(n)];
-    is_last() ? close_sides(t) : keep(t);
-  });
-  piece.open_edges = open_edges_;
+  fill_triangles(triangles, piece);
 }
 
 // Lists the vertices that triangles name, and final ones where they go early, in memory order, and numbers them.
@@ -39,18 +34,12 @@ void HandOver::list_vertices(const std::vector<Index>& triangles) {
       if (is_final(v) && number(v) == kNotHandedOver && exists(zone_.vertices[v].half_edge)) place_[v] = 1;
     });
   }
-  const auto list = [&](bool known, std::uint32_t first, std::vector<Index>& vertices) {
-    collect(
-        executor_, signed_count(place_.size()), kHandOverBlock,
-        [&](std::int64_t begin, std::int64_t end, std::vector<Index>& out) {
-          for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
-            if (place_[v] != 0 && (number(v) != kNotHandedOver) == known) out.push_back(v);
-          }
-        },
-        vertices);
-    return first + static_cast<std::uint32_t>(vertices.size());
-  };
-  list(false, list(true, 0, known_), new_);
+  list(known_, [&](Index v) {
+    const bool known = number(v) != kNotHandedOver;
+    if (!known) place_[v] = kNew;
+    return known;
+  });
+  list(new_, [&](Index v) { return place_[v] == kNew; });
   const auto first_new = static_cast<std::uint32_t>(known_.size());
   executor_.for_each(signed_count(known_.size()), kHandOverBlock, [&](std::int64_t n) {
     place_[known_[static_cast<std::size_t>(n)]] = static_cast<std::uint32_t>(n);
@@ -58,6 +47,19 @@ void HandOver::list_vertices(const std::vector<Index>& triangles) {
   executor_.for_each(signed_count(new_.size()), kHandOverBlock, [&](std::int64_t n) {
     place_[new_[static_cast<std::size_t>(n)]] = first_new + static_cast<std::uint32_t>(n);
   });
+}
+
+// Lists the vertices of the piece that select() picks, in memory order.
+template <class Select>
+void HandOver::list(std::vector<Index>& vertices, const Select& select) {
+  collect(
+      executor_, signed_count(place_.size()), kHandOverBlock,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Index>& out) {
+        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+          if (place_[v] != 0 && select(v)) out.push_back(v);
+        }
+      },
+      vertices);
 }
 
 void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
@@ -81,13 +83,17 @@ void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
   });
 }
 
-void HandOver::fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const {
+// Fills in the triangles, and takes them out of the zone or keeps them in the same pass: what it reads is far apart.
+void HandOver::fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) {
+  open_edges_ = 0;
   piece.triangles.resize(triangles.size());
   executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
-    const Triangle& triangle = zone_.triangles[triangles[n]];
-    for (std::size_t c = 0; c < 3; ++c) piece.triangles[n][c] = place_[triangle.sides[c].vertex];
+    const Index t = triangles[n];
+    for (std::size_t c = 0; c < 3; ++c) piece.triangles[n][c] = place_[zone_.triangles[t].sides[c].vertex];
+    is_last() ? take_out(t) : keep(t);
   });
+  piece.open_edges = open_edges_;
 }
 
 void HandOver::mark_locked(FinalPiece& piece) const {
@@ -113,14 +119,15 @@ void HandOver::keep(Index triangle) {
   }
 }
 
-// Tells the triangles beside this one that it is gone. Neighbours may leave at the same time.
-void HandOver::close_sides(Index triangle) {
+// Removes a triangle, and tells those beside it. Neighbours may leave at the same time.
+void HandOver::take_out(Index triangle) {
   auto& sides = zone_.triangles[triangle].sides;
   for (std::size_t c = 0; c < 3; ++c) {
     const Index twin = std::atomic_ref(sides[c].twin).load(std::memory_order_relaxed);
     if (twin == kNone) count_open(sides[c], sides[(c + 1) % 3]);
     if (exists(twin)) std::atomic_ref(zone_.half(twin).twin).store(kWritten, std::memory_order_relaxed);
   }
+  zone_.remove_triangle(triangle);
 }
 
 void HandOver::change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) {

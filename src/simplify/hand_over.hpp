@@ -19,7 +19,7 @@ class HandOver {
       : zone_(zone), level_(level), early_(early), executor_(executor) {}
 
   // Fills in triangles of the level, which have become final there, with their vertices in memory order. Those of the
-  // last mesh are cut off from the triangles beside them; the others stay for the levels behind.
+  // last mesh are removed from the zone; the others stay for the levels behind.
   void fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece);
 
   // Lets the receiver replace the labels in the receipts that are held.
@@ -35,12 +35,14 @@ class HandOver {
   }
 
   void list_vertices(const std::vector<Index>& triangles);
+  template <class Select>
+  void list(std::vector<Index>& vertices, const Select& select);
   void fill_vertices(const Receipt& first, FinalPiece& piece) const;
-  void fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) const;
+  void fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece);
   void mark_locked(FinalPiece& piece) const;
   void count_open(const HalfEdge& side, const HalfEdge& next_side);
   void keep(Index triangle);
-  void close_sides(Index triangle);
+  void take_out(Index triangle);
 
   Zone& zone_;
   const std::size_t level_;

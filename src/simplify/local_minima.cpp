@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "parallel/collect.hpp"
+#include "parallel/prefetch.hpp"
 #include "simplify/columns.hpp"
 #include "simplify/turns.hpp"
 #include "simplify/work_pool.hpp"
@@ -15,9 +16,6 @@ namespace {
 
 constexpr std::size_t kPlaces = Columns::kCount;
 constexpr std::uint32_t kNowhere = 2 * kPlaces;
-
-// Fetches a line of memory before it is needed.
-void fetch(const void* line) { __builtin_prefetch(line, 1, 2); }
 
 }  // namespace
 
@@ -108,6 +106,19 @@ class LocalMinima::Worker {
     held_.clear();
   }
 
+  // Fetches what a decision reads of the neighbours.
+  void prefetch_neighbours(const Star& star) const {
+    for (std::size_t n = 0; n < star.count(); ++n) prefetch(&zone_.vertices[star.neighbour[n]]);
+  }
+
+  // Puts the pair of v on the stack, and fetches what a look at it begins with.
+  void push(Index v) {
+    const Index edge = zone_.turns[v].edge;
+    if (exists(edge)) prefetch(&zone_.triangles[edge >> 2]);
+    prefetch(&zone_.vertices[v]);
+    todo_.push_back(v);
+  }
+
   std::atomic_ref<Index> waits_for(Index v) { return std::atomic_ref<Index>(zone_.turns[v].waits_for); }
 
   // If v is an end of a pair: decides its edge where that is a local minimum, else lets the pair wait for a vertex
@@ -124,6 +135,7 @@ class LocalMinima::Worker {
     Index before = v;
     decider_.look_at(edge, [&](const Star& star) {
       before = hold_for(star, v);
+      if (before == v) prefetch_neighbours(star);
       return before == v;
     });
     if (before == kNone) return false;
@@ -204,7 +216,7 @@ class LocalMinima::Worker {
         kept = w;
       } else {
         waits_for(w).store(kNone, std::memory_order_release);
-        todo_.push_back(w);
+        push(w);
       }
       w = after;
     }
@@ -269,7 +281,7 @@ class LocalMinima::Worker {
     if (!has_turn(zone_, v)) return;
     const Index other = other_end(zone_, zone_.turns[v].edge, v);
     if (std::atomic_ref(zone_.turn_keys[other]).load(std::memory_order_seq_cst) == zone_.turn_keys[v]) {
-      todo_.push_back(v);
+      push(v);
     }
   }
 
@@ -369,14 +381,12 @@ void LocalMinima::share_places(std::span<Stretch> stretches) const {
   }
 }
 
-// Fetches the memory around a vertex. A walk around a vertex would wait for one line of memory after the other.
+// Fetches the memory around a vertex.
 void LocalMinima::fetch_around(std::uint32_t n) const {
-  const auto* const vertex = reinterpret_cast<const std::byte*>(&zone_.vertices[awake(n)]);
-  fetch(vertex);
-  fetch(vertex + sizeof(Vertex) / 2);
-  fetch(&zone_.turns[awake(n)]);
-  fetch(&zone_.triangles[triangle_[n]]);
-  fetch(&zone_.triangles[triangle_[n]] + 1);
+  prefetch(&zone_.vertices[awake(n)]);
+  prefetch(&zone_.turns[awake(n)]);
+  prefetch(zone_.triangles.data() + triangle_[n]);
+  prefetch(zone_.triangles.data() + triangle_[n] + 1);
 }
 
 // Serves the pairs of a column.

@@ -6,6 +6,7 @@
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
 #include "simplify/hand_over.hpp"
+#include "simplify/inspection.hpp"
 #include "simplify/local_minima.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/rounds.hpp"
@@ -38,7 +39,7 @@ class Simplifier::Source final : public FinalSource {
   void take_final(const Receipt& first, FinalPiece& piece) override {
     const std::vector<Index> triangles = simplifier_.final_triangles(level_, simplifier_.limit_of(level_));
     hand_over_.fill(triangles, first, piece);
-    if (simplifier_.is_last(level_)) simplifier_.drop(triangles);
+    if (simplifier_.is_last(level_)) simplifier_.note_dropped(triangles.size());
   }
   std::size_t held_vertices() const override { return simplifier_.zone_.vertices.size(); }
   void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) override {
@@ -97,7 +98,9 @@ ZonePart Simplifier::take_settled(CostHistogram& least) {
     least.add(known ? least_cost(zone_, t) : zone_.limit);
   }
   ZonePart part = zone_.copy_settled(triangles);
-  drop(triangles);
+  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kSimplifierBlock,
+                     [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });
+  note_dropped(triangles.size());
   return part;
 }
 
@@ -122,7 +125,7 @@ std::vector<Index> Simplifier::final_triangles(std::size_t level, CostBits withi
         }
       },
       triangles);
-  if (inspects_) defects_[level] += inspect(vertices, corners);
+  if (inspects_) defects_[level] += inspect_fans(zone_, vertices, corners, executor_);
   return triangles;
 }
 
@@ -150,11 +153,9 @@ bool Simplifier::make_final(Index v, std::size_t level) {
   return !std::exchange(zone_.levels[level][v].final, true);
 }
 
-// Removes triangles that have been handed over.
-void Simplifier::drop(const std::vector<Index>& triangles) {
-  executor_.for_each(static_cast<std::int64_t>(triangles.size()), kSimplifierBlock,
-                     [&](std::int64_t n) { zone_.remove_triangle(triangles[static_cast<std::size_t>(n)]); });
-  dropped_ += triangles.size();
+// Counts triangles that have been removed from the zone, as they were handed over.
+void Simplifier::note_dropped(std::size_t triangles) {
+  dropped_ += triangles;
   close_gaps();
 }
 
@@ -186,41 +187,6 @@ void Simplifier::serialize(StateReader& state, const PartShape& shape) {
   for (SurfaceDefects& defects : defects_) state.value(defects);
   zone_.serialize(state, shape);
   state.require(saved.held() == zone_.triangle_count(), "as many triangles as are counted");
-}
-
-// Inspects vertices. The faces that name a vertex must be the one fan that a walk around it finds, and its neighbours
-// must differ.
-SurfaceDefects Simplifier::inspect(const std::vector<Index>& vertices,
-                                   const std::vector<std::uint32_t>& corners) const {
-  std::atomic<std::uint64_t> bad_vertices{0};
-  std::atomic<std::uint64_t> bad_edges{0};
-  constexpr std::int64_t kFew = 256;  // walks take long
-  executor_.for_blocks(static_cast<std::int64_t>(vertices.size()), kFew, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Index> neighbours;
-    for (std::int64_t n = begin; n < end; ++n) {
-      const Index v = vertices[static_cast<std::size_t>(n)];
-      if (list_neighbours(v, corners[v], neighbours) != corners[v]) ++bad_vertices;
-      std::sort(neighbours.begin(), neighbours.end());
-      for (std::size_t m = 1; m < neighbours.size(); ++m) {
-        if (neighbours[m] == neighbours[m - 1] && v < neighbours[m]) ++bad_edges;
-      }
-    }
-  });
-  return {bad_edges, bad_vertices};
-}
-
-// Walks around v over at most `most` + 1 faces, and returns their number.
-std::uint32_t Simplifier::list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const {
-  neighbours.clear();
-  const Index first = zone_.vertices[v].half_edge;
-  std::uint32_t faces = 0;
-  for (Index h = first; exists(h); h = zone_.rotate(h)) {
-    neighbours.push_back(zone_.destination(h));
-    const Index back = zone_.rotate(h);
-    if (!exists(back)) neighbours.push_back(zone_.origin(previous(h)));
-    if (++faces > most || back == first) break;
-  }
-  return faces;
 }
 
 }  // namespace isoweave

@@ -113,11 +113,9 @@ class Simplifier {
 
   CostBits limit_of(std::size_t level) const { return is_last(level) ? zone_.options.retire : finer_[level]; }
   std::vector<Index> final_triangles(std::size_t level, CostBits within);
-  void drop(const std::vector<Index>& triangles);
+  void note_dropped(std::size_t triangles);
   std::vector<Index> name_final_vertices(std::size_t level, CostBits within);
   bool make_final(Index v, std::size_t level);
-  SurfaceDefects inspect(const std::vector<Index>& vertices, const std::vector<std::uint32_t>& corners) const;
-  std::uint32_t list_neighbours(Index v, std::uint32_t most, std::vector<Index>& neighbours) const;
 
   Zone zone_;
   const Executor& executor_;

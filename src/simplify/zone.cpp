@@ -9,6 +9,7 @@
 #include "isoweave/error.hpp"
 #include "parallel/collect.hpp"
 #include "parallel/compact.hpp"
+#include "parallel/prefetch.hpp"
 #include "parallel/touch.hpp"
 #include "simplify/kernels.hpp"
 #include "simplify/star.hpp"
@@ -18,6 +19,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kZoneBlock = 2048;
+constexpr Index kAhead = 12;  // triangles whose corners are fetched before their edges get keys
 
 }  // namespace
 
@@ -302,11 +304,16 @@ TriangleRange Zone::unsettled(std::size_t column) const {
           first_unsettled_ + static_cast<Index>(column_starts_[column + 1])};
 }
 
+void Zone::prefetch_corners(Index triangle) const {
+  for (const HalfEdge& side : triangles[triangle].sides) prefetch(&vertices[side.vertex]);
+}
+
 void Zone::settle_edges(TriangleRange range, std::vector<Index>& unkeyed) {
   EdgeBatch batch;
   for (Index t = range.begin; t < range.end; ++t) {
     triangles[t].levels = 0;
     triangles[t].bound = 0;
+    if (t + kAhead < range.end) prefetch_corners(t + kAhead);
     // The sides that represent their edges cannot be predicted. So every side is written, and the next one overwrites
     // it if it does not represent its edge.
     Index edges[3];

@@ -126,6 +126,7 @@ class Zone : public ZoneView {
   std::vector<std::array<Index, 3>> known_sides_of(const SurfacePiece& piece) const;
   void settle_vertices(std::span<const std::uint8_t> on_front, const Executor& executor);
   void initial_quadric(Star& star);
+  void prefetch_corners(Index triangle) const;
   bool settle_edge(Index h, EdgeBatch& batch);
   void give_keys(EdgeBatch& batch);
 

@@ -139,8 +139,9 @@ ISOWEAVE_HD inline void edge_costs(const ZoneView& zone, const Arithmetic& arith
 
 // The ends of an edge, the one with the smaller id first.
 ISOWEAVE_HD inline EdgeEnds ends_in_order(const ZoneView& zone, Index a, Index b) {
-  const bool a_first = zone.vertices[a].id < zone.vertices[b].id;
-  return {&zone.vertices[a_first ? a : b], &zone.vertices[a_first ? b : a]};
+  const Vertex* const both[2] = {&zone.vertices[a], &zone.vertices[b]};
+  const std::size_t first = both[1]->id < both[0]->id ? 1 : 0;  // cannot be predicted
+  return {both[first], both[1 - first]};
 }
 
 // Gives an edge its tie, and returns it.
