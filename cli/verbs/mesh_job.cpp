@@ -316,6 +316,12 @@ class MeshJob {
     forecast_ = checked.run;
     // A forecast does not know how many triangles dropped components have: then the run makes one that does.
     if (rule_.keeps_all()) control_.head_start = forecast_->head_start;
+    control_.count_first = control_.memory > 0 && control_.memory < forecast_->least_bytes_at_once;
+    if (control_.count_first && !quiet()) {
+      print_note(
+          fmt::format("--memory {}: too little for one sweep to a number of triangles, so a first one counts them",
+                      arguments_.memory));
+    }
     files_bytes_ = checked.files;
     check_finer(arguments_, options_, file_, control_, *forecast_);
   }

@@ -17,7 +17,10 @@ struct Forecast {
   std::uint64_t triangles = 0, vertices = 0;  // written
   std::uint64_t peak_bytes = 0;               // of the process
   std::uint64_t least_bytes = 0;              // the smallest RunControl::memory that should do
-  std::uint64_t surface_bytes = 0;            // the part of peak_bytes that the surface takes: its slab and zone
+  // Of a run to a number of triangles that can be made twice: the smallest RunControl::memory with which one sweep
+  // should do. With less the run has to count first (RunControl::count_first). 0: it is made in one sweep.
+  std::uint64_t least_bytes_at_once = 0;
+  std::uint64_t surface_bytes = 0;  // the part of peak_bytes that the surface takes: its slab and zone
   // Of a run to a number of triangles: an error that is expected to leave clearly more of them, in the unit of the
   // volume (RunControl::head_start). 0: none is known.
   double head_start = 0;

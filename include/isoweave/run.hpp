@@ -149,6 +149,12 @@ struct RunControl {
   // of its own, where the volume is large.
   // @throws std::invalid_argument from the run for one that is negative or not finite
   std::optional<double> head_start{};
+  // mesh_volume to a number of triangles only: sweeps the volume once to count how many triangles each error leaves,
+  // and once more for the mesh. That takes about twice the time, and the memory of a run to the error that leaves as
+  // many, where one sweep holds all triangles until the number is met. The result is the same. Where no head start is
+  // given, a run with a cap on memory counts first if the cap is too small for one sweep. Has no effect on a volume
+  // that can be read once only.
+  bool count_first = false;
   // Whether to find the digest, the components, non-manifold edges and vertices, and the range of the samples. Without
   // it these stay empty in the report.
   bool measure = true;

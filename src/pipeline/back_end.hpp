@@ -8,6 +8,7 @@
 #include "isoweave/report.hpp"
 #include "pipeline/piece_source.hpp"
 #include "pipeline/task.hpp"
+#include "simplify/count_target.hpp"
 
 namespace isoweave {
 
@@ -26,9 +27,9 @@ class BackEnd {
   // what has been written so far.
   virtual void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) = 0;
 
-  // After the last piece: nothing, or the head start of a run with the same result, where this run has handed nothing
-  // over and is of no use, as its own head start was too high (CountTarget).
-  virtual std::optional<CostBits> overshot() const { return std::nullopt; }
+  // After the last piece: nothing, or the head start of the run that has to take the place of this one, where this one
+  // has handed nothing over and is of no use: its own head start was too high, or was there to count (CountTarget).
+  virtual std::optional<HeadStart> overshot() const { return std::nullopt; }
 
   // The parts of the zone and the output that are in the memory of the process.
   virtual Held held() const = 0;

@@ -9,7 +9,7 @@ namespace isoweave {
 
 HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks,
                          const Executor& executor, const RunControl& control, const std::atomic<bool>* stop,
-                         CostBits head_start)
+                         const HeadStart& head_start)
     : task_(task),
       world_(world),
       executor_(executor),
@@ -40,18 +40,25 @@ void HostBackEnd::decide_to_number(bool complete) {
   if (!complete) {
     target_->thin_out();
     hands_out_ = target_->leaves_enough();
-    waiting_ = waiting_triangles();
+    waiting_ = hands_out_ ? 0 : waiting_triangles();
     return;
   }
   hands_out_ = !target_->has_overshot();
   if (hands_out_) return target_->finish();
-  overshot_ = target_->safe_head_start();
+  overshot_ = target_->next_head_start();
 }
 
 void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) {
   if (task_.needed) {
-    if (hands_out_) outputs_.back()->take(simplifier_.final_source(simplifier_.levels() - 1));
-    if (!hands_out_) simplifier_.close_gaps();
+    FinalSource& source = simplifier_.final_source(simplifier_.levels() - 1);
+    if (!hands_out_) {
+      simplifier_.close_gaps();
+    } else if (counts()) {
+      FinalPiece dropped;
+      source.take_final({0, 0}, dropped);
+    } else {
+      outputs_.back()->take(source);
+    }
     outputs_.back()->report(report);
     record.undecided_triangles = simplifier_.live_triangles();
   } else {
@@ -67,7 +74,7 @@ Held HostBackEnd::held() const {
 
 // The triangles at vertices all of whose edges wait for a higher limit; about, as a vertex stands for two triangles.
 std::uint64_t HostBackEnd::waiting_triangles() const {
-  if (target_->head_start() == kUnknownCost) return 0;
+  if (target_->head_start().cost == kUnknownCost) return 0;
   const Zone& zone = simplifier_.zone();
   const auto waits = [&](Key turn) { return cost_of(turn) > zone.limit; };
   return std::min(2 * static_cast<std::uint64_t>(std::ranges::count_if(zone.turn_keys, waits)),
@@ -106,10 +113,14 @@ void HostBackEnd::serialize(StateWriter& state) const {
   state.value(std::uint8_t{task_.needed});
   if (!task_.needed) return full_output_.serialize(state);
   for (const auto& output : outputs_) output->serialize(state);
+  if (target_) {
+    const HeadStart& head_start = target_->head_start();
+    state.value(head_start.cost);
+    state.value(head_start.met);
+    state.value(head_start.counts);
+  }
   simplifier_.serialize(state);
-  if (!target_) return;
-  state.value(target_->head_start());
-  simplifier_.serialize_removed(state);
+  if (target_) simplifier_.serialize_removed(state);
 }
 
 void HostBackEnd::serialize(StateReader& state) {
@@ -120,12 +131,17 @@ void HostBackEnd::serialize(StateReader& state) {
     output->serialize(state);
     shape.ends.push_back(output->end());
   }
+  if (target_) {
+    HeadStart head_start;
+    state.value(head_start.cost);
+    state.value(head_start.met);
+    state.value(head_start.counts);
+    target_->begin_with(head_start);
+    shape.retire = simplifier_.zone().options.retire;
+    if (counts()) shape.ends.back() = {kNotHandedOver, ~std::uint32_t{0}};  // nothing was written
+  }
   simplifier_.serialize(state, shape);
-  if (!target_) return;
-  CostBits head_start = kUnknownCost;
-  state.value(head_start);
-  simplifier_.serialize_removed(state);
-  target_->begin_with(head_start);
+  if (target_) simplifier_.serialize_removed(state);
 }
 
 }  // namespace isoweave

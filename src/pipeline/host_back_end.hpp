@@ -10,22 +10,20 @@
 #include "output/full_output.hpp"
 #include "pipeline/back_end.hpp"
 #include "pipeline/task.hpp"
-#include "simplify/count_target.hpp"
 
 namespace isoweave {
 
 class HostBackEnd final : public BackEnd {
  public:
   // Takes a sink for each level of the task. World, sinks and executor must outlive the back end. stop: unless null,
-  // simplify() throws Interrupted once it is set. Of the control, schedule, measure and observer count. head_start: a
-  // cost up to which edges may be decided at once in a run to a number of triangles; overshot() tells where it was too
-  // high.
+  // simplify() throws Interrupted once it is set. Of the control, schedule, measure and observer count. head_start: of
+  // a run to a number of triangles; overshot() tells where it was too high, or has counted.
   HostBackEnd(const SimplifyTask& task, const World& world, std::span<MeshSink* const> sinks, const Executor& executor,
-              const RunControl& control, const std::atomic<bool>* stop, CostBits head_start = kUnknownCost);
+              const RunControl& control, const std::atomic<bool>* stop, const HeadStart& head_start = {});
 
   void simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) override;
   void write(const SurfacePiece& piece, SlabRecord& record, MeshReport& report) override;
-  std::optional<CostBits> overshot() const override { return overshot_; }
+  std::optional<HeadStart> overshot() const override { return overshot_; }
   Held held() const override;
   void view_undecided(const SweepObserver::Visitor& visitor) const override;
   void wait_for_sinks() override;
@@ -35,6 +33,7 @@ class HostBackEnd final : public BackEnd {
   void serialize(StateReader& state) override;
 
  private:
+  bool counts() const { return target_ && target_->head_start().counts > 0; }
   void decide_to_number(bool complete);
   std::uint64_t waiting_triangles() const;
 
@@ -44,7 +43,7 @@ class HostBackEnd final : public BackEnd {
   Simplifier simplifier_;
   std::optional<CountTarget> target_;
   bool hands_out_ = true;                              // final triangles
-  std::optional<CostBits> overshot_{};                 // see overshot()
+  std::optional<HeadStart> overshot_{};                // see overshot()
   std::vector<std::unique_ptr<FinalOutput>> outputs_;  // per level
   FullOutput full_output_;
   std::uint64_t zone_bytes_ = 0;  // with the last piece

@@ -21,6 +21,7 @@
 #include "pipeline/volume_sweep.hpp"
 #include "select/component_filter.hpp"
 #include "system/process_memory.hpp"
+#include "volume/axes.hpp"
 
 namespace isoweave {
 namespace {
@@ -30,13 +31,14 @@ constexpr std::int64_t kLargeVolume = 1 << 22;  // samples: a forecast takes a s
 class VolumeRun final : public SavedRun::State {
  public:
   VolumeRun(SliceSource& source, std::span<MeshSink* const> sinks, const MeshOptions& options,
-            const RunControl& control, CostBits head_start)
+            const RunControl& control, const HeadStart& head_start)
       : task_(resolve(source.info(), options, control, common_offset(sinks))),
         control_(control),
         identity_(identity_of(task_)),
         sinks_(sinks.begin(), sinks.end()),
         sweep_(source, task_, control_, report_),
-        world_(task_.volume.geometry, task_.space, task_.offset) {
+        world_(task_.volume.geometry, task_.space, task_.offset),
+        counted_(head_start.of) {
     make_back_end(head_start);
     std::vector<PieceStage*> stages;
     if (const auto& components = task_.surface.components) {
@@ -50,8 +52,8 @@ class VolumeRun final : public SavedRun::State {
     sweep_.open();
   }
 
-  // The report; or the head start of the run that has to take the place of this one, as its own was too high.
-  std::variant<MeshReport, CostBits> run() {
+  // The report; or the head start of the run that has to take the place of this one.
+  std::variant<MeshReport, HeadStart> run() {
     start_report();
     if (saved_->saves()) saved_->save();
     while (!sweep_.complete()) {
@@ -59,7 +61,11 @@ class VolumeRun final : public SavedRun::State {
       step();
       if (!sweep_.complete()) saved_->save_if_due();
     }
-    if (const std::optional<CostBits> lower = back_end_->overshot()) return *lower;
+    if (std::optional<HeadStart> next = back_end_->overshot()) {
+      next->of = report_.triangles_extracted;
+      return *next;
+    }
+    require_counted();
     finish_report();
     require_unchanged(task_, identity_);
     finish_sinks();
@@ -68,7 +74,7 @@ class VolumeRun final : public SavedRun::State {
   }
 
  private:
-  void make_back_end(CostBits head_start) {
+  void make_back_end(const HeadStart& head_start) {
     const Executor& executor = sweep_.executor();
     if (control_.device == Device::kCuda) {
       engine_ =
@@ -110,6 +116,13 @@ class VolumeRun final : public SavedRun::State {
     warn_of_space(task_, report_);
     warn_of_rounding(task_, report_);
     warn_of_values(task_, report_);
+  }
+
+  // Refuses a volume that has changed since its triangles were counted.
+  void require_counted() const {
+    if (counted_ == 0 || counted_ == report_.triangles_extracted) return;
+    bad_input(task_.volume.path, std::to_string(counted_) + " triangles, as when they were counted",
+              std::to_string(report_.triangles_extracted));
   }
 
   void finish_report() {
@@ -197,6 +210,7 @@ class VolumeRun final : public SavedRun::State {
   MeshReport report_;
   VolumeSweep sweep_;
   const World world_;
+  const std::uint64_t counted_;  // triangles of the surface, where a run before has counted them; else 0
   std::unique_ptr<DeviceEngine> engine_;
   std::unique_ptr<Extractor> extractor_;
   std::optional<ComponentFilter> filter_;
@@ -204,36 +218,57 @@ class VolumeRun final : public SavedRun::State {
   std::optional<SavedRun> saved_;
 };
 
-// Whether a run to a number of triangles may be made twice.
-bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
-  const bool has_values = options.values == nullptr || !options.values->held().empty();
-  return options.triangles > 0 && has_values && (control.reopen || !volume.held().empty());
-}
-
 std::unique_ptr<SliceSource> open_again(const SliceSource& volume, const RunControl& control) {
   if (control.reopen) return control.reopen();
   return volume_in_memory(volume.info(), volume.held());
 }
 
-// The cost up to which a run may decide everything at once, by an error that is known or by a forecast.
-CostBits head_start_of(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
-  if (control.resume || !can_repeat(volume, options, control)) return kUnknownCost;
-  const VolumeInfo& info = volume.info();
-  const bool worthwhile = info.slice_samples() * info.dims[2] >= kLargeVolume && control.memory == 0;
-  std::optional<double> error = control.head_start;
-  if (!error && worthwhile) error = forecast_mesh(*open_again(volume, control), options, control).head_start;
-  return head_start_cost(error.value_or(0), info);
+// Whether a run to a number has to count first: otherwise it would hold more than the cap allows.
+bool has_to_count(const Forecast& forecast, const RunControl& control) {
+  return forecast.least_bytes_at_once > 0 && control.memory < forecast.least_bytes_at_once + control.memory_elsewhere;
 }
 
-// Makes the run in the place of one whose head start was too high. The sinks have got nothing yet.
-std::variant<MeshReport, CostBits> repeat(const SliceSource& volume, std::span<MeshSink* const> sinks,
-                                          const MeshOptions& options, const RunControl& control, CostBits head_start) {
+// The head start of a run to a number, by an error that is known or by a forecast.
+HeadStart head_start_of(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  if (control.resume || !can_repeat(volume, options, control)) return {};
+  const VolumeInfo& info = volume.info();
+  bool counts = control.count_first;
+  std::optional<double> error = control.head_start;
+  if (!error && (control.memory > 0 || info.slice_samples() * info.dims[2] >= kLargeVolume)) {
+    const Forecast forecast = forecast_mesh(*open_again(volume, control), options, control);
+    error = forecast.head_start;
+    counts = counts || (control.memory > 0 && has_to_count(forecast, control));
+  }
+  if (!counts) return {head_start_cost(error.value_or(0), info)};
+  // Counted is up to an error that is expected to leave fewer triangles. If it does not, the next one is larger.
+  const double beyond = error.value_or(0) > 0 ? 2 * *error : mean_voxel(info.geometry) / 4;
+  return HeadStart::counting(head_start_cost(beyond, info));
+}
+
+// Makes a run, again if need be. The sinks have got nothing yet.
+std::variant<MeshReport, HeadStart> repeat(const SliceSource& volume, std::span<MeshSink* const> sinks,
+                                           const MeshOptions& options, const RunControl& control,
+                                           const HeadStart& head_start) {
   if (!can_repeat(volume, options, control)) {
     throw std::invalid_argument("resume: expected RunControl::reopen, as the saved run has a head start");
   }
   RunControl again = control;
   again.resume.reset();
   return VolumeRun(*open_again(volume, control), sinks, options, again, head_start).run();
+}
+
+// Counts, up to the cost of a head start, what a run to a number removes at each cost. No mesh is kept, so whatever
+// does not change it is left out, unless the state of the run is saved.
+std::variant<MeshReport, HeadStart> count(SliceSource& volume, std::span<MeshSink* const> sinks,
+                                          const MeshOptions& options, const RunControl& control,
+                                          const HeadStart& head_start) {
+  MeshOptions bare = options;
+  if (bare.normals == Normals::kGradient) bare.normals = Normals::kAbsent;
+  bare.values.reset();
+  RunControl unseen = control;
+  unseen.measure = false;
+  unseen.observer.reset();
+  return VolumeRun(volume, sinks, bare, unseen, head_start).run();
 }
 
 }  // namespace
@@ -248,10 +283,14 @@ MeshReport mesh_volume(SliceSource& volume, std::span<MeshSink* const> sinks, co
   const StandardFloats floats;
   check_sinks(sinks, options.levels.size());
   Stopwatch total;
-  const CostBits head_start = head_start_of(volume, options, control);
-  std::variant<MeshReport, CostBits> made = VolumeRun(volume, sinks, options, control, head_start).run();
-  while (const CostBits* const lower = std::get_if<CostBits>(&made)) {
-    made = repeat(volume, sinks, options, control, *lower);
+  const HeadStart head_start = head_start_of(volume, options, control);
+  const bool counts_apart = control.checkpoint.folder.empty();
+  std::variant<MeshReport, HeadStart> made = head_start.counts > 0 && counts_apart
+                                                 ? count(volume, sinks, options, control, head_start)
+                                                 : VolumeRun(volume, sinks, options, control, head_start).run();
+  while (const HeadStart* const next = std::get_if<HeadStart>(&made)) {
+    made = next->counts > 0 && counts_apart ? count(*open_again(volume, control), sinks, options, control, *next)
+                                            : repeat(volume, sinks, options, control, *next);
   }
   MeshReport& report = std::get<MeshReport>(made);
   total.lap(report.seconds_total);

@@ -173,6 +173,11 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
 }
 
+bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  const bool has_values = options.values == nullptr || !options.values->held().empty();
+  return options.triangles > 0 && has_values && (control.reopen || !volume.held().empty());
+}
+
 CostBits head_start_cost(double error, const VolumeInfo& volume) {
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("head start: expected a length of 0 or more, found " + std::to_string(error));

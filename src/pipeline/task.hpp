@@ -83,6 +83,9 @@ bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
 // The cost, in units of a0, above which edges are retired.
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 
+// Whether a run to a number of triangles may sweep the volume twice.
+bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control);
+
 // RunControl::head_start as a cost. Throws std::invalid_argument for one that is negative or no number.
 CostBits head_start_cost(double error, const VolumeInfo& volume);
 

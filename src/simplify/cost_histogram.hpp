@@ -30,6 +30,11 @@ class CostHistogram {
     return step == 0 ? kUnknownCost : static_cast<CostBits>(step << kShift) - 1;
   }
 
+  // The highest cost of the step that follows a cost which highest_with_below() gave.
+  static CostBits end_of_next_step(CostBits cost) {
+    return cost == kUnknownCost ? (CostBits{1} << kShift) - 1 : cost + (CostBits{1} << kShift);
+  }
+
   // The highest cost with at least `least` items beyond it; kUnknownCost if there is none.
   CostBits highest_with_beyond(std::uint64_t least) const {
     std::uint64_t sum = 0;

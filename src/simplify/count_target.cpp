@@ -14,6 +14,15 @@ constexpr std::int64_t kCountBlock = 8192;
 constexpr std::uint64_t kInOrder = 4000;  // the last triangles are left to one queue
 constexpr std::uint64_t kShown = 32'000;  // edges that the queue is shown first
 
+// The head start of the run that counts after one that left too many triangles: up to an error twice as large the first
+// time, then eight times, 512 times and so on, as the number may be out of reach.
+HeadStart counting_further(const HeadStart& before) {
+  std::uint32_t doublings = 1;
+  for (std::uint32_t n = 1; n < before.counts && doublings < 64; ++n) doublings *= 3;
+  const std::uint32_t more = 2 * doublings << 23;  // in the exponent of a cost
+  return HeadStart::counting(std::min(before.cost + more, kRetiredCost - 1), before.counts + 1);
+}
+
 // The histogram of all live triangles: add(triangle, histogram) adds the costs of one of them.
 template <class Add>
 CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add& add) {
@@ -33,21 +42,28 @@ CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add
 }  // namespace
 
 CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles,
-                         std::uint64_t most_held, CostBits head_start)
-    : simplifier_(simplifier), executor_(executor), target_(triangles), most_held_(most_held) {
+                         std::uint64_t most_held, const HeadStart& head_start)
+    : simplifier_(simplifier),
+      executor_(executor),
+      target_(triangles),
+      most_held_(most_held),
+      asked_(simplifier.zone().options.retire) {
   simplifier_.zone().limit = kUnknownCost;
   begin_with(head_start);
 }
 
-void CountTarget::begin_with(CostBits head_start) {
-  if (head_start == kUnknownCost) return;
+void CountTarget::begin_with(const HeadStart& head_start) {
   Zone& zone = simplifier_.zone();
-  head_start_ = std::min(head_start, zone.options.retire);
-  zone.limit = std::max(zone.limit, head_start_);
+  head_start_ = head_start;
+  if (is_counted()) zone.options.retire = std::min(zone.options.retire, head_start.met);
+  if (head_start.cost == kUnknownCost) return;
+  head_start_.cost = std::min(head_start.cost, zone.options.retire);
+  zone.limit = std::max(zone.limit, head_start_.cost);
   simplifier_.count_removed();
 }
 
 void CountTarget::thin_out() {
+  if (is_counted()) return;  // what is held does not grow with the number
   for (std::uint64_t held = simplifier_.triangles(); held > most_held_;) {
     const CostBits limit = limit_that_leaves(target_);
     if (limit <= simplifier_.zone().limit) return;
@@ -59,18 +75,28 @@ void CountTarget::thin_out() {
 }
 
 bool CountTarget::leaves_enough() {
+  if (is_counted()) return true;
   const Zone& zone = simplifier_.zone();
   if (!enough_) enough_ = zone.limit == zone.options.retire && limit_that_leaves(target_) == zone.options.retire;
   return enough_;
 }
 
 bool CountTarget::has_overshot() {
+  if (is_counted()) return head_start_.counts > 0;
   return simplifier_.triangles() <= target_ && simplifier_.counts().removed > 0 && !leaves_enough();
 }
 
-CostBits CountTarget::safe_head_start() const {
-  const std::uint64_t all = simplifier_.triangles() + simplifier_.counts().removed;
-  return all <= target_ ? kUnknownCost : simplifier_.removed_by_key().highest_with_below(all - target_ - 1);
+// A run that has passed the number, or was to, has counted how many triangles each lower cost leaves: the highest cost
+// that leaves more than the number lies in the step of the histogram before the one in which the number is met.
+HeadStart CountTarget::next_head_start() const {
+  const CostBits reached = simplifier_.zone().limit;
+  const std::uint64_t removed = simplifier_.counts().removed;
+  const std::uint64_t all = simplifier_.triangles() + removed;
+  if (simplifier_.triangles() > target_ && reached < asked_) return counting_further(head_start_);
+  if (simplifier_.triangles() > target_) return {reached, reached};
+  const CostBits below =
+      all <= target_ ? kUnknownCost : simplifier_.removed_by_key().highest_with_below(all - target_ - 1);
+  return {below, CostHistogram::end_of_next_step(below)};
 }
 
 void CountTarget::finish() {

@@ -133,6 +133,27 @@ TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
   for (const auto& [volume, more] : cases) expect_named_cap(volume, "out.ply", more);
 }
 
+// One sweep would hold all triangles until there are so few. The mesh is the same, with states or without.
+TEST(CliMemory, ANumberOfTrianglesDoesWithLittle) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  const std::vector<std::string> arguments{
+      "mesh",    "generate:smooth:180x180x240:uint8", "-o", "out.ply", "--iso", "127.5", "--ratio", "50%", "--report",
+      "out.json"};
+  const Result at_once = run(folder.path(), arguments);
+  ASSERT_EQ(at_once.code, 0) << at_once.err;
+  const std::string digest = report(folder).at("digest");
+  const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M", "--blocks", "off"})));
+  EXPECT_LT(3'000'000 * cap, 2 * at_once.peak_bytes);
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{}, {"--checkpoint", "states"}}) {
+    const Result counted = run(folder.path(), joined(joined(arguments, {"--memory", std::to_string(cap) + "M"}), more));
+    ASSERT_EQ(counted.code, 0) << counted.err;
+    EXPECT_NE(counted.err.find("too little for one sweep"), std::string::npos) << counted.err;
+    EXPECT_EQ(report(folder).at("digest"), digest);
+    EXPECT_LE(counted.peak_bytes, 1'000'000 * cap);
+  }
+}
+
 // Volumes and options by chance, with a fixed seed.
 TEST(CliMemory, TheCapThatIsNamedDoesForAnyVolumeAndOptions) {
   if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";

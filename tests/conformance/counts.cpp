@@ -1,5 +1,5 @@
 // Runs to a number of triangles stop where the reference queue would.
-// Threads: Limits.*:CountsHeld.*:HeadStarts.End*
+// Threads: Limits.*:CountsHeld.*:HeadStarts.End*:HeadStarts.ThatAre*
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,13 +50,13 @@ struct Way {
   int threads = 1;
   std::int64_t slab = kWholeVolume;
   std::uint64_t most_held = 0;  // 0: sweeps have to thin out
-  CostBits head_start = kUnknownCost;
+  HeadStart head_start{};
 };
 
 struct CountRun {
   SurfaceRun run;
-  std::uint64_t held = 0;           // triangles, the most after a slab
-  std::optional<CostBits> instead;  // the head start that the run should have had
+  std::uint64_t held = 0;            // triangles, the most after a slab
+  std::optional<HeadStart> instead;  // the head start that the run should have had
 };
 
 CountRun run_once(const SurfaceCase& surface, std::uint64_t triangles, const Way& way) {
@@ -72,7 +72,7 @@ CountRun run_once(const SurfaceCase& surface, std::uint64_t triangles, const Way
     if (done < layers) {
       target.thin_out();
     } else if (target.has_overshot()) {
-      made.instead = target.safe_head_start();
+      made.instead = target.next_head_start();
       simplifier.zone().retire_all();
     } else {
       target.finish();
@@ -85,10 +85,15 @@ CountRun run_once(const SurfaceCase& surface, std::uint64_t triangles, const Way
 CountRun run(const SurfaceCase& surface, std::uint64_t triangles, Way way) {
   CountRun made = run_once(surface, triangles, way);
   if (!made.instead) return made;
+  while (made.instead && made.instead->counts > 0) {
+    EXPECT_LE(made.instead->counts, 7U);
+    way.head_start = *made.instead;
+    made = run_once(surface, triangles, way);
+  }
   way.head_start = *made.instead;
   CountRun again = run_once(surface, triangles, way);
   EXPECT_FALSE(again.instead) << "a safe head start";
-  again.instead = made.instead;
+  again.instead = way.head_start;
   return again;
 }
 
@@ -176,7 +181,7 @@ int overshot_runs(const SurfaceCase& surface, std::uint64_t triangles, std::uint
       if (kSanitized && way.slab == 1) continue;
       Way with = way;
       with.most_held = most_held;
-      with.head_start = to_cost(factor * right);
+      with.head_start.cost = to_cost(factor * right);
       const CountRun found = run(surface, triangles, with);
       EXPECT_EQ(digest_text(found.run.report.digest), digest_text(expected.report.digest))
           << surface.volume.kind << ' ' << triangles << ", factor " << factor << ", slab " << way.slab << ", schedule "
@@ -216,10 +221,45 @@ TEST(HeadStarts, EndAtTheError) {
   for (const std::uint64_t triangles : {left / 2, left - 1, left, left + 1}) {
     const SurfaceRun expected = oracle(surface, triangles);
     for (const std::int64_t slab : {std::int64_t{6}, kWholeVolume}) {
-      const CountRun found = run(surface, triangles, {Schedule::kLocal, 2, slab, 0, kRetiredCost - 1});
+      const CountRun found = run(surface, triangles, {Schedule::kLocal, 2, slab, 0, {kRetiredCost - 1}});
       EXPECT_EQ(digest_text(found.run.report.digest), digest_text(expected.report.digest)) << triangles;
     }
   }
+}
+
+// Counting may begin too low, and has to be done again, or go too far.
+TEST(HeadStarts, AreCountedFromWhereverItBegins) {
+  for (const char* kind : {"noise", "box", "specks"}) {
+    SurfaceCase surface = make_case(kind, true);
+    surface.drop_specks = surface.volume.kind == "specks";
+    for (const double error : {kNoLimit, 0.3}) {
+      surface.error = error;
+      const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+      for (const std::uint64_t triangles : {all + 1, all / 2, all / 10, std::uint64_t{1}}) {
+        const SurfaceRun expected = oracle(surface, triangles);
+        for (const float first : {1e-4F, 0.01F, 10.0F}) {
+          const Way way{Schedule::kLocal, 2, 3, 0, HeadStart::counting(cost_bits(first))};
+          const CountRun found = run(surface, triangles, way);
+          EXPECT_EQ(digest_text(found.run.report.digest), digest_text(expected.report.digest))
+              << kind << ' ' << triangles << " of " << all << ", error " << error << ", from " << first;
+          ASSERT_TRUE(found.instead);
+          EXPECT_NE(found.instead->met, kUnknownCost);
+        }
+      }
+    }
+  }
+}
+
+// What is held of a number that was counted does not grow with it.
+TEST(HeadStarts, ThatAreCountedHoldLittle) {
+  SurfaceCase surface = make_case("noise", false);
+  surface.volume.dims = {16, 15, 120};
+  surface.error = kNoLimit;
+  const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
+  const Way guessed{Schedule::kLocal, 1, 4, ~std::uint64_t{0}, {cost_bits(1e-4F)}};
+  const Way counted{Schedule::kLocal, 1, 4, ~std::uint64_t{0}, HeadStart::counting(cost_bits(0.1F))};
+  EXPECT_GT(run(surface, all / 2, guessed).held, all / 2);
+  EXPECT_LT(run(surface, all / 2, counted).held, all / 5);
 }
 
 // Where no more triangles are extracted than are asked for, nothing is decided.
@@ -227,8 +267,9 @@ TEST(HeadStarts, OvershootWhereNothingIsToBeDecided) {
   SurfaceCase surface = make_case("noise", true);
   surface.error = kNoLimit;
   const std::uint64_t all = oracle(surface, ~std::uint64_t{0}).report.triangles;
-  const CountRun found = run(surface, all + 1, {Schedule::kLocal, 2, 6, 0, cost_bits(0.1F)});
-  EXPECT_EQ(found.instead, kUnknownCost);
+  const CountRun found = run(surface, all + 1, {Schedule::kLocal, 2, 6, 0, {cost_bits(0.1F)}});
+  ASSERT_TRUE(found.instead);
+  EXPECT_EQ(found.instead->cost, kUnknownCost);
   EXPECT_EQ(found.run.report.triangles, all);
 }
 

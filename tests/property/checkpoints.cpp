@@ -53,7 +53,8 @@ class InterruptedRun {
 
   int interruptions = 0;
   bool with_values = false;
-  double head_start = 0;   // where a number of triangles is asked for
+  double head_start = 0;  // where a number of triangles is asked for
+  bool count_first = false;
   int opens_until = 1000;  // interruptions: the volume cannot be opened again then
 
  private:
@@ -69,6 +70,7 @@ class InterruptedRun {
     MeshFileOptions file{options_.normals != Normals::kAbsent, {"a test"}, state_folder(), mark};
     file.values = with_values;
     control.head_start = head_start;
+    control.count_first = count_first;
     if (interruptions < opens_until) control.reopen = [this] { return generate_volume(surface_.volume); };
     const auto sink = open_mesh_file(mesh_path(), file);
     options_.values = with_values ? generate_volume(values_beside(surface_)) : nullptr;
@@ -159,6 +161,12 @@ TEST(Checkpoints, AHeadStartGoesOn) {
     EXPECT_EQ(check_mesh(read_mesh(run.mesh_path())).digest, whole.digest);
     EXPECT_TRUE(std::filesystem::is_empty(run.state_folder()));
   }
+  InterruptedRun counted(surface, options);
+  counted.head_start = whole.error / 9;
+  counted.count_first = true;
+  expect_same_result(counted.finish_in_steps(1), whole);
+  EXPECT_GE(counted.interruptions, 20) << "counted twice";
+  EXPECT_EQ(check_mesh(read_mesh(counted.mesh_path())).digest, whole.digest);
   InterruptedRun run(surface, options);
   run.head_start = 3 * whole.error;
   run.opens_until = 2;

@@ -3,6 +3,7 @@
 // Threads: HeadStartRuns.Need*
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -10,7 +11,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
+#include "sanitized.hpp"
 #include "surfaces.hpp"
 
 namespace isoweave::testing {
@@ -51,7 +54,7 @@ Found run(const std::vector<float>& samples, std::int64_t slices, std::uint64_t 
           double error = kNoLimit) {
   const std::array<std::int64_t, 3> dims{kSide, kSide, slices};
   Found found;
-  if (control.head_start > 0) {
+  if (control.head_start > 0 || control.count_first) {
     control.reopen = [&] {
       ++found.opened;
       return std::make_unique<MemoryVolume>(dims, samples);
@@ -94,6 +97,66 @@ TEST(HeadStartRuns, ReadTheVolumeAgainWhereTheyWereTooHigh) {
   }
 }
 
+// Two sweeps at least: what the first one lets go is not handed out.
+TEST(HeadStartRuns, AreCountedFirst) {
+  const std::int64_t slices = 24;
+  const std::vector<float> samples = two_halves("smooth", "noise", slices);
+  for (const double error : {kNoLimit, 0.5}) {
+    for (const std::uint64_t triangles : {std::uint64_t{4000}, std::uint64_t{12'000}, std::uint64_t{10'000'000}}) {
+      const Found plain = run(samples, slices, triangles, {.threads = 1, .schedule = Schedule::kQueue}, error);
+      for (const double factor : {0.0, 0.2, 2.0}) {
+        RunControl control{.threads = 2, .slab = 4, .head_start = factor * plain.report.error, .count_first = true};
+        const Found counted = run(samples, slices, triangles, control, error);
+        expect_same_run(counted.report, plain.report);
+        EXPECT_GE(counted.opened, 1);
+      }
+    }
+  }
+}
+
+// A cap that is too small for one sweep does for two.
+TEST(HeadStartRuns, AreCountedFirstWhereMemoryIsShort) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer takes memory of its own";
+  const GenerateOptions volume{"smooth", {200, 200, 240}, SampleType::kUint8};
+  const std::uint64_t triangles = 1'500'000;
+  RunControl control{.threads = 2};
+  control.reopen = [&] { return generate_volume(volume); };
+  const Forecast forecast = forecast_mesh(*generate_volume(volume), options_of(triangles), control);
+  ASSERT_LT(2 * forecast.least_bytes, forecast.least_bytes_at_once);
+  MemorySink at_once, counted;
+  const MeshReport plain = mesh_volume(*generate_volume(volume), at_once, options_of(triangles), control);
+  control.memory = forecast.least_bytes_at_once / 2;
+  std::uint64_t most = 0;
+  int sweeps = 0;
+  control.progress = [&](const Progress& p) {
+    most = std::max(most, p.bytes);
+    sweeps += p.layer == p.layers ? 1 : 0;
+  };
+  const MeshReport report = mesh_volume(*generate_volume(volume), counted, options_of(triangles), control);
+  expect_same_run(report, plain);
+  EXPECT_EQ(report.triangles, triangles);
+  EXPECT_GE(sweeps, 2);
+  EXPECT_LT(2 * most, triangles * 140) << "what one sweep holds in the end";
+}
+
+// The second sweep must find what the first one counted.
+TEST(HeadStartRuns, AreRefusedWhereTheVolumeChanges) {
+  const std::int64_t slices = 24;
+  std::vector<float> samples = two_halves("noise", "noise", slices);
+  const std::array<std::int64_t, 3> dims{kSide, kSide, slices};
+  int opened = 0;
+  RunControl control{.threads = 1, .head_start = 0.3, .count_first = true};
+  control.reopen = [&] {
+    const std::size_t changed = samples.size() / 2 + 10 * static_cast<std::size_t>(++opened);
+    samples[changed] = 255 - samples[changed];
+    return std::make_unique<MemoryVolume>(dims, samples);
+  };
+  MemorySink sink;
+  MemoryVolume volume(dims, samples);
+  EXPECT_THROW(mesh_volume(volume, sink, options_of(30'000), control), BadInput);
+  EXPECT_FALSE(sink.finished);
+}
+
 // With an error as high as the head start triangles are final before the end. They go out only once there are so many
 // of them that the sweep does not begin again.
 TEST(HeadStartRuns, HandOutNothingTwice) {
@@ -103,9 +166,13 @@ TEST(HeadStartRuns, HandOutNothingTwice) {
   const std::uint64_t left = run(samples, slices, 0, {}, error).report.triangles;
   for (const std::uint64_t triangles : {left + 200, left / 10}) {
     const Found plain = run(samples, slices, triangles, {.threads = 1, .schedule = Schedule::kQueue}, error);
-    std::uint64_t early = 0;  // triangles that are final before the last layer
+    std::uint64_t early = 0;  // triangles that are final before the last layer of the first sweep
+    bool is_first = true;
     RunControl control{.threads = 1, .slab = 1, .head_start = error};
-    control.progress = [&](const Progress& p) { early = p.layer < p.layers ? p.final_triangles : early; };
+    control.progress = [&](const Progress& p) {
+      is_first = is_first && p.layer < p.layers;
+      early = is_first ? p.final_triangles : early;
+    };
     const Found found = run(samples, slices, triangles, control, error);
     expect_same_run(found.report, plain.report);
     EXPECT_EQ(found.opened, triangles > left ? 1 : 0);

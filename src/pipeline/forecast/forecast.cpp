@@ -15,6 +15,7 @@
 #include "parallel/parallel.hpp"
 #include "parallel/size.hpp"
 #include "pipeline/forecast/forecast_curve.hpp"
+#include "pipeline/forecast/forecast_depth.hpp"
 #include "pipeline/forecast/forecast_profile.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
@@ -48,23 +49,19 @@ constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever the cap: it must not be another forecast
 constexpr std::int64_t kThinnestBand = 8;  // rows
 constexpr double kRoughSurface = 250;      // triangles that are held, per sample along two sides of a slice
-
-// The depth of the undecided zone, in layers, where a share `left` of the triangles remains, and the further depth in
-// the flats of the caps. Both are fits to runs on scans and textures; see docs/memory.md.
-double undecided_layers(double left) { return 24 * (1 - std::pow(left, 0.45)); }
-constexpr double kCapDepth = 20;
-constexpr double kCapWeight = 1.25;   // with what lies beside a cap and waits for it
-constexpr double kCapsLeft = 0.005;   // share of the triangles of caps that their outlines keep
-constexpr double kCapMargin = 1.15;   // of the least cap, as the zone is a guess
-constexpr double kCountMargin = 2.5;  // the same, where what is held depends on a number of triangles
-constexpr double kHeldOfLeft = 3;     // held while a number of triangles is out of reach, of what will be left
-constexpr double kFineDepth = 1.5;    // of the zone with fine quality, over that with normal quality
-constexpr double kThickSlabs = 0.55;  // time per triangle in slabs as they are chosen, in terms of that in a tile
-constexpr double kUsualError = 0.3;   // mean voxels
+constexpr double kCapsLeft = 0.005;        // share of the triangles of caps that their outlines keep
+constexpr double kCapMargin = 1.15;        // of the least cap, as the zone is a guess
+constexpr double kCountMargin = 2.5;       // the same, where what is held depends on a number of triangles
+constexpr double kHeldOfLeft = 3;          // held while a number of triangles is out of reach, of what will be left
+constexpr double kLeftByCounting = 0.6;    // triangles that a sweep leaves which counts, of the number
+constexpr double kCountedMargin = 1.4;     // of the least cap of such a sweep
+constexpr double kThickSlabs = 0.55;       // time per triangle in slabs as they are chosen, in terms of that in a tile
+constexpr double kUsualError = 0.3;        // mean voxels
 constexpr std::array kNoError{0.0};
-constexpr double kSeenDepth = 4;  // layers: where a thick block has fewer undecided ones, that is what there is
 
-enum class Reachable : std::uint8_t { kYes, kNo };  // a number of triangles
+// How a number of triangles is met: in one sweep, or not at all as too many triangles stay, or in a second sweep after
+// one that counts.
+enum class Meets : std::uint8_t { kAtOnce, kNever, kCounted };
 
 struct BlockFacts {
   double per_layer = 0;  // triangles of the open surface
@@ -78,12 +75,14 @@ class Forecaster {
         volume_(indexed_ ? *indexed_ : volume),
         rows_(volume_),
         info_(checked_volume(volume.info(), options.extractor)),
-        options_(options) {
+        options_(options),
+        asked_(control) {
     if (control.index) bricks_.emplace(*control.index, stored_rule(info_, options));
     control_.threads = control.threads;
     control_.measure = true;
     control_.slab = control.slab;
     control_.stop = control.stop;
+    may_count_ = can_repeat(volume, options, control);
     error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
     // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
@@ -313,12 +312,18 @@ class Forecaster {
       forecast.head_start = curve_->head_start(options_, open, kCapsLeft * caps);
     }
     forecast.vertices = forecast.triangles / 2;
-    const Peak of_run = peak(profiles, control_.slab);
+    const double at_once = least_cap(profiles);
+    const double least = may_count_ ? std::min(at_once, least_cap(profiles, Meets::kCounted)) : at_once;
+    const bool is_short = asked_.memory > 0 && static_cast<double>(asked_.memory) < at_once;
+    const bool counted = may_count_ && (asked_.count_first || is_short);
+    const Peak of_run = peak(profiles, control_.slab, counted ? Meets::kCounted : Meets::kAtOnce);
     forecast.peak_bytes = to_count(of_run.bytes);
     forecast.surface_bytes = to_count(of_run.surface);
-    forecast.least_bytes = with_slack(to_count(least_cap(profiles)));
-    forecast.seconds = seconds_extracting_ / slices_read_ * layers;
-    if (simplified_ > 0) forecast.seconds += kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
+    forecast.least_bytes = with_slack(to_count(least));
+    forecast.least_bytes_at_once = may_count_ ? to_count(at_once) : 0;
+    const double sweeps = counted ? 2 : 1;
+    forecast.seconds = sweeps * seconds_extracting_ / slices_read_ * layers;
+    if (simplified_ > 0) forecast.seconds += sweeps * kThickSlabs * seconds_simplifying_ / simplified_ * extracted;
     return forecast;
   }
 
@@ -361,13 +366,13 @@ class Forecaster {
     return simplified_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
   }
 
-  // The undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is
-  // reached.
-  double held_before(const Profiles& profiles, double at, double depth, Reachable reachable) const {
-    if (options_.triangles > 0) {
+  // The undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is met,
+  // unless it was counted.
+  double held_before(const Profiles& profiles, double at, double depth, Meets meets) const {
+    if (options_.triangles > 0 && meets != Meets::kCounted) {
       const double all = profiles.open.below(at) + profiles.caps.below(at);
       const auto most = static_cast<double>(CountTarget::most_held(options_.triangles));
-      if (reachable == Reachable::kYes) return std::min(all, most);
+      if (meets == Meets::kAtOnce) return std::min(all, most);
       return std::min(all, std::max(most, kHeldOfLeft * left_ * all));
     }
     const auto above = [&](const Profile& profile, double layers) {
@@ -381,8 +386,16 @@ class Forecaster {
     double bytes = 0, surface = 0;
   };
 
+  // The share of the triangles that is left where the zone is deepest.
+  double least_share(const Profiles& profiles, Meets meets) const {
+    const double all = profiles.open.below(static_cast<double>(info_.dims[2]));
+    if (meets != Meets::kCounted || !(all > 0)) return left_;
+    const double share = std::min(kLeftByCounting * static_cast<double>(options_.triangles) / all, 1.0);
+    return std::isinf(error_) ? share : std::max(share, left_);
+  }
+
   // The peak is found by going through the slabs of the run.
-  Peak peak(const Profiles& profiles, std::int64_t asked, Reachable reachable = Reachable::kYes) const {
+  Peak peak(const Profiles& profiles, std::int64_t asked, Meets meets = Meets::kAtOnce) const {
     const VolumeInfo field = SurfaceField::info_of(info_, options_);
     const MemoryModel model{resident_ + held_by_slices(volume_) + SurfaceField::memory(info_, options_),
                             field.slice_bytes(),
@@ -393,7 +406,8 @@ class Forecaster {
                             options_.levels.size(),
                             options_.max_distance.value > 0};
     const double deeper = options_.quality == Quality::kFine ? kFineDepth : 1;
-    const double depth = error_ == 0 || depth_ < kSeenDepth ? depth_ : deeper * undecided_layers(left_);
+    const double depth =
+        error_ == 0 || depth_ < kSeenDepth ? depth_ : deeper * undecided_layers(least_share(profiles, meets));
     const auto sum = [](const Profile& profile, double from, double to) {
       return profile.below(to) - profile.below(from);
     };
@@ -403,7 +417,7 @@ class Forecaster {
     double per_layer = 0;
     for (std::int64_t done = 0; done < info_.dims[2]; done += recent) {
       const auto at = static_cast<double>(done);
-      const double undecided = held_before(profiles, at, depth, reachable);
+      const double undecided = held_before(profiles, at, depth, meets);
       const SlabGoal goal = beside_zone(slab_goal(error_ > 0), undecided);
       // The slab was planned before its slices were read, when nobody knew how full it is.
       const std::int64_t planned = std::min(next_slab(field, goal, asked, recent, per_layer), info_.dims[2] - done);
@@ -432,11 +446,12 @@ class Forecaster {
   }
 
   // The cap that a run should do with, without slack.
-  double least_cap(const Profiles& profiles) const {
+  double least_cap(const Profiles& profiles, Meets meets = Meets::kAtOnce) const {
+    if (meets == Meets::kCounted) return kCountedMargin * peak(profiles, 1, meets).bytes / kUsedPart;
     if (options_.triangles == 0) return kCapMargin * peak(profiles, 1).bytes / kUsedPart;
     const double usual = kCountMargin * peak(profiles, 1).bytes / kUsedPart;
     if (!is_out_of_reach(profiles)) return usual;
-    return std::max(usual, peak(profiles, 1, Reachable::kNo).bytes / kUsedPart);
+    return std::max(usual, peak(profiles, 1, Meets::kNever).bytes / kUsedPart);
   }
 
   static std::uint64_t to_count(double number) { return static_cast<std::uint64_t>(std::max(number, 0.0)); }
@@ -446,8 +461,10 @@ class Forecaster {
   RowReader rows_;
   const VolumeInfo info_;
   const MeshOptions& options_;
-  RunControl control_;
+  const RunControl& asked_;
+  RunControl control_;  // of the blocks
   const std::uint64_t resident_ = system::resident_bytes();
+  bool may_count_ = false;       // the number of triangles in a sweep of its own
   double error_ = 0;             // length
   double tile_error_ = 0;        // of tiles
   std::int64_t slices_ = 0;      // that are looked at

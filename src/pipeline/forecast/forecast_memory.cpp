@@ -20,6 +20,7 @@ void add_iso_value(Forecast& sum, const Forecast& value) {
 
 void add_memory_during(Forecast& forecast, std::uint64_t bytes) {
   forecast.peak_bytes += bytes;
+  if (forecast.least_bytes_at_once > 0) forecast.least_bytes_at_once += bytes;
   forecast.least_bytes = std::max(forecast.least_bytes + bytes, with_slack(system::peak_bytes()));
 }
 

@@ -65,7 +65,7 @@ std::unique_ptr<Simplifier> BlocksToNumber::finish() {
   Stopwatch clock;
   auto simplifier = std::make_unique<Simplifier>(
       SimplifierOptions{task_.simplify.zone, control_.schedule, {}, control_.measure}, executor_, control_.stop.get());
-  CountTarget target(*simplifier, executor_, task_.simplify.triangles, limit_);
+  CountTarget target(*simplifier, executor_, task_.simplify.triangles, HeadStart{limit_});
   simplifier->put_part(glue_parts(kept_->take_all(), task_.simplify.zone.retire, executor_));
   target.finish();
   totals_.decisions += simplifier->counts();
