@@ -268,6 +268,7 @@ std::variant<MeshReport, HeadStart> count(SliceSource& volume, std::span<MeshSin
   RunControl unseen = control;
   unseen.measure = false;
   unseen.observer.reset();
+  unseen.resume.reset();
   return VolumeRun(volume, sinks, bare, unseen, head_start).run();
 }
 

@@ -250,7 +250,7 @@ TEST(HeadStarts, AreCountedFromWhereverItBegins) {
   }
 }
 
-// What is held of a number that was counted does not grow with it.
+// A run to a number that was counted holds no more triangles when the number is larger.
 TEST(HeadStarts, ThatAreCountedHoldLittle) {
   SurfaceCase surface = make_case("noise", false);
   surface.volume.dims = {16, 15, 120};
