@@ -32,6 +32,10 @@ class HostBackEnd final : public BackEnd {
   void serialize(StateWriter& state) const override;
   void serialize(StateReader& state) override;
 
+  // Counts removed triangles by the keys of the decisions, from now on, and tells the counts.
+  void count_removed() { simplifier_.count_removed(); }
+  CostHistogram removed_by_key() const { return simplifier_.removed_by_key(); }
+
  private:
   bool counts() const { return target_ && target_->head_start().counts > 0; }
   void decide_to_number(bool complete);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,8 @@ class CostHistogram {
   void merge(const CostHistogram& other) {
     for (std::size_t n = 0; n < kSteps; ++n) counts_[n] += other.counts_[n];
   }
+
+  std::uint64_t items() const { return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}); }
 
   // The highest cost with no more than `most` items up to it; kUnknownCost if there is none.
   CostBits highest_with_below(std::uint64_t most) const {

@@ -2,6 +2,8 @@
 // Threads: none, a forecast is a run that surfaces.cpp has
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "extract/marching_cubes.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/forecast.hpp"
@@ -37,6 +39,26 @@ TEST(Forecast, CountsAreNearWhatTheRunMakes) {
       EXPECT_LE(forecast.triangles, forecast.triangles_extracted);
       EXPECT_GT(forecast.peak_bytes, 5u << 20);
     }
+  }
+}
+
+// Around the middle the shells are small spheres, which keep more of their triangles than the large ones outside.
+TEST(Forecast, LooksWhereTheTrianglesAre) {
+  const GenerateOptions volume{"shells", {96, 96, 96}, SampleType::kUint8};
+  MeshOptions options = options_for(volume, 0.04);
+  MemorySink sink;
+  const std::uint64_t all = count_triangles(*generate_volume(volume), options);
+  const MeshReport report = mesh_volume(*generate_volume(volume), sink, options);
+  EXPECT_LT(7 * report.triangles, all);
+  EXPECT_NEAR(ratio(forecast_mesh(*generate_volume(volume), options).triangles, report.triangles), 1, 0.2);
+  options.error = Length::units(std::numeric_limits<double>::infinity());
+  for (const std::uint64_t part : {std::uint64_t{2}, std::uint64_t{5}, std::uint64_t{10}}) {
+    options.triangles = all / part;
+    const double head_start = forecast_mesh(*generate_volume(volume), options).head_start;
+    MemorySink headed;
+    const MeshReport to_there = mesh_volume(*generate_volume(volume), headed, options_for(volume, head_start));
+    EXPECT_GT(ratio(to_there.triangles, all / part), 1) << part;
+    EXPECT_LT(ratio(to_there.triangles, all / part), 1.5) << part;
   }
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,6 +18,7 @@
 #include "pipeline/forecast/forecast_profile.hpp"
 #include "pipeline/forecast/forecast_sinks.hpp"
 #include "pipeline/forecast/forecast_tile.hpp"
+#include "pipeline/forecast/tile_run.hpp"
 #include "pipeline/memory_cap.hpp"
 #include "pipeline/memory_model.hpp"
 #include "pipeline/run_report.hpp"
@@ -42,8 +42,9 @@ constexpr std::int64_t kMostBlocks = 24;
 constexpr double kSampledPart = 0.04;  // of the volume's bytes, and of its triangles that are simplified
 constexpr double kLeastBytes = 32e6;
 constexpr double kMostBytes = 256e6;
-constexpr double kLeastTile = 4000;  // triangles of a block that are simplified
-constexpr double kMostTile = 100000;
+constexpr std::size_t kTiles = 4;    // of a block that are simplified
+constexpr double kLeastTile = 4000;  // triangles
+constexpr double kMostTile = 25000;
 constexpr double kTileBytes = 16e6;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
 constexpr double kBandBytes = 64e6;  // of what meshing a block holds, whatever the cap: it must not be another forecast
@@ -57,7 +58,6 @@ constexpr double kLeftByCounting = 0.6;    // triangles that a sweep leaves whic
 constexpr double kCountedMargin = 1.4;     // of the least cap of such a sweep
 constexpr double kThickSlabs = 0.55;       // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;        // mean voxels
-constexpr std::array kNoError{0.0};
 
 // How a number of triangles is met: in one sweep, or not at all as too many triangles stay, or in a second sweep after
 // one that counts.
@@ -79,14 +79,14 @@ class Forecaster {
         asked_(control) {
     if (control.index) bricks_.emplace(*control.index, stored_rule(info_, options));
     control_.threads = control.threads;
-    control_.measure = true;
+    control_.measure = false;
     control_.slab = control.slab;
     control_.stop = control.stop;
     may_count_ = can_repeat(volume, options, control);
     error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
     // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
-    curve_.emplace(mean_voxel(info_.geometry), tile_error_, options.triangles > 0);
+    curve_.emplace(mean_voxel(info_.geometry), tile_error_);
     refuse_reader(control.memory);
     band_rows_ = band_rows();
     plan_blocks();
@@ -101,11 +101,11 @@ class Forecaster {
       const std::int64_t thin = thick == 0 || room >= thick + kThin ? std::min(kThin, room) : 0;
       const std::int64_t first = begin + (room - thin - thick) / 2;
       band_ = band_of(n);
-      map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});  // without a thin part it stays empty
+      map_ = TriangleMap({info_.dims[0], band_.count, info_.dims[2]});
       if (n == 0 && first > 0 && options_.closed) first_cap_ = end_cap(0);
       BlockFacts facts;
-      if (thin > 0) facts = look_at_thin(first, thin);
-      if (thick > 0) facts = look_at_thick(first + thin, thick);
+      if (thin > 0) facts = look_and_map(first, thin);
+      if (thick > 0) facts = look_at_thick(first + thin, thick, facts.per_layer);
       facts_.push_back(facts);
     }
     if (options_.closed && !last_cap_) last_cap_ = volume_.skips() ? end_cap(info_.dims[2] - 1) : first_cap_;
@@ -193,84 +193,89 @@ class Forecaster {
     });
   }
 
-  BlockFacts look_at_thin(std::int64_t first, std::int64_t slices) {
+  // Looks at a block, maps its triangles, and fills tiles of it.
+  BlockFacts look_and_map(std::int64_t first, std::int64_t slices, std::span<Tile> tiles = {}) {
     const auto look = [&](double i, double j, double /*k*/) { map_.add(i, j); };
     LocatingSink sink(info_.geometry.spacing, look);
-    return look_at(first, slices, sink, nullptr);
+    return look_at(first, slices, sink, tiles);
   }
 
-  BlockFacts look_at_thick(std::int64_t first, std::int64_t slices) {
+  // Looks at a block, and simplifies parts of it. per_layer: the triangles of the thin block before it, which has
+  // mapped them; 0 if there is no such block.
+  BlockFacts look_at_thick(std::int64_t first, std::int64_t slices, double per_layer) {
     CountingSink sink;
-    if (error_ == 0) return look_at(first, slices, sink, nullptr);
-    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes()) / rows_in_bands();
-    Tile tile(info_, map_.busy_part(std::min(1.0, kTileBytes / bytes)), slices);
-    const BlockFacts facts = look_at(first, slices, sink, &tile);
-    if (facts.per_layer > 0) simplify_part(tile, facts.per_layer / layers_in_bands());
+    if (error_ == 0) return look_at(first, slices, sink, {});
+    std::vector<Tile> tiles;
+    for (const Rectangle& part : parts(per_layer, slices)) tiles.emplace_back(info_, part, slices);
+    const bool mapped = per_layer > 0;
+    const BlockFacts facts = mapped ? look_at(first, slices, sink, tiles) : look_and_map(first, slices, tiles);
+    if (!mapped && facts.per_layer > 0) {
+      const Tile whole = std::move(tiles.front());
+      tiles.clear();
+      for (const Rectangle& part : parts(facts.per_layer, slices)) tiles.push_back(whole.cut(part));
+    }
+    if (facts.per_layer > 0) simplify(tiles);
     return facts;
   }
 
-  // Counts the triangles of some slices, and fills a tile of them.
+  // The parts of a block that are simplified; one around the middle where its triangles are not mapped.
+  std::vector<Rectangle> parts(double per_layer, std::int64_t slices) const {
+    const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes()) / rows_in_bands();
+    const double expected = per_layer * static_cast<double>(info_.dims[2]);
+    const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kTiles * kLeastTile, kTiles * kMostTile);
+    const double in_block = per_layer / layers_in_bands() * static_cast<double>(std::max<std::int64_t>(slices - 1, 1));
+    return map_.parts(kTiles, wanted / (kTiles * std::max(in_block, 1.0)), kTileBytes / bytes);
+  }
+
+  // Counts the triangles of some slices, and fills tiles of them.
   template <class Sink>
-  BlockFacts look_at(std::int64_t first, std::int64_t slices, Sink& sink, Tile* tile) {
+  BlockFacts look_at(std::int64_t first, std::int64_t slices, Sink& sink, std::span<Tile> tiles) {
     double inside = 0;
     Section section(rows_, info_, first, slices, band_, [&](std::int64_t n, std::span<const std::byte> slice) {
-      if (tile != nullptr) tile->take(n, slice);
+      for (Tile& tile : tiles) tile.take(n, slice);
       if (options_.closed) inside += inside_on_sides(slice, info_, stored_rule(info_, options_), band_.count);
       if (options_.closed && first + n == 0) first_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
       if (options_.closed && first + n == info_.dims[2] - 1)
         last_cap_ = cap_triangles() * inside_in(slice) * rows_in_bands();
     });
     Stopwatch watch;
-    MeshSink* const sinks[] = {&sink};
-    const MeshReport report = mesh(section, sinks, kNoError, 0);
+    const MeshReport report = mesh(section, sink, 0);
     watch.lap(seconds_extracting_);
     slices_read_ += static_cast<double>(slices) / rows_in_bands();
     return {static_cast<double>(report.triangles) / layers(section) * layers_in_bands(),
             cap_triangles() * inside / layers(section)};
   }
 
-  // Simplifies a part of a tile that is a small part of the volume's surface.
-  void simplify_part(const Tile& tile, double per_layer) {
-    const double expected = per_layer * layers_in_bands() * static_cast<double>(info_.dims[2]);
-    const double wanted = std::clamp(kSampledPart * expected / kThickBlocks, kLeastTile, kMostTile);
-    Tile part = tile.cut(map_.busy_part(std::min(1.0, wanted / (per_layer * layers(tile)))));
-    TileCount full = count(part, kNoError);
-    if (static_cast<double>(full.total) < wanted / 4) {  // the surface is elsewhere
-      part = tile;
-      full = count(part, kNoError);
+  // Simplifies the tiles of a block.
+  void simplify(std::span<Tile> tiles) {
+    double undecided = 0, all = 0;
+    for (Tile& tile : tiles) {
+      CountBetween full = middle_of(tile), left = full;
+      all += static_cast<double>(mesh(tile, full, 0).triangles);
+      Stopwatch watch;
+      const TileRun run = simplify_tile(tile, left, tile_options(tile_error_), tile_control(3));
+      watch.lap(seconds_simplifying_);
+      curve_->add(full.total, left.total, run.removed);
+      std::uint64_t most = 0;
+      for (const SlabRecord& record : run.report.sweep) most = std::max(most, record.undecided_triangles);
+      undecided += static_cast<double>(most);
     }
-    Stopwatch watch;
-    const TileCount left = count(part, curve_->errors());
-    watch.lap(seconds_simplifying_);
-    simplified_ += static_cast<double>(full.total);
-    curve_->add(full.middle.back(), left.middle);
-    const double depth = static_cast<double>(left.undecided) * layers(part) / static_cast<double>(full.total + 1);
-    depth_ = std::max(depth_, depth);
+    simplified_ += all;
+    depth_ = std::max(depth_, undecided * static_cast<double>(thick_ - 1) / (all + 1));
   }
 
-  struct TileCount {
-    std::uint64_t total = 0;            // triangles
-    std::vector<std::uint64_t> middle;  // at each error, of the middle third of the layers: ends hardly disturb it
-    std::uint64_t undecided = 0;        // most triangles after a slab
-  };
-
-  TileCount count(Tile& tile, std::span<const double> errors) const {
+  // A counter for the middle third of the layers of a tile: ends hardly disturb it.
+  CountBetween middle_of(const Tile& tile) const {
     const double third = layers(tile) / 3 * info_.geometry.spacing[2];
-    std::deque<CountBetween> counts;
-    std::vector<MeshSink*> sinks;
-    for (std::size_t n = 0; n < errors.size(); ++n) sinks.push_back(&counts.emplace_back(third, 2 * third));
-    const MeshReport report = mesh(tile, sinks, errors, errors.back() > 0 ? 3 : 0);
-    TileCount counted{report.triangles, {}};
-    for (const CountBetween& count : counts) counted.middle.push_back(count.total);
-    for (const SlabRecord& record : report.sweep) {
-      counted.undecided = std::max(counted.undecided, record.undecided_triangles);
-    }
-    return counted;
+    return {third, 2 * third};
   }
 
-  // Meshes the open surface of a block, in samples, once for each of some ascending errors.
-  MeshReport mesh(SliceSource& block, std::span<MeshSink* const> sinks, std::span<const double> errors,
-                  std::int64_t slab) const {
+  // Meshes the open surface of a block, in samples.
+  MeshReport mesh(SliceSource& block, MeshSink& sink, std::int64_t slab) const {
+    return mesh_volume(block, sink, tile_options(0), tile_control(slab));
+  }
+
+  MeshOptions tile_options(double error) const {
     MeshOptions options = options_;
     options.closed = false;
     if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
@@ -279,11 +284,14 @@ class Forecaster {
     options.triangles = 0;
     options.components.reset();
     options.space = OutputSpace::kIndex;
-    for (const double error : errors.first(errors.size() - 1)) options.levels.push_back(Length::units(error));
-    options.error = Length::units(errors.back());
+    options.error = Length::units(error);
+    return options;
+  }
+
+  RunControl tile_control(std::int64_t slab) const {
     RunControl control = control_;
     control.slab = slab;
-    return mesh_volume(block, sinks, options, control);
+    return control;
   }
 
   // The rows of a slice, and the layers between them, over those of a band.

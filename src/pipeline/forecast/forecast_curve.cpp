@@ -8,21 +8,18 @@
 namespace isoweave {
 namespace {
 
-constexpr double kLeastError = 0.0025;  // voxels; scans in steps lose half of their triangles below 0.01
-constexpr double kMostError = 3;        // voxels; tiles are too thin for more
-constexpr double kStep = 4;
-constexpr double kMargin = 0.4;  // triangles that a head start leaves beyond those wanted where few are
+constexpr double kMostError = 3;  // voxels; tiles are too thin for more
+constexpr double kMargin = 0.3;   // triangles that a head start leaves beyond those wanted where few are
 
 }  // namespace
 
-ForecastCurve::ForecastCurve(double voxel, double most, bool several) : voxel_(voxel) {
-  const double end = several ? std::min(most, kMostError * voxel) : 0;
-  for (double error = kLeastError * voxel; error < end; error *= kStep) {
-    errors_.push_back(error);
-  }
-  errors_.push_back(most);
-  left_.resize(errors_.size(), 0);
+void ForecastCurve::add(std::uint64_t all, std::uint64_t left, const CostHistogram& removed) {
+  all_ += static_cast<double>(all);
+  left_ += static_cast<double>(left);
+  removed_.merge(removed);
 }
+
+double ForecastCurve::share_left() const { return all_ > 0 ? std::min(1.0, left_ / all_) : 1; }
 
 double ForecastCurve::head_start(const MeshOptions& options, double open, double of_caps) const {
   if (!(open > 0)) return 0;
@@ -36,16 +33,13 @@ double ForecastCurve::head_start(const MeshOptions& options, double open, double
   return std::min(error_that_leaves(share * (1 + kMargin * (1 - share))), kMostError * voxel_);
 }
 
-// The highest error at which a share of the triangles is left. 0 where that is a lower error than the tiles show.
+// The highest error at which a share of the triangles is left. The whole tile, with its ends, tells in which order
+// triangles go, its middle how many of them.
 double ForecastCurve::error_that_leaves(double share) const {
-  const double wanted = std::max(share * all_, 1.0);
-  std::size_t n = errors_.size();
-  while (n > 0 && left_[n - 1] < wanted) --n;
-  if (n == 0 || n == errors_.size()) return n == 0 ? 0 : errors_.back();
-  // Between two errors the number goes as a power of the error.
-  const double fall = std::log(left_[n - 1] / std::max(left_[n], 1.0));
-  const double part = fall > 0 ? std::log(left_[n - 1] / wanted) / fall : 0;
-  return errors_[n - 1] * std::pow(errors_[n] / errors_[n - 1], part);
+  if (share <= share_left()) return most_;
+  const double removed = std::max(1 - share, 0.0) / (1 - share_left()) * static_cast<double>(removed_.items());
+  const CostBits cost = removed_.highest_with_below(static_cast<std::uint64_t>(removed));
+  return cost == kUnknownCost ? 0 : std::min(std::sqrt(double{cost_value(cost)}) * voxel_, most_);
 }
 
 }  // namespace isoweave

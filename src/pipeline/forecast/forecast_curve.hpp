@@ -1,32 +1,24 @@
-// How many triangles of tiles are left at several errors.
+// How many triangles of tiles are left at each error.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "isoweave/mesh_options.hpp"
+#include "simplify/cost_histogram.hpp"
 
 namespace isoweave {
 
 class ForecastCurve {
  public:
-  // The errors, ascending: `most`, and where `several` are asked for some below it, in steps from a small part of a
-  // voxel on.
-  ForecastCurve(double voxel, double most, bool several);
+  // voxel: the mean one. Tiles are simplified up to the error `most`.
+  ForecastCurve(double voxel, double most) : voxel_(voxel), most_(most) {}
 
-  const std::vector<double>& errors() const { return errors_; }
+  // Adds a tile: the triangles of the full and of the simplified surface where the ends of the tile hardly disturb it,
+  // and those of the whole tile that collapses remove, by their costs.
+  void add(std::uint64_t all, std::uint64_t left, const CostHistogram& removed);
 
-  // Adds the triangles of a tile: all, and those left at each error.
-  void add(std::uint64_t all, std::span<const std::uint64_t> left) {
-    all_ += static_cast<double>(all);
-    for (std::size_t n = 0; n < left.size(); ++n) left_[n] += static_cast<double>(left[n]);
-  }
-
-  // The share of the triangles that is left at the last error; 1 without tiles.
-  double share_left() const { return all_ > 0 ? std::min(1.0, left_.back() / all_) : 1; }
+  // The share of the triangles that is left at the error `most`; 1 without tiles.
+  double share_left() const;
 
   // The head start of a run to a number of triangles: an error that leaves clearly more of them by this curve, of
   // `open` triangles on the open surface and `of_caps` others that stay. 0: none is known.
@@ -35,10 +27,9 @@ class ForecastCurve {
  private:
   double error_that_leaves(double share) const;
 
-  double voxel_;
-  std::vector<double> errors_;
-  std::vector<double> left_;  // triangles at each error
-  double all_ = 0;
+  double voxel_, most_;
+  double all_ = 0, left_ = 0;  // triangles in the middle of tiles
+  CostHistogram removed_;      // from tiles
 };
 
 }  // namespace isoweave

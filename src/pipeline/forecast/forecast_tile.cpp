@@ -55,26 +55,53 @@ std::uint64_t TriangleMap::count(std::size_t i, std::size_t j, std::size_t side)
   return sum;
 }
 
-Rectangle TriangleMap::busy_part(double part) const {
-  const double bins = std::clamp(std::round(std::sqrt(part) * kBins), 1.0, double{kBins});
-  const auto side = static_cast<std::size_t>(bins);
-  const double usual = static_cast<double>(count(0, 0, kBins)) * bins * bins / (kBins * kBins);
-  std::array<std::size_t, 2> best{};
-  std::pair<double, double> best_rank{-1, 0};
-  for (std::size_t j = 0; j + side <= kBins; ++j) {
-    for (std::size_t i = 0; i + side <= kBins; ++i) {
-      const double beside =
-          std::hypot(static_cast<double>(2 * i + side) - kBins, static_cast<double>(2 * j + side) - kBins);
-      const std::pair rank{std::min(static_cast<double>(count(i, j, side)), usual / 2), -beside};
-      if (rank > best_rank) best_rank = rank, best = {i, j};
-    }
+std::vector<Rectangle> TriangleMap::parts(std::size_t count, double share, double most) const {
+  const auto side_of = [](double area) {
+    return static_cast<std::size_t>(std::clamp(std::floor(std::sqrt(area) * kBins), 1.0, double{kBins}));
+  };
+  const std::uint64_t all = this->count(0, 0, kBins);
+  const auto parts_of_all = static_cast<double>(count);
+  if (all == 0 || (most >= 1 && 2 * share * parts_of_all > 1)) {
+    const std::size_t side = side_of(most);
+    return {rectangle((kBins - side) / 2, (kBins - side) / 2, side)};
   }
+  const std::size_t most_side = side_of(most / parts_of_all);
+  std::vector<Rectangle> parts;
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto [i, j] = bin_at(all * (2 * n + 1) / (2 * count));
+    std::size_t side = 1;
+    const auto around = [&](std::size_t at) { return std::min(at - std::min(at, side / 2), kBins - side); };
+    const auto is_enough = [&] {
+      return static_cast<double>(this->count(around(i), around(j), side)) >= share * static_cast<double>(all);
+    };
+    while (side < most_side && !is_enough()) ++side;
+    parts.push_back(rectangle(around(i), around(j), side));
+  }
+  return parts;
+}
+
+// The bin with the triangle of that rank. Bins are counted along a curve that leaves no square before it has been in
+// all of it (G. M. Morton 1966), so that ranks far from each other lie in different parts of the slice.
+std::array<std::size_t, 2> TriangleMap::bin_at(std::uint64_t rank) const {
+  std::uint64_t before = 0;
+  std::array<std::size_t, 2> bin{};
+  for (std::size_t code = 0; code < kBins * kBins; ++code) {
+    bin = {};
+    for (std::size_t bit = 0; bit < 10; ++bit) bin[bit % 2] |= (code >> bit & 1) << bit / 2;
+    before += counts_[bin[1] * kBins + bin[0]];
+    if (before > rank) break;
+  }
+  return bin;
+}
+
+Rectangle TriangleMap::rectangle(std::size_t i, std::size_t j, std::size_t side) const {
+  const std::array from{i, j};
   Rectangle found;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto edge = [&](std::size_t at) { return dims_[axis] * static_cast<std::int64_t>(at) / std::int64_t{kBins}; };
     const std::int64_t least = std::min<std::int64_t>(2, dims_[axis]);
-    found.from[axis] = std::min(edge(best[axis]), dims_[axis] - least);
-    found.size[axis] = std::max(edge(best[axis] + side) - found.from[axis], least);
+    found.from[axis] = std::min(edge(from[axis]), dims_[axis] - least);
+    found.size[axis] = std::max(edge(from[axis] + side) - found.from[axis], least);
   }
   return found;
 }
@@ -96,11 +123,10 @@ void Tile::take(std::int64_t n, std::span<const std::byte> whole) {
 Tile Tile::cut(const Rectangle& part) const {
   Rectangle inner;
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const std::int64_t end = std::min(part.from[axis] + part.size[axis], part_.from[axis] + part_.size[axis]);
-    inner.from[axis] = std::max(part.from[axis] - part_.from[axis], std::int64_t{0});
-    inner.size[axis] = end - part_.from[axis] - inner.from[axis];
+    inner.size[axis] = std::min(part.size[axis], part_.size[axis]);
+    inner.from[axis] =
+        std::clamp<std::int64_t>(part.from[axis] - part_.from[axis], 0, part_.size[axis] - inner.size[axis]);
   }
-  if (std::ranges::min(inner.size) < 2) return *this;
   Tile smaller(info_, inner, info_.dims[2]);
   for (std::int64_t n = 0; n < info_.dims[2]; ++n) smaller.take(n, std::span(samples_).subspan(offset(n)));
   return smaller;

@@ -33,15 +33,19 @@ class TriangleMap {
   // A triangle at a place of the slice, in samples.
   void add(double i, double j) { ++counts_[bin(j, 1) * kBins + bin(i, 0)]; }
 
-  // The square part of a slice (as far as samples are square) with about `part` of its area, nearest to the middle
-  // among those with at least half as many triangles as such a part has on average, or more of them than any other.
-  Rectangle busy_part(double part) const;
+  // `count` square parts of a slice (as far as samples are square), each with at least a share of the triangles. They
+  // lie where the triangles do: many parts where there are many of them. Together they are no more than `most` of the
+  // slice; all of it where that is allowed and little more than the parts. One part around the middle while no triangle
+  // is known.
+  std::vector<Rectangle> parts(std::size_t count, double share, double most) const;
 
  private:
   static constexpr std::size_t kBins = 32;
 
   std::size_t bin(double place, std::size_t axis) const;
   std::uint64_t count(std::size_t i, std::size_t j, std::size_t side) const;
+  std::array<std::size_t, 2> bin_at(std::uint64_t rank) const;
+  Rectangle rectangle(std::size_t i, std::size_t j, std::size_t side) const;
 
   std::array<std::int64_t, 3> dims_;
   std::vector<std::uint64_t> counts_;
@@ -59,7 +63,7 @@ class Tile final : public SliceSource {
   // Takes slice n from a whole one of the volume.
   void take(std::int64_t n, std::span<const std::byte> slice);
 
-  // The part of the tile that lies in another part of the slices; the whole tile if no part does.
+  // A part of the tile: another part of the slices, moved into the tile.
   Tile cut(const Rectangle& part) const;
 
  private:

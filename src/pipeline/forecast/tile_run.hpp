@@ -1,0 +1,21 @@
+// The run that simplifies a tile, and counts what it removes.
+#pragma once
+
+#include "isoweave/mesh.hpp"
+#include "isoweave/mesh_options.hpp"
+#include "isoweave/report.hpp"
+#include "isoweave/run.hpp"
+#include "pipeline/forecast/forecast_tile.hpp"
+#include "simplify/cost_histogram.hpp"
+
+namespace isoweave {
+
+struct TileRun {
+  MeshReport report;
+  CostHistogram removed;  // triangles, by the costs of the collapses
+};
+
+// Simplifies a tile to the error of the options. Of the control threads, slab and stop count.
+TileRun simplify_tile(Tile& tile, MeshSink& sink, const MeshOptions& options, const RunControl& control);
+
+}  // namespace isoweave
