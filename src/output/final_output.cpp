@@ -10,11 +10,13 @@ constexpr std::int64_t kFinalBlock = 4096;
 }  // namespace
 
 void FinalOutput::take(FinalSource& source) {
-  const Receipt first = end();
-  source.take_final(first, piece_);
-  write(first.number);
-  if (piece_.locked.size() > 0) keep_locked(first.number);
-  open_edges_ += piece_.open_edges;
+  do {
+    const Receipt first = end();
+    source.take_final(first, piece_);
+    write(first.number);
+    if (piece_.locked.size() > 0) keep_locked(first.number);
+    open_edges_ += piece_.open_edges;
+  } while (source.has_more());
   if (output_.components().labels() <= source.held_vertices()) return;
   source.change_labels([&](std::span<std::uint32_t*> labels) { output_.components().compact(labels); });
 }

@@ -55,7 +55,8 @@ void HostBackEnd::write(const SurfacePiece& piece, SlabRecord& record, MeshRepor
       simplifier_.close_gaps();
     } else if (counts()) {
       FinalPiece dropped;
-      source.take_final({0, 0}, dropped);
+      do source.take_final({0, 0}, dropped);
+      while (source.has_more());
     } else {
       outputs_.back()->take(source);
     }

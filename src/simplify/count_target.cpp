@@ -11,8 +11,9 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kCountBlock = 8192;
-constexpr std::uint64_t kInOrder = 4000;  // the last triangles are left to one queue
-constexpr std::uint64_t kShown = 32'000;  // edges that the queue is shown first
+constexpr std::uint64_t kInOrder = 4000;  // the last triangles, or a small part of all, are left to one queue
+constexpr std::uint64_t kPartInOrder = 256;
+constexpr std::uint64_t kShown = 8;  // edges that the queue is shown first, for each of these triangles
 
 // The head start of the run that counts after one that left too many triangles: up to an error twice as large the first
 // time, then eight times, 512 times and so on, as the number may be out of reach.
@@ -101,21 +102,22 @@ HeadStart CountTarget::next_head_start() const {
 
 void CountTarget::finish() {
   simplifier_.close_gaps();
-  while (simplifier_.triangles() > target_ + kInOrder) {
+  const std::uint64_t in_order = std::max(kInOrder, target_ / kPartInOrder);
+  while (simplifier_.triangles() > target_ + in_order) {
     const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
     const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each);
     if (limit <= simplifier_.zone().limit) break;
     raise_limit(limit);
-    simplifier_.close_gaps();
+    simplifier_.close_gaps(2);  // what is left leaves soon
   }
-  decide_last();
+  decide_last(kShown * in_order);
   simplifier_.zone().retire_all();
 }
 
-// Decides the last edges in order. The queue is shown those up to a cost that is likely to do, then those up to more.
-void CountTarget::decide_last() {
+// Decides the last edges in order. The queue is shown so many of them, which are likely to do, then more.
+void CountTarget::decide_last(std::uint64_t edges) {
   Zone& zone = simplifier_.zone();
-  for (std::uint64_t edges = kShown; simplifier_.triangles() > target_; edges *= 8) {
+  for (; simplifier_.triangles() > target_; edges *= 8) {
     const CostBits limit = limit_within(edges);
     zone.limit = limit > zone.limit ? limit : zone.options.retire;
     simplifier_.decide_in_order(target_);

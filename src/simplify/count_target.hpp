@@ -63,7 +63,7 @@ class CountTarget {
   CostBits limit_that_leaves(std::uint64_t triangles) const;
   CostBits limit_within(std::uint64_t edges) const;
   void raise_limit(CostBits limit);
-  void decide_last();
+  void decide_last(std::uint64_t edges);
   bool is_counted() const { return head_start_.met != kUnknownCost; }
 
   Simplifier& simplifier_;

@@ -48,9 +48,12 @@ class FinalSource {
   FinalSource& operator=(const FinalSource&) = delete;
   virtual ~FinalSource() = default;
 
-  // Fills in the triangles that have become final, each once. The new vertices get consecutive numbers and labels from
+  // Fills in triangles that have become final, each once. The new vertices get consecutive numbers and labels from
   // `first` on as their receipts.
   virtual void take_final(const Receipt& first, FinalPiece& piece) = 0;
+
+  // Whether take_final() has left some for another call, as they are many.
+  virtual bool has_more() const { return false; }
 
   virtual std::size_t held_vertices() const = 0;
 

@@ -12,7 +12,7 @@ std::int64_t signed_count(std::size_t count) { return static_cast<std::int64_t>(
 
 }  // namespace
 
-void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece) {
+void HandOver::fill(std::span<const Index> triangles, const Receipt& first, FinalPiece& piece) {
   list_vertices(triangles);
   fill_vertices(first, piece);
   piece.locked.resize(0);
@@ -21,7 +21,7 @@ void HandOver::fill(const std::vector<Index>& triangles, const Receipt& first, F
 }
 
 // Lists the vertices that triangles name, and final ones where they go early, in memory order, and numbers them.
-void HandOver::list_vertices(const std::vector<Index>& triangles) {
+void HandOver::list_vertices(std::span<const Index> triangles) {
   place_.assign(zone_.vertices.size(), 0);
   executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t n) {
     for (const HalfEdge& side : zone_.triangles[triangles[static_cast<std::size_t>(n)]].sides) {
@@ -84,7 +84,7 @@ void HandOver::fill_vertices(const Receipt& first, FinalPiece& piece) const {
 }
 
 // Fills in the triangles, and takes them out of the zone or keeps them in the same pass: what it reads is far apart.
-void HandOver::fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece) {
+void HandOver::fill_triangles(std::span<const Index> triangles, FinalPiece& piece) {
   open_edges_ = 0;
   piece.triangles.resize(triangles.size());
   executor_.for_each(signed_count(triangles.size()), kHandOverBlock, [&](std::int64_t i) {

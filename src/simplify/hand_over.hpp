@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "parallel/parallel.hpp"
@@ -20,7 +21,7 @@ class HandOver {
 
   // Fills in triangles of the level, which have become final there, with their vertices in memory order. Those of the
   // last mesh are removed from the zone; the others stay for the levels behind.
-  void fill(const std::vector<Index>& triangles, const Receipt& first, FinalPiece& piece);
+  void fill(std::span<const Index> triangles, const Receipt& first, FinalPiece& piece);
 
   // Lets the receiver replace the labels in the receipts that are held.
   void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change);
@@ -34,11 +35,11 @@ class HandOver {
     return is_last() ? zone_.states[v] == VertexState::kFinal : zone_.levels[level_][v].final;
   }
 
-  void list_vertices(const std::vector<Index>& triangles);
+  void list_vertices(std::span<const Index> triangles);
   template <class Select>
   void list(std::vector<Index>& vertices, const Select& select);
   void fill_vertices(const Receipt& first, FinalPiece& piece) const;
-  void fill_triangles(const std::vector<Index>& triangles, FinalPiece& piece);
+  void fill_triangles(std::span<const Index> triangles, FinalPiece& piece);
   void mark_locked(FinalPiece& piece) const;
   void count_open(const HalfEdge& side, const HalfEdge& next_side);
   void keep(Index triangle);

@@ -7,13 +7,17 @@
 namespace isoweave {
 
 void Queue::run(const std::atomic<bool>* stop) {
+  decide(stop);
+  give_all_turns(zone_);
+  ++rounds_;
+}
+
+void Queue::decide(const std::atomic<bool>* stop) {
   offer_live_edges();
   while (removed() < most_removed_ && heap_.pop_group(group_)) {
     decide_group();
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) return;
   }
-  give_all_turns(zone_);
-  ++rounds_;
 }
 
 void Queue::offer_live_edges() {

@@ -19,6 +19,10 @@ class Queue final : public Driver {
       : zone_(zone), decider_(zone), most_removed_(most_removed) {}
 
   void run(const std::atomic<bool>* stop) override;
+
+  // A run without its end, where no other driver goes on: turns are not renewed.
+  void decide(const std::atomic<bool>* stop);
+
   DecisionCounts counts() const override { return decider_.counts(); }
   std::uint64_t rounds() const override { return rounds_; }
   void count_removed() override { removed_by_key_.begin(); }

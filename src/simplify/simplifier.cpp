@@ -1,6 +1,7 @@
 #include "simplify/simplifier.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "isoweave/error.hpp"
@@ -17,6 +18,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::int64_t kSimplifierBlock = 8192;
+constexpr std::size_t kTakenAtOnce = 1 << 18;  // final triangles: their copies must not add to the peak of memory
 
 std::unique_ptr<Driver> make_driver(Schedule schedule, Zone& zone, const Executor& executor) {
   switch (schedule) {
@@ -37,19 +39,30 @@ class Simplifier::Source final : public FinalSource {
       : simplifier_(simplifier), level_(level), hand_over_(simplifier.zone_, level, cut, simplifier.executor_) {}
 
   void take_final(const Receipt& first, FinalPiece& piece) override {
-    const std::vector<Index> triangles = simplifier_.final_triangles(level_, simplifier_.limit_of(level_));
-    hand_over_.fill(triangles, first, piece);
-    if (simplifier_.is_last(level_)) simplifier_.note_dropped(triangles.size());
+    if (!has_more()) list();
+    const std::span<const Index> next = std::span(triangles_).subspan(taken_);
+    const std::span<const Index> some = next.first(std::min(next.size(), kTakenAtOnce));
+    hand_over_.fill(some, first, piece);
+    taken_ += some.size();
+    if (!has_more() && simplifier_.is_last(level_)) simplifier_.note_dropped(triangles_.size());
   }
+  bool has_more() const override { return taken_ < triangles_.size(); }
   std::size_t held_vertices() const override { return simplifier_.zone_.vertices.size(); }
   void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) override {
     hand_over_.change_labels(change);
   }
 
  private:
+  void list() {
+    triangles_ = simplifier_.final_triangles(level_, simplifier_.limit_of(level_));
+    taken_ = 0;
+  }
+
   Simplifier& simplifier_;
   const std::size_t level_;
   HandOver hand_over_;
+  std::vector<Index> triangles_;  // final ones, of which some have been taken
+  std::size_t taken_ = 0;
 };
 
 Simplifier::Simplifier(const SimplifierOptions& options, const Executor& executor, const std::atomic<bool>* stop)
@@ -81,7 +94,7 @@ void Simplifier::decide(std::size_t level) {
 void Simplifier::decide_in_order(std::uint64_t triangles) {
   if (this->triangles() <= triangles) return;
   Queue queue(zone_, this->triangles() - triangles);
-  queue.run(stop_);
+  queue.decide(stop_);
   counts_before_ += queue.counts();
   if (stop_ != nullptr && stop_->load()) throw Interrupted("interrupted, nothing was written");
 }
@@ -159,9 +172,9 @@ void Simplifier::note_dropped(std::size_t triangles) {
   close_gaps();
 }
 
-void Simplifier::close_gaps() {
+void Simplifier::close_gaps(std::uint64_t part) {
   const std::uint64_t gone = zone_.triangle_count() - live_triangles();
-  if (8 * gone >= zone_.triangle_count()) zone_.compact(executor_);
+  if (part * gone >= zone_.triangle_count()) zone_.compact(executor_);
 }
 
 CostHistogram Simplifier::removed_by_key() const {

@@ -69,15 +69,15 @@ class Simplifier {
   void decide(std::size_t level);
 
   // For a complete surface, after decide(): decides in the order of the keys until no more than `triangles` of the
-  // surface are left, or no edge is. Throws Interrupted.
+  // surface are left, or no edge is. Turns are not renewed, so decide() must not follow. Throws Interrupted.
   void decide_in_order(std::uint64_t triangles);
 
   // Where the final triangles of a level come from, after decide(level): those whose vertices are all final there, in
   // memory order. Triangles of the last level leave the zone, which is compacted.
   FinalSource& final_source(std::size_t level = 0) { return *sources_[level]; }
 
-  // Compacts the zone if much of it has gone.
-  void close_gaps();
+  // Compacts the zone if one in `part` of its triangles has gone.
+  void close_gaps(std::uint64_t part = 8);
 
   // The triangles of the surface so far: those held, and those handed out.
   std::uint64_t triangles() const { return appended_ - counts().removed; }

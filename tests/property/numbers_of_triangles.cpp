@@ -138,5 +138,40 @@ TEST(NumbersOfTriangles, ForecastsKnowWhatIsLeftAtLeast) {
   EXPECT_EQ(forecast_mesh(*generate_volume(volume), options).triangles, options.triangles);
 }
 
+// Keeps the mesh, and the size of the largest piece.
+class LargestPiece final : public MeshSink {
+ public:
+  void append(const MeshPiece& piece) override {
+    most = std::max(most, piece.triangles.size());
+    mesh.append(piece);
+  }
+  void finish() override { mesh.finish(); }
+
+  MemorySink mesh;
+  std::size_t most = 0;
+};
+
+// All triangles become final at once when the number is met. Handed over together, their copies would add to the peak
+// of memory.
+TEST(NumbersOfTriangles, ManyFinalTrianglesComeInSeveralPieces) {
+  const std::uint64_t triangles = 700'000;
+  const GenerateOptions volume{"smooth", {152, 152, 152}, SampleType::kUint8};
+  MeshOptions options;
+  options.iso = 127.5;
+  options.error = Length::units(kNoLimit);
+  options.triangles = triangles;
+  LargestPiece sink;
+  const MeshReport report = mesh_volume(*generate_volume(volume), sink, options, {.threads = 2});
+  EXPECT_EQ(report.triangles, triangles);
+  EXPECT_LE(sink.most, std::size_t{1} << 18);
+  ASSERT_EQ(sink.mesh.mesh.triangles.size(), triangles);
+  const MeshCheck check = check_mesh(sink.mesh.mesh);
+  EXPECT_EQ(check.digest, report.digest);
+  EXPECT_EQ(check.open_edges, 0U);
+  EXPECT_EQ(check.nonmanifold_edges + check.nonmanifold_vertices, 0U);
+  EXPECT_EQ(check.components, report.components);
+  EXPECT_EQ(check.euler, report.euler);
+}
+
 }  // namespace
 }  // namespace isoweave::testing

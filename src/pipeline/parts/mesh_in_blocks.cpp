@@ -31,6 +31,7 @@ class FinalOfBlock final : public FinalSource {
   FinalOfBlock(FinalSource& block, PartStore& store, std::size_t level) : block_(block), store_(store), level_(level) {}
 
   void take_final(const Receipt& first, FinalPiece& piece) override { block_.take_final(first, piece); }
+  bool has_more() const override { return block_.has_more(); }
   std::size_t held_vertices() const override { return block_.held_vertices() + store_.vertices(); }
   void change_labels(const std::function<void(std::span<std::uint32_t*>)>& change) override {
     block_.change_labels([&](std::span<std::uint32_t*> here) {

@@ -35,12 +35,15 @@ TaskResult TaskWork::glue(std::vector<ZonePart> parts) {
 // Keeps what is final in a level until the task is done.
 void TaskWork::keep_final(Simplifier& simplifier, std::size_t level) {
   LevelCounts& counts = result_.facts.levels[level];
-  FinalPiece piece;
-  simplifier.final_source(level).take_final({(number_ << kPlaceBits) + counts.vertices, 0}, piece);
-  counts.vertices += piece.positions.size();
-  counts.triangles += piece.triangles.size();
-  counts.open_edges += piece.open_edges;
-  if (piece.positions.size() + piece.triangles.size() > 0) result_.pieces[level].push_back(std::move(piece));
+  FinalSource& source = simplifier.final_source(level);
+  do {
+    FinalPiece piece;
+    source.take_final({(number_ << kPlaceBits) + counts.vertices, 0}, piece);
+    counts.vertices += piece.positions.size();
+    counts.triangles += piece.triangles.size();
+    counts.open_edges += piece.open_edges;
+    if (piece.positions.size() + piece.triangles.size() > 0) result_.pieces[level].push_back(std::move(piece));
+  } while (source.has_more());
   between_();
 }
 
