@@ -7,18 +7,24 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <string_view>
 
 #include "options/values.hpp"
 #include "report/print.hpp"
 
 namespace isoweave::cli {
+namespace {
+
+constexpr std::string_view kInfinite = "inf";  // an error without a bound
+
+}  // namespace
 
 void add_stop_options(CLI::App& verb, StopOptions& stop) {
   verb.add_option(
       "--error", stop.error,
       "How far the surface may move, typically (RMS); the largest distance may be several times that, see "
       "--max-distance. In vox, mm, um, nm, in, the unit of the input, or % of the diagonal of its box (that of the "
-      "volume, of the mesh); 0: no simplification");
+      "volume, of the mesh); 0: no simplification; inf, beside --max-distance or a number: no bound");
   CLI::Option* const triangles =
       verb.add_option("--triangles", stop.triangles,
                       "Stop at so many triangles, or earlier at --error (without it: at a twentieth of the diagonal)");
@@ -37,7 +43,12 @@ void add_stop_options(CLI::App& verb, StopOptions& stop) {
 Length stop_error(const StopOptions& stop, const std::string& usual, const LengthBasis& basis) {
   if (stop.has_levels()) return parse_error_length("--lods", stop_levels(stop).back().error, basis);
   if (stop.error.empty() && !stop.max_distance.empty() && !stop.has_number()) return stop_distance(stop, basis);
-  if (stop.error.empty() && stop.has_number()) return Length::units(std::numeric_limits<double>::infinity());
+  const bool bounded = stop.has_number() || !stop.max_distance.empty();
+  if (stop.error == kInfinite && !bounded) {
+    wrong_value("--error", "a length, or inf beside --max-distance or a number", stop.error);
+  }
+  const bool infinite = stop.error == kInfinite || (stop.error.empty() && stop.has_number());
+  if (infinite) return Length::units(std::numeric_limits<double>::infinity());
   return parse_error_length("--error", stop.error.empty() ? usual : stop.error, basis);
 }
 
@@ -53,7 +64,7 @@ std::vector<StopOptions> stop_levels(const StopOptions& stop) {
 std::vector<GivenLength> given_lengths(const StopOptions& stop) {
   std::vector<GivenLength> lengths{{"--max-distance", stop.max_distance}};
   for (const StopOptions& level : stop_levels(stop)) {
-    lengths.push_back({stop.has_levels() ? "--lods" : "--error", level.error});
+    if (level.error != kInfinite) lengths.push_back({stop.has_levels() ? "--lods" : "--error", level.error});
   }
   return lengths;
 }

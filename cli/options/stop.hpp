@@ -27,7 +27,8 @@ struct StopOptions {
 void add_stop_options(CLI::App& verb, StopOptions& stop);
 
 // `usual` is the error where no option is given. Where only a guaranteed distance is given, that is the error. Where
-// only a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken.
+// only a number of triangles is given, the error is infinite, in place of which most_shape_error() is taken; "inf"
+// beside one of these stays infinite.
 Length stop_error(const StopOptions& stop, const std::string& usual, const LengthBasis& basis);
 
 // The options of each level of detail, finest first, as they would be for that mesh alone.

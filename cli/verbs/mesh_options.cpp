@@ -105,7 +105,8 @@ void set_automatic_normals(const MeshArguments& arguments, MeshOptions& options)
 void set_lengths(const MeshArguments& arguments, const VolumeInfo& volume, MeshOptions& options) {
   const LengthBasis basis = length_basis(volume);
   options.error = stop_error(arguments.stop, kUsualError, basis);
-  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(volume));
+  if (std::isinf(options.error.value) && arguments.stop.error.empty())
+    options.error = Length::units(most_shape_error(volume));
   options.max_distance = stop_distance(arguments.stop, basis);
   options.levels = finer_levels(arguments.stop, basis);
 }

@@ -197,7 +197,8 @@ void run_simplify(SimplifyArguments arguments) {
   options = simplify_options(arguments, basis);
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
-  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
+  if (std::isinf(options.error.value) && arguments.stop.error.empty())
+    options.error = Length::units(most_shape_error(mesh));
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = borrow(stop_on_signal());
   Evidence evidence(run, arguments.page);

@@ -216,7 +216,8 @@ enum { IW_DEVICE_AUTO = 0, IW_DEVICE_CPU, IW_DEVICE_CUDA };
 // volume or of the box around the mesh, or a number in its unit.
 typedef struct iw_simplify_options {
   size_t struct_size;
-  const char* error;         // NULL: "0.2vox" for volumes, unless one of the next four is given
+  const char* error;         // NULL: "0.2vox" for volumes, unless one of the next four is given; "inf" beside
+                             // max_distance, triangles or ratio
   const char* levels;        // errors of several meshes, ascending: "0.1vox,0.3vox,1vox"; one output for each
   const char* max_distance;  // a guarantee; NULL: none
   uint64_t triangles;        // stop at this number; 0: no such number

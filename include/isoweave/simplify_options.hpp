@@ -18,7 +18,8 @@ enum class Quality : std::uint8_t { kFast, kNormal, kFine };
 struct SimplifyOptions {
   Length error = Length::voxels(0.2);  // root of the largest quadric error of a collapse; 0: no simplification
   // No point of the result is farther than this from the surface before simplification; 0: no such guarantee. Points of
-  // that surface may be farther from the result. Costs time, and memory for that surface around the undecided zone.
+  // that surface may be farther from the result. Costs time, and memory for that surface around the undecided zone. The
+  // error may be infinite then, for the fewest triangles within the distance: it stands for 64 times the distance.
   Length max_distance{};
   // Stop at the first collapse that leaves no more triangles than this, unless the error stops the run before; 0: no
   // such number. The error may be infinite then. Each closed component keeps 4 triangles, so the number may be out of

@@ -117,6 +117,7 @@ def mesh(
             it was.
         error: how far simplification may go: ``"0.2vox"``, ``"50um"``, ``"0.1%"`` of the volume's diagonal, or a
             number in the volume's unit; 0: the full surface. None: "0.2vox", unless ``triangles``, ``ratio``, ``max_distance`` or ``lods`` says where to stop.
+            "inf" beside ``max_distance``: the fewest triangles within it; beside a number: no bound.
         triangles: stop at this number.
         ratio: stop at this part of the full surface's triangles, which takes a pass over the volume of its own.
         max_distance: a guarantee: no point of the mesh is farther than this from the full surface.

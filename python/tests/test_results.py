@@ -31,6 +31,7 @@ def signed_volume(vertices: np.ndarray, faces: np.ndarray) -> float:
         ({"triangles": 300}, ["--triangles", "300"]),
         ({"ratio": 0.2, "largest": True}, ["--ratio", "0.2", "--largest"]),
         ({"max_distance": "0.3vox"}, ["--max-distance", "0.3vox"]),
+        ({"max_distance": 0.3, "error": float("inf")}, ["--max-distance", "0.3", "--error", "inf"]),
         ({"inside": "below", "closed": False}, ["--inside", "below", "--open"]),
         ({"smooth": 4}, ["--smooth=4"]),
         ({"min_component": 200}, ["--min-component", "200"]),

@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "capi/guard.hpp"
@@ -42,8 +43,12 @@ bool has_number(const iw_simplify_options& given) { return given.triangles > 0 |
 
 // The error up to which a run goes.
 Length error_of(const iw_simplify_options& given, const LengthBasis& basis, const std::string& usual) {
-  if (given.error != nullptr) return length("error", given.error, basis);
-  if (has_number(given)) return Length::units(std::numeric_limits<double>::infinity());
+  const Length infinite = Length::units(std::numeric_limits<double>::infinity());
+  const bool bounded = has_number(given) || given.max_distance != nullptr;
+  if (given.error != nullptr) {
+    return bounded && std::string_view(given.error) == "inf" ? infinite : length("error", given.error, basis);
+  }
+  if (has_number(given)) return infinite;
   if (given.max_distance != nullptr) return length("max_distance", given.max_distance, basis);
   if (usual.empty())
     throw std::invalid_argument("expected one of error, levels, max_distance, triangles and ratio, found none");
@@ -98,7 +103,8 @@ MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options
   MeshOptions options;
   static_cast<SimplifyOptions&>(options) =
       simplify_options(simplify, {info.geometry.unit, box_diagonal(info)}, "0.2vox");
-  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(info));
+  if (std::isinf(options.error.value) && simplify.error == nullptr)
+    options.error = Length::units(most_shape_error(info));
   options.iso = given.iso;
   options.inside_above = given.inside_below == 0;
   options.closed = given.open == 0;

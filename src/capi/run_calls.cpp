@@ -175,7 +175,7 @@ void simplify_into(TriangleMesh mesh, const iw_simplify_options& given, const Ru
   const ComponentRule rule = component_rule(given);
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
-  if (std::isinf(options.error.value)) options.error = Length::units(most_shape_error(mesh));
+  if (std::isinf(options.error.value) && given.error == nullptr) options.error = Length::units(most_shape_error(mesh));
   if (given.ratio != 0) options.triangles = share_of(given.ratio, [&] { return std::uint64_t{mesh.triangles.size()}; });
   MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
   report.components_dropped = dropped.components;

@@ -26,6 +26,8 @@ bool takes_blocks(RunKind kind) { return kind == RunKind::kBlocks || kind == Run
 
 double length_in(const Length& length, double side) { return length.value * (length.in_voxels ? side : 1); }
 
+constexpr double kFarError = 64;  // of a distance: hardly an edge that costs more stays within it
+
 double most_distance(const Length& length, double side) {
   const double distance = length_in(length, side);
   if (distance >= 0 && std::isfinite(distance)) return distance;
@@ -82,7 +84,7 @@ SimplifyTask resolve_simplification(const SimplifyOptions& options, const Surfac
   SimplifyTask task;
   task.side = measure.side;
   task.unit = measure.unit;
-  task.error = length_in(options.error, measure.side);
+  task.error = error_of(options, measure.side);
   task.level_errors = level_errors(options, task.error, measure.side);
   task.triangles = options.triangles;
   task.zone = {measure.numbering,
@@ -162,6 +164,12 @@ bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) 
     const Threshold<T> threshold = threshold_for<T>(rule.iso, rule.above);
     return threshold.reachable && (rule.above ? stored >= threshold.value : stored <= threshold.value);
   });
+}
+
+double error_of(const SimplifyOptions& options, double side) {
+  const double error = length_in(options.error, side);
+  const double distance = most_distance(options.max_distance, side);
+  return std::isinf(error) && error > 0 && distance > 0 && options.triangles == 0 ? kFarError * distance : error;
 }
 
 CostBits retire_cost(double error, double a0, std::uint64_t triangles) {

@@ -80,6 +80,9 @@ std::unique_ptr<IndexedSource> indexed(SliceSource& volume, std::shared_ptr<cons
 // Whether a sample of that type lies inside.
 bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
 
+// The error of a run, in the unit of the surface. `side`: that of a voxel.
+double error_of(const SimplifyOptions& options, double side);
+
 // The cost, in units of a0, above which edges are retired.
 CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 

@@ -334,11 +334,36 @@ TEST(CliDistance, IsGuaranteedAndIsTheErrorWhereNoneIsGiven) {
   EXPECT_LT(small.at("triangles"), bounded.at("triangles_extracted"));
 }
 
+// An infinite error is 64 times the distance; beside a number it is none.
+TEST(CliDistance, TheErrorMayBeInfinite) {
+  constexpr const char* kSmall = "generate:gyroid:12x12x12:uint8";
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), mesh({"-o", "full.ply", "--error", "0"}, kSmall)).code, 0);
+  const auto digest_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"-o", "b.ply", "--report", "r.json"});
+    return report_of(folder, arguments).at("digest").get<std::string>();
+  };
+  const auto of_volume = [&](const std::vector<std::string>& stop) { return digest_of(mesh(stop, kSmall)); };
+  const std::string fewest = of_volume({"--max-distance", "0.3vox", "--error", "inf"});
+  EXPECT_EQ(fewest, of_volume({"--max-distance", "0.3vox", "--error", "19.2vox"}));
+  EXPECT_NE(fewest, of_volume({"--max-distance", "0.3vox", "--error", "1vox"}));
+  const std::string to_number = of_volume({"--triangles", "4", "--error", "inf"});
+  EXPECT_EQ(to_number, of_volume({"--triangles", "4", "--error", "1000000mm"}));
+  EXPECT_NE(to_number, of_volume({"--triangles", "4"}));
+  EXPECT_EQ(digest_of({"simplify", "full.ply", "--max-distance", "0.3", "--error", "inf"}),
+            digest_of({"simplify", "full.ply", "--max-distance", "0.3", "--error", "19.2"}));
+  EXPECT_NE(
+      run(folder.path(), mesh({"-o", "c.ply", "--max-distance", "0.3vox", "--error", "inf", "--dry-run"}, kSmall)).out,
+      "");
+}
+
 TEST(CliDistance, WrongUseIsRefused) {
   const files::Folder folder;
   expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "0"}), 2, "--max-distance: expected a length above 0");
   expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "-1"}), 2, "--max-distance");
   expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "near"}), 2, "'near'");
+  expect_failure(folder, mesh({"-o", "a.ply", "--max-distance", "inf"}), 2, "--max-distance: expected a length");
+  expect_failure(folder, mesh({"-o", "a.ply", "--error", "inf"}), 2, "inf beside --max-distance");
   expect_failure(folder, mesh({"-o", "a.ply", "--max-distance"}), 2, "--max-distance");
 }
 

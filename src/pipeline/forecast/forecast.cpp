@@ -83,7 +83,7 @@ class Forecaster {
     control_.slab = control.slab;
     control_.stop = control.stop;
     may_count_ = can_repeat(volume, options, control);
-    error_ = options.error.value * (options.error.in_voxels ? mean_voxel(info_.geometry) : 1);
+    error_ = error_of(options, mean_voxel(info_.geometry));
     // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
     curve_.emplace(mean_voxel(info_.geometry), tile_error_);
