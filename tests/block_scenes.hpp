@@ -38,6 +38,16 @@ inline BlockScene scene_of(const std::string& name, const std::string& kind, con
   return scene;
 }
 
+// More triangles become final at once than are handed over together, in both levels.
+inline BlockScene large_scene() {
+  const GenerateOptions volume{"smooth", {128, 128, 128}, SampleType::kUint8};
+  BlockScene scene{"large", [volume] { return generate_volume(volume); }, {}};
+  scene.options.iso = 127.5;
+  scene.options.levels = {Length::voxels(0.01)};
+  scene.options.error = Length::voxels(0.02);
+  return scene;
+}
+
 // Oblique planes: what an edge costs there is rounding alone, so the last bit of every sum decides the order.
 inline BlockScene oblique_planes(const std::string& name, bool closed) {
   constexpr std::int64_t kSide = 26;

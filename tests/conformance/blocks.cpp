@@ -47,5 +47,17 @@ TEST_P(Blocks, AnySizeAndPlaceGivesTheMeshOfTheSweep) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Blocks, ::testing::ValuesIn(block_scenes()),
                          [](const auto& one) { return one.param.name; });
 
+TEST(BlocksOf, ManyFinalTriangles) {
+  if (kSanitized) GTEST_SKIP() << "a large surface, by code that small ones go through as well";
+  BlockOptions blocks;
+  blocks.size = 300;
+  const BlockScene scene = large_scene();
+  const BlockRun found = run_into_memory(scene, [&](std::span<MeshSink* const> sinks) {
+    return mesh_in_blocks(scene.open, sinks, scene.options, blocks, {});
+  });
+  EXPECT_GT(found.report.triangles, 1U << 18);
+  expect_same(found, run_sweep(scene));
+}
+
 }  // namespace
 }  // namespace isoweave::testing

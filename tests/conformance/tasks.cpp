@@ -92,6 +92,17 @@ TEST(TaskFolder, SeveralWorkersShareTheTasks) {
   for (const std::string& name : folder.entries()) EXPECT_FALSE(name.ends_with(".lock")) << name;
 }
 
+TEST(TaskFolder, ATaskMayHaveManyFinalTriangles) {
+  if (kSanitized) GTEST_SKIP() << "a large surface, by code that small ones go through as well";
+  const files::Folder folder;
+  const TaskMesh mesh = mesh_of(large_scene(), folder.path(), 300);
+  const std::uint64_t count = list_tasks(mesh).count();
+  for (std::uint64_t task = 0; task < count; ++task) do_task(mesh, task, {});
+  const BlockRun expected = run_sweep(large_scene());
+  EXPECT_GT(expected.report.triangles, 1U << 18);
+  expect_same(collect(large_scene(), mesh), expected);
+}
+
 std::string message_of(const std::function<void()>& action) {
   try {
     action();

@@ -253,7 +253,7 @@ class Forecaster {
       CountBetween full = middle_of(tile), left = full;
       all += static_cast<double>(mesh(tile, full, 0).triangles);
       Stopwatch watch;
-      const TileRun run = simplify_tile(tile, left, tile_options(tile_error_), tile_control(3));
+      const TileRun run = simplify_tile(tile, left, tile_options(options_, tile_error_), tile_control(3));
       watch.lap(seconds_simplifying_);
       curve_->add(full.total, left.total, run.removed);
       std::uint64_t most = 0;
@@ -272,20 +272,7 @@ class Forecaster {
 
   // Meshes the open surface of a block, in samples.
   MeshReport mesh(SliceSource& block, MeshSink& sink, std::int64_t slab) const {
-    return mesh_volume(block, sink, tile_options(0), tile_control(slab));
-  }
-
-  MeshOptions tile_options(double error) const {
-    MeshOptions options = options_;
-    options.closed = false;
-    if (options.normals == Normals::kGradient) options.normals = Normals::kAbsent;  // they change no count
-    options.values.reset();
-    options.levels.clear();
-    options.triangles = 0;
-    options.components.reset();
-    options.space = OutputSpace::kIndex;
-    options.error = Length::units(error);
-    return options;
+    return mesh_volume(block, sink, tile_options(options_, 0), tile_control(slab));
   }
 
   RunControl tile_control(std::int64_t slab) const {

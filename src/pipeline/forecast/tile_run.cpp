@@ -9,6 +9,19 @@
 
 namespace isoweave {
 
+MeshOptions tile_options(const MeshOptions& options, double error) {
+  MeshOptions of_tile = options;
+  of_tile.closed = false;
+  if (options.normals == Normals::kGradient) of_tile.normals = Normals::kAbsent;
+  of_tile.values.reset();
+  of_tile.levels.clear();
+  of_tile.triangles = 0;
+  of_tile.components.reset();
+  of_tile.space = OutputSpace::kIndex;
+  of_tile.error = Length::units(error);
+  return of_tile;
+}
+
 TileRun simplify_tile(Tile& tile, MeshSink& sink, const MeshOptions& options, const RunControl& control) {
   TileRun run;
   const Task task = resolve(tile.info(), options, control);

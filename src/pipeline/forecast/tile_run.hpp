@@ -10,6 +10,9 @@
 
 namespace isoweave {
 
+// The options of a run for a part of its volume: the open surface up to an error, with nothing that changes no count.
+MeshOptions tile_options(const MeshOptions& options, double error);
+
 struct TileRun {
   MeshReport report;
   CostHistogram removed;  // triangles, by the costs of the collapses
