@@ -53,7 +53,7 @@ TEST(BlocksOf, ManyFinalTriangles) {
   blocks.size = 300;
   const BlockScene scene = large_scene();
   const BlockRun found = run_into_memory(scene, [&](std::span<MeshSink* const> sinks) {
-    return mesh_in_blocks(scene.open, sinks, scene.options, blocks, {});
+    return mesh_in_blocks(scene.open, sinks, scene.options, blocks, {.slab = 300});
   });
   EXPECT_GT(found.report.triangles, 1U << 18);
   expect_same(found, run_sweep(scene));

@@ -97,7 +97,7 @@ TEST(TaskFolder, ATaskMayHaveManyFinalTriangles) {
   const files::Folder folder;
   const TaskMesh mesh = mesh_of(large_scene(), folder.path(), 300);
   const std::uint64_t count = list_tasks(mesh).count();
-  for (std::uint64_t task = 0; task < count; ++task) do_task(mesh, task, {});
+  for (std::uint64_t task = 0; task < count; ++task) do_task(mesh, task, {.slab = 300});
   const BlockRun expected = run_sweep(large_scene());
   EXPECT_GT(expected.report.triangles, 1U << 18);
   expect_same(collect(large_scene(), mesh), expected);
