@@ -55,29 +55,33 @@ std::uint64_t TriangleMap::count(std::size_t i, std::size_t j, std::size_t side)
   return sum;
 }
 
-std::vector<Rectangle> TriangleMap::parts(std::size_t count, double share, double most) const {
+std::vector<Rectangle> TriangleMap::parts(std::size_t number, double share, double most) const {
   const auto side_of = [](double area) {
     return static_cast<std::size_t>(std::clamp(std::floor(std::sqrt(area) * kBins), 1.0, double{kBins}));
   };
-  const std::uint64_t all = this->count(0, 0, kBins);
-  const auto parts_of_all = static_cast<double>(count);
-  if (all == 0 || (most >= 1 && 2 * share * parts_of_all > 1)) {
+  const std::uint64_t all = count(0, 0, kBins);
+  const auto together = static_cast<double>(number);
+  if (all == 0 || (most >= 1 && 2 * share * together > 1)) {
     const std::size_t side = side_of(most);
     return {rectangle((kBins - side) / 2, (kBins - side) / 2, side)};
   }
-  const std::size_t most_side = side_of(most / parts_of_all);
   std::vector<Rectangle> parts;
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto [i, j] = bin_at(all * (2 * n + 1) / (2 * count));
-    std::size_t side = 1;
-    const auto around = [&](std::size_t at) { return std::min(at - std::min(at, side / 2), kBins - side); };
-    const auto is_enough = [&] {
-      return static_cast<double>(this->count(around(i), around(j), side)) >= share * static_cast<double>(all);
-    };
-    while (side < most_side && !is_enough()) ++side;
-    parts.push_back(rectangle(around(i), around(j), side));
+  for (std::size_t n = 0; n < number; ++n) {
+    const std::uint64_t rank = all * (2 * n + 1) / (2 * number);
+    parts.push_back(part_around(bin_at(rank), share * static_cast<double>(all), side_of(most / together)));
   }
   return parts;
+}
+
+// The smallest square part around a bin, as far as that is inside the slice, with so many triangles; none larger than
+// `most_side`.
+Rectangle TriangleMap::part_around(const std::array<std::size_t, 2>& bin, double triangles,
+                                   std::size_t most_side) const {
+  for (std::size_t side = 1;; ++side) {
+    const auto around = [side](std::size_t at) { return std::min(at - std::min(at, side / 2), kBins - side); };
+    const std::size_t i = around(bin[0]), j = around(bin[1]);
+    if (side >= most_side || static_cast<double>(count(i, j, side)) >= triangles) return rectangle(i, j, side);
+  }
 }
 
 // The bin with the triangle of that rank. Bins are counted along a curve that leaves no square before it has been in

@@ -33,11 +33,11 @@ class TriangleMap {
   // A triangle at a place of the slice, in samples.
   void add(double i, double j) { ++counts_[bin(j, 1) * kBins + bin(i, 0)]; }
 
-  // `count` square parts of a slice (as far as samples are square), each with at least a share of the triangles. They
+  // So many square parts of a slice (as far as samples are square), each with at least a share of the triangles. They
   // lie where the triangles do: many parts where there are many of them. Together they are no more than `most` of the
   // slice; all of it where that is allowed and little more than the parts. One part around the middle while no triangle
   // is known.
-  std::vector<Rectangle> parts(std::size_t count, double share, double most) const;
+  std::vector<Rectangle> parts(std::size_t number, double share, double most) const;
 
  private:
   static constexpr std::size_t kBins = 32;
@@ -45,6 +45,7 @@ class TriangleMap {
   std::size_t bin(double place, std::size_t axis) const;
   std::uint64_t count(std::size_t i, std::size_t j, std::size_t side) const;
   std::array<std::size_t, 2> bin_at(std::uint64_t rank) const;
+  Rectangle part_around(const std::array<std::size_t, 2>& bin, double triangles, std::size_t most_side) const;
   Rectangle rectangle(std::size_t i, std::size_t j, std::size_t side) const;
 
   std::array<std::int64_t, 3> dims_;
