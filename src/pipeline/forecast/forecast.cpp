@@ -58,7 +58,7 @@ constexpr double kCountMargin = 2.5;       // the same, where what is held depen
 constexpr double kHeldOfLeft = 3;          // held while a number of triangles is out of reach, of what will be left
 constexpr double kLeftByCounting = 0.6;    // triangles that a sweep leaves which counts, of the number
 constexpr double kCountedMargin = 1.4;     // of the least cap of such a sweep
-constexpr double kThickSlabs = 0.55;       // time per triangle in slabs as they are chosen, in terms of that in a tile
+constexpr double kThickSlabs = 0.45;       // time per triangle in slabs as they are chosen, in terms of that in a tile
 constexpr double kUsualError = 0.3;        // mean voxels
 
 // How a number of triangles is met: in one sweep, or not at all as too many triangles stay, or in a second sweep after
