@@ -30,6 +30,8 @@ class Fault:
 
 class Handler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
+    # Head and body of an answer are sent one after the other: the second would wait 40 ms for the first one's receipt.
+    disable_nagle_algorithm = True
 
     def log_message(self, *_):
         pass
@@ -132,7 +134,8 @@ class Server:
         self.http.daemon_threads = True
         self.http.handle_error = lambda *_: None  # of clients that go away
         self.url = f"http://127.0.0.1:{self.http.server_address[1]}"
-        self.thread = threading.Thread(target=self.http.serve_forever, daemon=True)
+        # Each test has a server of its own, whose end waits for so many seconds.
+        self.thread = threading.Thread(target=self.http.serve_forever, args=(0.01,), daemon=True)
         self.thread.start()
 
     def close(self):
