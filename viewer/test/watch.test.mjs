@@ -16,7 +16,7 @@ import {
 const kSlow = 'generate:gyroid:64x64x900:uint8';
 const kSlower = 'generate:gyroid:96x96x1600:uint8'; // many seconds, with one thread: the browser is faster
 const kLong = 'generate:gyroid:96x96x2000000:uint8';
-const kOpen = 'generate:gyroid:160x160x600:uint8'; // with --open most of it is final soon
+const kOpen = 'generate:gyroid:96x96x600:uint8'; // with --open most of it is final soon
 const kRough = 'generate:white:64x64x256:uint8'; // more triangles than are drawn
 
 const sleep = (ms) => new Promise((done) => { setTimeout(done, ms); });
@@ -280,7 +280,7 @@ describe('looks', () => {
         // Runs of their own: a page that is photographed does not ask for news.
         await withWatched(kOpen, { ...screen, dark }, async (page) => {
           assert.equal(await pressed(page, 'theme'), String(dark));
-          await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 60000)`);
+          await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 20000)`);
           await page.screenshot(name(''));
         }, { more: ['--open'] });
         await withWatched(kOpen, { ...screen, dark }, async (page) => {
