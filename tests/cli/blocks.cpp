@@ -142,7 +142,7 @@ TEST(CliTasks, KilledWorkersLoseNothing) {
 
 TEST(CliTasks, AWorkerThatIsInterruptedSaysThatItsTasksStay) {
   const files::Folder folder;
-  plan(folder, testing::kSanitized ? "16" : "12");
+  plan(folder, testing::kSanitized ? "16" : "24");
   program::Setup setup;
   setup.signal = SIGINT;
   setup.ready = [&](pid_t) { return std::filesystem::exists(folder / "tasks/3.rest"); };
