@@ -12,6 +12,7 @@
 
 #include "page_files.hpp"
 #include "program.hpp"
+#include "sanitized.hpp"
 
 namespace isoweave {
 namespace {
@@ -316,7 +317,7 @@ TEST(CliPage, ResumedRunsWriteThePageThatWasAskedFor) {
     setup.signal = SIGTERM;
     setup.ready = [&](pid_t) { return std::filesystem::exists(folder / "run/state-0"); };
     Words arguments = mesh({"--html", "out.html", "--checkpoint", "run", "--every", "5layers", "--slab", "5"},
-                           "generate:gyroid:96x96x160:uint8");
+                           testing::kSanitized ? "generate:gyroid:48x48x160:uint8" : "generate:gyroid:96x96x160:uint8");
     const Result stopped = run(folder.path(), arguments, setup);
     if (stopped.code != 130) continue;  // it was faster than the signal
     EXPECT_EQ(listing(folder), Words{"run"});

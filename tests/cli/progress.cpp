@@ -10,13 +10,15 @@
 #include <vector>
 
 #include "program.hpp"
+#include "sanitized.hpp"
 
 namespace isoweave {
 namespace {
 
 using Words = std::vector<std::string>;
 
-const Words kRun{"mesh", "generate:noise:96x96x96:uint8", "--iso", "127.5", "-o", "a.ply", "--slab", "8"};
+const std::string kVolume = testing::kSanitized ? "generate:noise:48x48x96:uint8" : "generate:noise:96x96x96:uint8";
+const Words kRun{"mesh", kVolume, "--iso", "127.5", "-o", "a.ply", "--slab", "8"};
 
 // The lines that a run draws on a terminal of so many columns.
 Words drawn_on(unsigned short columns) {

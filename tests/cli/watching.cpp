@@ -37,7 +37,8 @@ using program::Running;
 using namespace watch;
 using Words = std::vector<std::string>;
 
-constexpr const char* kVolume = "generate:gyroid:64x64x160:uint8";
+constexpr const char* kVolume =
+    testing::kSanitized ? "generate:gyroid:40x40x160:uint8" : "generate:gyroid:64x64x160:uint8";
 
 Words mesh(const Words& more, const std::string& volume = kVolume) {
   Words arguments{"mesh", volume, "--iso", "127.5", "-o", "out.ply", "--slab", "8", "--report", "out.json"};
@@ -273,7 +274,8 @@ class BadClients {
 };
 
 TEST(CliWatch, WhoNeverReadsNeitherStallsTheRunNorFillsItsMemory) {
-  const std::string volume = "generate:gyroid:128x128x256:uint8";
+  const std::string volume =
+      testing::kSanitized ? "generate:gyroid:64x64x256:uint8" : "generate:gyroid:128x128x256:uint8";
   const files::Folder alone;
   ASSERT_EQ(run(alone.path(), mesh({"--quiet"}, volume)).code, 0);
   const files::Folder folder;
