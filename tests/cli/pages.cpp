@@ -259,7 +259,7 @@ TEST(CliPage, ASurfaceTooLargeForAPageIsComparedWithAsItIs) {
   double sum = 0;
   for (const double distance : distances) sum += distance;
   const double most = *std::ranges::max_element(distances);
-  EXPECT_GT(most, 0.02 * std::sqrt(3.0) * 148) << "all vertices are within the reach of a first look";
+  EXPECT_GT(most, 0.02 * std::sqrt(3.0) * 148) << "no vertex is far from the surface";
   EXPECT_DOUBLE_EQ(page["distance"]["max"], most);
   EXPECT_DOUBLE_EQ(page["distance"]["mean"], sum / static_cast<double>(distances.size()));
   EXPECT_FALSE(page["distance"].contains("sampled"));
