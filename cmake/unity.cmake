@@ -1,7 +1,6 @@
-# With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the core or of the command line, so
+# With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the library or of the command line, so
 # that what they all include is read once. It is on where all sources are compiled once, to be used or to be tested, and off
-# in `dev`, where a change compiles one source. Names inside of two sources of a folder must differ then. Readers of formats
-# are compiled one by one: each has a `kMagic` and a `bad_input` of its own.
+# in `dev`, where a change compiles one source. Names inside of two sources of a folder must differ then.
 option(ISOWEAVE_UNITY "Compile the sources of a folder together: faster where most of them have changed" OFF)
 
 if(ISOWEAVE_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -31,7 +30,7 @@ function(isoweave_gather out name root)
       list(APPEND gathered ${source})
     else()
       file(RELATIVE_PATH path ${root} ${source})
-      string(REGEX REPLACE "/.*|^[^/]+$" "" folder ${path})
+      cmake_path(GET path PARENT_PATH folder)
       if(NOT folder)
         set(folder top)
       endif()

@@ -10,7 +10,7 @@
 namespace isoweave {
 
 void check_external(const OpenOptions& options, std::string_view path, std::string_view name) {
-  if (!options.external) bad_input(path, "a file that names no other, as --no-external asks", isoweave::quoted(name));
+  if (!options.external) bad_input(path, "a file that names no other, as --no-external asks", in_quotes(name));
 }
 
 void check_within(const std::string& path, const std::string& folder) {
@@ -19,8 +19,7 @@ void check_within(const std::string& path, const std::string& folder) {
   const std::filesystem::path root = error ? real : std::filesystem::canonical(folder, error);
   const auto [in_root, in_real] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
   if (error || in_root != root.end()) {
-    bad_input(path, "a file inside " + isoweave::quoted(folder) + ", as --no-external asks",
-              "a link that leads out of it");
+    bad_input(path, "a file inside " + in_quotes(folder) + ", as --no-external asks", "a link that leads out of it");
   }
 }
 

@@ -69,7 +69,7 @@ std::optional<double> nanometres(std::string_view name) {
 std::string listed(const std::array<std::optional<std::string>, 3>& texts) {
   std::string list;
   for (const std::optional<std::string>& text : texts) {
-    if (text) list += (list.empty() ? "" : ", ") + isoweave::quoted(*text);
+    if (text) list += (list.empty() ? "" : ", ") + in_quotes(*text);
   }
   return list;
 }
@@ -130,7 +130,7 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
     return common;
   }
   if (unknown && !is_pixel(*unknown)) {
-    common.notes.push_back("the unit " + isoweave::quoted(*unknown) + " is no length that is known and is left out");
+    common.notes.push_back("the unit " + in_quotes(*unknown) + " is no length that is known and is left out");
   }
   for (std::size_t axis = 0; axis < 3 && !common.unit.empty(); ++axis) {
     if (!texts[axis]) continue;
@@ -139,7 +139,7 @@ CommonUnit common_unit(const std::array<std::optional<std::string>, 3>& texts) {
       common.notes.push_back("the unit of axis " + std::to_string(axis) + " is not given and taken as '" + common.unit +
                              "'");
     } else if (units[axis]->name != common.unit) {
-      common.notes.push_back("axis " + std::to_string(axis) + " is in " + isoweave::quoted(trimmed(*texts[axis])) +
+      common.notes.push_back("axis " + std::to_string(axis) + " is in " + in_quotes(trimmed(*texts[axis])) +
                              " and given in '" + common.unit + "'");
     }
   }

@@ -87,7 +87,7 @@ std::string printable(std::string_view text) {
 
 std::string printable_lines(std::string_view text) { return take_printable(text, true, kAll); }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kShown = 60;
   return "'" + take_printable(text, false, kShown) + "'";
 }

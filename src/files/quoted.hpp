@@ -7,6 +7,6 @@
 namespace isoweave {
 
 // The first characters of a text, printable, in single quotes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace isoweave

@@ -26,7 +26,7 @@ void take(const char* name, std::optional<Number> (*parse)(std::string_view), co
   const char* const text = std::getenv(name);
   if (text == nullptr || *text == '\0') return;
   const std::optional<Number> read = parse(text);
-  if (!read) wrong_value(name, expected, isoweave::quoted(text));
+  if (!read) wrong_value(name, expected, in_quotes(text));
   value = *read;
 }
 

@@ -21,7 +21,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::size_t kBufferBytes = 1 << 20;
+constexpr std::size_t kBlockBytes = 1 << 20;
 constexpr const char* kStandardInput = "/dev/stdin";
 
 using system::Descriptor;
@@ -44,7 +44,7 @@ FilePtr keep(const Source& next, const std::string& path, std::string_view wante
   const std::string folder = temporary_folder();
   Descriptor file(system::create_private(folder));
   if (file.get() < 0) cannot_keep(folder, path);
-  std::vector<std::byte> buffer(kBufferBytes);
+  std::vector<std::byte> buffer(kBlockBytes);
   std::uint64_t size = 0;
   for (std::size_t got = next(buffer); got > 0; got = next(buffer)) {
     if (!system::write_all(file.get(), std::span(buffer).first(got))) cannot_keep(folder, path);

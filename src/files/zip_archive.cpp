@@ -1,6 +1,5 @@
 #include "files/zip_archive.hpp"
 
-#define ZLIB_CONST
 #include <zlib.h>
 
 #include <new>

@@ -7,7 +7,7 @@
 namespace isoweave::render {
 namespace {
 
-constexpr std::int64_t kTrianglesPerBlock = 1024;
+constexpr std::int64_t kProjectedPerBlock = 1024;
 
 // The samples whose middle lies between two places in the frame, and no fewer for rounding.
 struct Interval {
@@ -36,7 +36,7 @@ SeenTriangle::SeenTriangle(const TriangleMesh& mesh, std::uint32_t triangle, con
 
 Visibility::Visibility(const TriangleMesh& mesh, const Camera& camera, const Executor& executor)
     : columns_(camera.columns()), words_(static_cast<std::size_t>(camera.columns() * camera.rows()), kNothing) {
-  executor.for_each(static_cast<std::int64_t>(mesh.triangles.size()), kTrianglesPerBlock, [&](std::int64_t n) {
+  executor.for_each(static_cast<std::int64_t>(mesh.triangles.size()), kProjectedPerBlock, [&](std::int64_t n) {
     const auto triangle = static_cast<std::uint32_t>(n);
     draw(SeenTriangle(mesh, triangle, camera), triangle, camera);
   });

@@ -96,7 +96,7 @@ struct NamePattern {
 };
 
 NamePattern parse_pattern(const std::string& header_path, const std::string& text) {
-  const auto refuse = [&] { bad_input(header_path, "a file name pattern with one %d, such as %03d", quoted(text)); };
+  const auto refuse = [&] { bad_input(header_path, "a file name pattern with one %d, such as %03d", in_quotes(text)); };
   NamePattern pattern;
   const std::size_t percent = text.find('%');
   if (percent == std::string::npos || text.find('%', percent + 1) != std::string::npos) refuse();

@@ -129,7 +129,7 @@ class NameReader {
       names_.push_back(std::move(*entry));
     } else if (names_[known->second].name != entry->name) {
       bad_input(path_, "one name of label " + entry->label.text(),
-                quoted(names_[known->second].name) + " and " + quoted(entry->name));
+                in_quotes(names_[known->second].name) + " and " + in_quotes(entry->name));
     }
   }
 
@@ -142,7 +142,7 @@ class NameReader {
   [[noreturn]] void refuse(std::string_view line) const {
     bad_input(path_,
               table_ ? "a whole number as 'index'" : "lines 'INDEX NAME R G B A' or 'INDEX R G B A V M \"NAME\"'",
-              quoted(line) + " in line " + std::to_string(line_));
+              in_quotes(line) + " in line " + std::to_string(line_));
   }
 
   const std::string& path_;

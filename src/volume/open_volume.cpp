@@ -147,7 +147,7 @@ FilePtr content_of(const FilePtr& stored, const OpenOptions& options) {
 }
 
 void refuse_series(const std::string& path, const std::string& series) {
-  if (!series.empty()) bad_input(path, "the DICOM series " + quoted(series), "no DICOM");
+  if (!series.empty()) bad_input(path, "the DICOM series " + in_quotes(series), "no DICOM");
 }
 
 bool is_one_of(std::string_view format, std::initializer_list<std::string_view> formats) {

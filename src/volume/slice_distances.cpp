@@ -27,13 +27,13 @@ std::string length_text(double length) {
 }
 
 // The gaps between neighbours: gap n lies above slice n.
-struct Gaps {
+struct SliceGaps {
   std::vector<double> lengths;
   double usual = 0;  // the median
   std::size_t narrowest = 0;
   std::size_t widest = 0;
 
-  explicit Gaps(const std::vector<double>& depths) {
+  explicit SliceGaps(const std::vector<double>& depths) {
     for (std::size_t n = 1; n < depths.size(); ++n) lengths.push_back(depths[n] - depths[n - 1]);
     std::vector<double> sorted = lengths;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -49,14 +49,14 @@ struct Gaps {
 };
 
 std::string between_names(const SlicePlaces& places, std::size_t gap) {
-  return "between " + quoted(places.name(gap)) + " and " + quoted(places.name(gap + 1));
+  return "between " + in_quotes(places.name(gap)) + " and " + in_quotes(places.name(gap + 1));
 }
 
-void refuse_coinciding(const SlicePlaces& places, const Gaps& gaps) {
+void refuse_coinciding(const SlicePlaces& places, const SliceGaps& gaps) {
   constexpr double kSamePlace = 1e-2;
   for (std::size_t n = 0; n < gaps.lengths.size(); ++n) {
     if (gaps.lengths[n] > kSamePlace * gaps.usual && gaps.lengths[n] > 0) continue;
-    bad_input(places.file(n + 1), "a position of its own for every slice", "that of " + quoted(places.name(n)));
+    bad_input(places.file(n + 1), "a position of its own for every slice", "that of " + in_quotes(places.name(n)));
   }
 }
 
@@ -70,14 +70,14 @@ std::int64_t lost_in(double gap, double usual) {
 }
 
 // Whether a wide gap is one of three or more in a row. Then the distance has changed, and no slice is lost.
-bool is_another_distance(const Gaps& gaps, std::size_t gap) {
+bool is_another_distance(const SliceGaps& gaps, std::size_t gap) {
   const auto is_wide = [&](std::size_t n) { return n < gaps.lengths.size() && gaps.lengths[n] > kWide * gaps.usual; };
   const std::size_t below = gap == 0 || !is_wide(gap - 1) ? 0 : gap == 1 || !is_wide(gap - 2) ? 1 : 2;
   const std::size_t above = !is_wide(gap + 1) ? 0 : !is_wide(gap + 2) ? 1 : 2;
   return below + above >= 2;
 }
 
-void note_missing(const SlicePlaces& places, const Gaps& gaps, std::vector<std::string>& notes) {
+void note_missing(const SlicePlaces& places, const SliceGaps& gaps, std::vector<std::string>& notes) {
   constexpr std::size_t kNamed = 3;
   std::int64_t missing = 0;
   std::size_t wide = 0;
@@ -106,7 +106,7 @@ double farthest_from_even(const std::vector<double>& depths) {
 }
 
 // The finest distance that is no exception: the mean of the narrowest gaps, if these are near the usual gap or many.
-double finest_distance(const Gaps& gaps) {
+double finest_distance(const SliceGaps& gaps) {
   constexpr double kFar = 1.0 / 8;
   constexpr double kAlike = 1.1;
   constexpr std::size_t kMany = 10;  // one in so many
@@ -134,7 +134,7 @@ double slack_at(const SlicePlaces& places, double distance) {
 }
 
 // Slices at the finest distance, or a little closer so that the last one stays where it is.
-EvenGrid finest_grid(const SlicePlaces& places, const Gaps& gaps) {
+EvenGrid finest_grid(const SlicePlaces& places, const SliceGaps& gaps) {
   constexpr double kWidest = 32;
   constexpr double kRounding = 0.05;  // of a slice
   EvenGrid grid{places.depths, 0, 0, true};
@@ -174,7 +174,7 @@ EvenGrid even_grid(const SlicePlaces& places, UnevenSlices uneven, std::vector<s
   constexpr double kExact = 1e-3;
   EvenGrid as_they_are{places.depths, static_cast<std::int64_t>(places.depths.size()), 0, false};
   if (places.depths.size() < 2) return as_they_are;
-  const Gaps gaps(places.depths);
+  const SliceGaps gaps(places.depths);
   refuse_coinciding(places, gaps);
   const double farthest = farthest_from_even(places.depths);
   const double mean = as_they_are.distance();

@@ -66,7 +66,7 @@ bool NumberStream::next_sample() {
   visit_sample_type(type_, [&]<class Sample>() {
     Sample value{};
     if (!parse(word, value)) {
-      bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)), quoted(word));
+      bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)), in_quotes(word));
     }
     std::memcpy(sample_.data(), &value, sizeof(Sample));
     size_ = sizeof(Sample);
@@ -88,7 +88,7 @@ int HexStream::next_digit() {
   if (c == '\0') return -1;
   int value = 0;
   const auto [stop, error] = std::from_chars(&c, &c + 1, value, 16);
-  if (error != std::errc{}) bad_input(path_, "hexadecimal digits", quoted(std::string_view(&c, 1)));
+  if (error != std::errc{}) bad_input(path_, "hexadecimal digits", in_quotes(std::string_view(&c, 1)));
   return value;
 }
 

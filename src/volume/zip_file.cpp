@@ -136,7 +136,7 @@ class ZipEntryStream final : public ByteStream {
 
  private:
   [[noreturn]] void damaged(std::string_view found) const {
-    bad_input(path_, quoted(record_.name) + " as the directory of the archive has it", found);
+    bad_input(path_, in_quotes(record_.name) + " as the directory of the archive has it", found);
   }
 
   std::unique_ptr<ByteStream> bytes_;
@@ -167,7 +167,7 @@ std::vector<ZipRecord> read_zip_directory(const FilePtr& file) {
 std::unique_ptr<ByteStream> open_zip_entry(const FilePtr& file, const ZipRecord& record) {
   const std::string& path = file->path();
   if ((record.flags & 1U) != 0 || (record.method != kStored && record.method != kDeflated)) {
-    bad_input(path, quoted(record.name) + " stored or deflated", "it packed otherwise");
+    bad_input(path, in_quotes(record.name) + " stored or deflated", "it packed otherwise");
   }
   const ZipBytes header(*file, record.offset, kHeaderBytes);
   if (header.number(0, 4) != kHeaderMark) bad_input(path, "an entry of a zip archive", "other data");
@@ -175,7 +175,7 @@ std::unique_ptr<ByteStream> open_zip_entry(const FilePtr& file, const ZipRecord&
   const std::uint64_t left = file->size() - std::min(begin, file->size());
   const bool stored = record.method == kStored;
   if (record.packed > left || (stored && record.packed != record.bytes)) {
-    bad_input(path, std::to_string(record.bytes) + " bytes of " + quoted(record.name), std::to_string(left));
+    bad_input(path, std::to_string(record.bytes) + " bytes of " + in_quotes(record.name), std::to_string(left));
   }
   check_plausible(path, record.bytes, record.packed, stored ? 1 : kDeflateRatio);
   std::unique_ptr<ByteStream> bytes = std::make_unique<FileStream>(file, begin, begin + record.packed);

@@ -35,7 +35,7 @@ TEST(Printable, KeepsTextAndReplacesWhatHidesOrDrives) {
       {"\xff\xfe", "??"}};
   for (const auto& [text, shown] : cases) {
     EXPECT_EQ(printable(text), shown);
-    EXPECT_EQ(isoweave::quoted(text), "'" + shown + "'");
+    EXPECT_EQ(in_quotes(text), "'" + shown + "'");
   }
 }
 
@@ -49,7 +49,7 @@ TEST(Printable, LongTextIsCutBetweenCharacters) {
   std::string text;
   for (int n = 0; n < 5000; ++n) text += "\xe2\x82\xac";
   EXPECT_EQ(printable(text), text.substr(0, 3 * 4096) + "...");
-  EXPECT_EQ(isoweave::quoted(text), "'" + text.substr(0, 3 * 60) + "'");
+  EXPECT_EQ(in_quotes(text), "'" + text.substr(0, 3 * 60) + "'");
 }
 
 }  // namespace

@@ -237,7 +237,7 @@ class HeaderReader {
   }
 
   [[noreturn]] void fail_at_line(const std::string& expected) const {
-    fail("expected " + expected + ", found " + quoted(line_));
+    fail("expected " + expected + ", found " + in_quotes(line_));
   }
 
   MeshInput& input_;

@@ -108,7 +108,7 @@ TriangleMesh read_by_name(MeshInput& input, const std::string& path, const std::
       {".off", "a line such as 'OFF' or 'COFF'"},
   }};
   constexpr std::size_t kShown = 8;
-  const std::string found = ", found " + quoted(std::string_view(head).substr(0, kShown));
+  const std::string found = ", found " + in_quotes(std::string_view(head).substr(0, kShown));
   for (const auto& [ending, beginning] : kBeginnings) {
     if (has_ending(path, ending)) input.fail("expected " + std::string(beginning) + " at the beginning" + found);
   }

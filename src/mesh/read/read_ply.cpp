@@ -327,7 +327,7 @@ class PlyReader {
     }
     leftovers_.note(mesh_);
     if (header_.values.empty() || header_.values == "quality") return;
-    mesh_.notes.push_back("the values at its vertices are the property " + quoted(header_.values));
+    mesh_.notes.push_back("the values at its vertices are the property " + in_quotes(header_.values));
   }
 
   void note_vertices(const PlyElement& element) {

@@ -119,7 +119,7 @@ class VtkReader {
   LegacyArray next_array(std::string_view key, std::uint64_t count) {
     const std::vector<std::string> words = file_.next_words();
     if (words.size() != 2 || legacy_key(words) != key) {
-      const std::string found = words.empty() ? "the end of the file" : quoted(words[0]);
+      const std::string found = words.empty() ? "the end of the file" : in_quotes(words[0]);
       input_.fail("expected a line with " + std::string(key) + " and a type, found " + found);
     }
     return file_.array_here(words[0], words[1], 1, count);

@@ -60,7 +60,7 @@ double VtkNumbers::real() {
     const std::string word = next_word();
     std::optional<double> value = type_.is_wide() ? std::nullopt : parse_wide(word);
     if (!value) value = parse_real<double>(word);
-    if (!value) bad_input(path_, "a number", quoted(word));
+    if (!value) bad_input(path_, "a number", in_quotes(word));
     return *value;
   }
   const std::uint64_t bits = next_bits();
@@ -90,7 +90,7 @@ std::uint64_t VtkNumbers::index() {
       value.reset();
     }
   }
-  if (!value) bad_input(path_, "an index or a count", quoted(word));
+  if (!value) bad_input(path_, "an index or a count", in_quotes(word));
   return *value;
 }
 

@@ -11,8 +11,8 @@
 namespace isoweave {
 namespace {
 
-constexpr std::size_t kPointBytes = 12;
-constexpr std::size_t kTriangleBytes = 12;
+constexpr std::size_t kVectorBytes = 12;
+constexpr std::size_t kFaceBytes = 12;
 
 struct Counts {
   std::uint64_t vertices = 0, triangles = 0;
@@ -32,19 +32,19 @@ GltfJson add_arrays(GltfJson& json, bool normals, const Counts& counts, const Bo
     return json["accessors"].size() - 1;
   };
   GltfJson attributes;
-  attributes["POSITION"] = add(counts.vertices * kPointBytes, kGltfVertices,
+  attributes["POSITION"] = add(counts.vertices * kVectorBytes, kGltfVertices,
                                {{"componentType", kGltfFloat},
                                 {"count", counts.vertices},
                                 {"type", "VEC3"},
                                 {"min", as_doubles(bounds.low)},
                                 {"max", as_doubles(bounds.high)}});
   if (normals) {
-    attributes["NORMAL"] = add(counts.vertices * kPointBytes, kGltfVertices,
+    attributes["NORMAL"] = add(counts.vertices * kVectorBytes, kGltfVertices,
                                {{"componentType", kGltfFloat}, {"count", counts.vertices}, {"type", "VEC3"}});
   }
   GltfJson primitive{{"attributes", attributes}};
   if (counts.triangles > 0) {
-    primitive["indices"] = add(counts.triangles * kTriangleBytes, kGltfIndices,
+    primitive["indices"] = add(counts.triangles * kFaceBytes, kGltfIndices,
                                {{"componentType", kGltfUint32}, {"count", counts.triangles * 3}, {"type", "SCALAR"}});
   } else {
     primitive["mode"] = kGltfPoints;
@@ -96,13 +96,13 @@ class GlbSink final : public MeshFileSink {
     check_glb_fits(path(), this->vertices() + piece.vertices.size(), this->triangles() + piece.triangles.size(),
                    options().normals, data_begin());
     bounds_.add(piece.vertices);
-    write_records(file(), records_, piece.vertices.size(), kPointBytes,
+    write_records(file(), records_, piece.vertices.size(), kVectorBytes,
                   [&](std::byte*& out, std::size_t n) { store_point(out, piece.vertices[n]); });
     if (normals_ != nullptr) {
-      write_records(*normals_, records_, piece.normals.size(), kPointBytes,
+      write_records(*normals_, records_, piece.normals.size(), kVectorBytes,
                     [&](std::byte*& out, std::size_t n) { store_point(out, gltf_normal(piece.normals[n])); });
     }
-    write_records(faces_, records_, piece.triangles.size(), kTriangleBytes,
+    write_records(faces_, records_, piece.triangles.size(), kFaceBytes,
                   [&](std::byte*& out, std::size_t n) { store_indices(out, piece.triangles[n]); });
   }
 
@@ -153,7 +153,7 @@ class GlbJoined : public JoinedFile {
 
  private:
   std::uint64_t data_bytes(std::uint64_t vertices, std::uint64_t triangles) {
-    return vertices * kPointBytes * (options().normals ? 2 : 1) + triangles * kTriangleBytes;
+    return vertices * kVectorBytes * (options().normals ? 2 : 1) + triangles * kFaceBytes;
   }
 
   // A mesh without vertices is a node alone, as glTF has no empty meshes.

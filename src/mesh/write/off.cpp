@@ -7,7 +7,7 @@ namespace {
 
 // The header. The counts are known last: a comment takes the digits that they do not need, so that the header keeps its
 // length.
-std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t faces) {
+std::string off_header(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t faces) {
   constexpr std::size_t kDigits = 40;
   const std::string counts = std::to_string(vertices) + " " + std::to_string(faces);
   std::string text = options.normals ? "NOFF\n" : "OFF\n";
@@ -19,7 +19,7 @@ class OffSink final : public MeshFileSink {
  public:
   OffSink(const MeshTarget& target, const MeshFileOptions& options)
       : MeshFileSink(target, options), faces_(open_side("faces.part")) {
-    const std::string header = header_text(options, 0, 0);
+    const std::string header = off_header(options, 0, 0);
     if (!continued()) file().write(std::as_bytes(std::span(header)));
     bytes_ = file().size() + faces_.size();
   }
@@ -70,7 +70,7 @@ class OffSink final : public MeshFileSink {
   void complete() override {
     write_held_back();
     file().append(faces_);
-    const std::string header = header_text(options(), vertices(), triangles());
+    const std::string header = off_header(options(), vertices(), triangles());
     file().overwrite(0, std::as_bytes(std::span(header)));
     check_written(bytes_, std::as_bytes(std::span(header)));
   }

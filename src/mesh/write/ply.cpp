@@ -10,7 +10,7 @@ constexpr std::size_t kFaceBytes = 1 + 3 * 4;
 
 // The counts are known last, so the header is written twice and must keep its length: a comment line takes the digits
 // that the counts do not need. (Padding the numbers themselves trips readers that split lines at single blanks.)
-std::string header_text(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t faces) {
+std::string ply_header(const MeshFileOptions& options, std::uint64_t vertices, std::uint64_t faces) {
   constexpr std::size_t kDigits = 40;
   const std::string vertex_count = std::to_string(vertices);
   const std::string face_count = std::to_string(faces);
@@ -31,7 +31,7 @@ class PlySink final : public MeshFileSink {
  public:
   PlySink(const MeshTarget& target, const MeshFileOptions& options)
       : MeshFileSink(target, options), faces_(open_side("faces.part")) {
-    const std::string header = header_text(options, 0, 0);
+    const std::string header = ply_header(options, 0, 0);
     header_bytes_ = header.size();
     if (!continued()) file().write(std::as_bytes(std::span(header)));
   }
@@ -56,7 +56,7 @@ class PlySink final : public MeshFileSink {
 
   void complete() override {
     file().append(faces_);
-    const std::string header = header_text(options(), vertices(), triangles());
+    const std::string header = ply_header(options(), vertices(), triangles());
     file().overwrite(0, std::as_bytes(std::span(header)));
     check_written(header_bytes_ + vertices() * vertex_bytes() + triangles() * kFaceBytes,
                   std::as_bytes(std::span(header)));

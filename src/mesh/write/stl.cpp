@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 84;
 constexpr std::size_t kCountAt = 80;
-constexpr std::size_t kTriangleBytes = 50;
+constexpr std::size_t kFacetBytes = 50;
 constexpr std::uint64_t kReadBack = 1 << 20;  // positions at a time
 
 // A header that begins with "solid" would announce the ascii dialect.
@@ -92,7 +92,7 @@ class StlSink final : public MeshFileSink {
     check_count_fits(path(), "triangles", this->triangles(), piece.triangles.size());
     positions_.append(piece.vertices);
     if (kept_positions_ != nullptr) kept_positions_->write(std::as_bytes(piece.vertices));
-    write_records(file(), records_, piece.triangles.size(), kTriangleBytes,
+    write_records(file(), records_, piece.triangles.size(), kFacetBytes,
                   [&](std::byte*& out, std::size_t n) { store_triangle(out, piece.triangles[n]); });
   }
 
@@ -109,7 +109,7 @@ class StlSink final : public MeshFileSink {
   void complete() override {
     const std::vector<std::byte> header = header_bytes(options(), static_cast<std::uint32_t>(triangles()));
     file().overwrite(0, header);
-    check_written(kHeaderBytes + triangles() * kTriangleBytes, header);
+    check_written(kHeaderBytes + triangles() * kFacetBytes, header);
   }
 
   void read_positions_back() {

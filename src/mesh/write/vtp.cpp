@@ -15,10 +15,10 @@ namespace isoweave {
 namespace {
 
 constexpr std::uint64_t kWord = 8;
-constexpr std::uint64_t kPointBytes = 12;
+constexpr std::uint64_t kNarrowPointBytes = 12;
 constexpr std::uint64_t kWidePointBytes = 24;
 constexpr std::uint64_t kValueBytes = 4;
-constexpr std::uint64_t kTriangleBytes = 24;
+constexpr std::uint64_t kPolygonBytes = 24;
 constexpr std::uint64_t kPartBytes = 4, kColorBytes = 3;  // of a triangle in a part
 
 // VTK writes strings as the numbers of their characters, and a 0 behind each.
@@ -42,7 +42,7 @@ std::string data_array(const std::string& type_and_name, int components, std::ui
 
 // The bytes of a vertex. With an offset its coordinates have 64 bits.
 std::uint64_t vertex_bytes(const MeshFileOptions& options) {
-  return has_offset(options) ? kWidePointBytes : kPointBytes;
+  return has_offset(options) ? kWidePointBytes : kNarrowPointBytes;
 }
 
 // One piece of the file: its counts, and whether it is a part among others.
@@ -65,7 +65,7 @@ std::string piece_text(const MeshFileOptions& options, const VtpPiece& piece, st
   if (options.normals || options.values) {
     text += std::string("<PointData") + (options.normals ? " Normals=\"Normals\"" : "") +
             (options.values ? " Scalars=\"value\"" : "") + ">\n";
-    if (options.normals) text += array("\"Float32\" Name=\"Normals\"", 3, piece.vertices * kPointBytes);
+    if (options.normals) text += array("\"Float32\" Name=\"Normals\"", 3, piece.vertices * kNarrowPointBytes);
     if (options.values) text += array("\"Float32\" Name=\"value\"", 1, piece.vertices * kValueBytes);
     text += "</PointData>\n";
   }
@@ -74,7 +74,7 @@ std::string piece_text(const MeshFileOptions& options, const VtpPiece& piece, st
     text += array("\"UInt8\" Name=\"color\"", 3, piece.triangles * kColorBytes) + "</CellData>\n";
   }
   text += "<Points>\n" + points + "</Points>\n<Polys>\n" +
-          array("\"Int64\" Name=\"connectivity\"", 1, piece.triangles * kTriangleBytes);
+          array("\"Int64\" Name=\"connectivity\"", 1, piece.triangles * kPolygonBytes);
   return text + array("\"Int64\" Name=\"offsets\"", 1, piece.triangles * kWord) + "</Polys>\n</Piece>\n";
 }
 
@@ -189,8 +189,8 @@ class VtpSink final : public MeshFileSink {
     const std::uint64_t points = vertices() * vertex_bytes(options());
     file().overwrite(0, std::as_bytes(std::span(head)));
     file().overwrite(head.size(), std::as_bytes(std::span(&points, 1)));
-    std::uint64_t data = 3 * kWord + points + triangles() * (kTriangleBytes + kWord);
-    if (normals_ != nullptr) data += kWord + vertices() * kPointBytes;
+    std::uint64_t data = 3 * kWord + points + triangles() * (kPolygonBytes + kWord);
+    if (normals_ != nullptr) data += kWord + vertices() * kNarrowPointBytes;
     if (values_ != nullptr) data += kWord + vertices() * kValueBytes;
     check_written(head_bytes_ + data + kDataEnd.size(), std::as_bytes(std::span(head)));
   }
@@ -263,7 +263,7 @@ class VtpParts final : public JoinedFile {
     std::vector<Point> points;
     for (std::uint64_t done = 0; done < part.vertices(); done += kAtOnce) {
       points.resize(static_cast<std::size_t>(std::min(kAtOnce, part.vertices() - done)));
-      part.positions().read_back(done * kPointBytes, std::as_writable_bytes(std::span(points)));
+      part.positions().read_back(done * kNarrowPointBytes, std::as_writable_bytes(std::span(points)));
       data.write_places(points, options().offset);
     }
   }

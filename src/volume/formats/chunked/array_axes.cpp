@@ -30,7 +30,7 @@ std::string text_of(const std::vector<ArrayAxis>& axes) {
   std::string text;
   for (const ArrayAxis& axis : axes) {
     text += (text.empty() ? "" : " x ") + std::to_string(axis.size);
-    if (!axis.name.empty()) text += " (" + isoweave::quoted(axis.name) + ")";
+    if (!axis.name.empty()) text += " (" + in_quotes(axis.name) + ")";
   }
   return text;
 }
@@ -90,7 +90,7 @@ AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& o
     } else if (kind == AxisKind::kOther) {
       if (axes[n].size > 1) bad_input(path, "axes x, y, z, channel and time", text_of(axes));
       if (axes[n].name.empty()) continue;
-      choice.notes.push_back("axis " + isoweave::quoted(axes[n].name) + " has one sample and is left out");
+      choice.notes.push_back("axis " + in_quotes(axes[n].name) + " has one sample and is left out");
     } else {
       std::size_t& slot = choice.axis.at(static_cast<std::size_t>(kind));
       if (slot != kNoAxis) bad_input(path, "one axis of each name", text_of(axes));

@@ -17,7 +17,7 @@ std::vector<Codec> codecs_of(const Json& metadata, const std::string& path) {
   if (name == "lz4") return {Codec::kLz4Frames};
   const std::optional<Codec> codec = zarr_codec(name);
   if (!codec || *codec == Codec::kCrc32c) {
-    bad_input(path, "compression raw, gzip, zstd, blosc or lz4", isoweave::quoted(name));
+    bad_input(path, "compression raw, gzip, zstd, blosc or lz4", in_quotes(name));
   }
   return {*codec};
 }
@@ -40,7 +40,7 @@ ChunkedArray n5_array(const ZarrNode& node) {
   const std::optional<SampleType> known = parse_sample_type(type);
   if (!known) {
     bad_input(path, "dataType of integers of 8 to 64 bits or floats of 32 or 64 bits",
-              type.empty() ? "another kind" : isoweave::quoted(type));
+              type.empty() ? "another kind" : in_quotes(type));
   }
   array.type = *known;
   array.big_endian = true;

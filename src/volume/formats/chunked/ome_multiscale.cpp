@@ -14,7 +14,7 @@ void apply(AxisPlaces& places, const Json& transformation, const std::string& pa
   const std::string type = text_member(transformation, "type");
   if (type == "identity") return;
   if (type != "scale" && type != "translation") {
-    bad_input(path, "coordinate transformations scale and translation", isoweave::quoted(type));
+    bad_input(path, "coordinate transformations scale and translation", in_quotes(type));
   }
   const std::optional<std::vector<double>> list = numbers_of(member(transformation, type));
   if (!list) bad_input(path, "a list of finite numbers as '" + type + "'", "none");

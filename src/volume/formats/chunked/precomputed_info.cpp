@@ -39,17 +39,16 @@ std::uint32_t bits_of(const Json& json, std::string_view key, const std::string&
 bool is_gzip(const Json& json, std::string_view key, const std::string& path) {
   const std::string name = text_member(json, key);
   if (!name.empty() && name != "raw" && name != "gzip") {
-    bad_input(path, "raw or gzip as '" + std::string(key) + "'", isoweave::quoted(name));
+    bad_input(path, "raw or gzip as '" + std::string(key) + "'", in_quotes(name));
   }
   return name == "gzip";
 }
 
 PrecomputedShards shards_of(const Json& json, const std::string& path) {
   const std::string type = text_member(json, "@type"), hash = text_member(json, "hash");
-  if (type != "neuroglancer_uint64_sharded_v1")
-    bad_input(path, "neuroglancer_uint64_sharded_v1", isoweave::quoted(type));
+  if (type != "neuroglancer_uint64_sharded_v1") bad_input(path, "neuroglancer_uint64_sharded_v1", in_quotes(type));
   if (hash != "identity" && hash != "murmurhash3_x86_128") {
-    bad_input(path, "hash identity or murmurhash3_x86_128", isoweave::quoted(hash));
+    bad_input(path, "hash identity or murmurhash3_x86_128", in_quotes(hash));
   }
   const PrecomputedShards shards{bits_of(json, "preshift_bits", path), bits_of(json, "minishard_bits", path),
                                  bits_of(json, "shard_bits", path), hash != "identity",
@@ -67,7 +66,7 @@ void take_encoding(ChunkedArray& array, const Json& scale) {
   const std::string encoding = text_member(scale, "encoding");
   if (encoding == "raw") return;
   if (encoding != "compressed_segmentation") {
-    bad_input(path, "encoding raw or compressed_segmentation", isoweave::quoted(encoding));
+    bad_input(path, "encoding raw or compressed_segmentation", in_quotes(encoding));
   }
   if (array.type != SampleType::kUint32 && array.type != SampleType::kUint64) {
     bad_input(path, "data_type uint32 or uint64 for compressed_segmentation",
@@ -85,7 +84,7 @@ void take_encoding(ChunkedArray& array, const Json& scale) {
 SampleType type_of(const Json& info, const std::string& path) {
   const std::string name = text_member(info, "data_type");
   const std::optional<SampleType> type = parse_sample_type(name);
-  if (!type) bad_input(path, "data_type of integers of 8 to 64 bits or floats of 32 bits", isoweave::quoted(name));
+  if (!type) bad_input(path, "data_type of integers of 8 to 64 bits or floats of 32 bits", in_quotes(name));
   return *type;
 }
 

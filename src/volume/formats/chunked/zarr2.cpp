@@ -13,7 +13,7 @@ namespace isoweave {
 namespace {
 
 // "<i2": byte order, kind and bytes. Tells as well whether the most significant byte comes first.
-std::pair<StoredType, bool> type_of(const Json& metadata, const std::string& path) {
+std::pair<StoredType, bool> stored_type_of(const Json& metadata, const std::string& path) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypes{{{"b1", "uint8"},
                                                                                          {"u1", "uint8"},
                                                                                          {"i1", "int8"},
@@ -34,19 +34,19 @@ std::pair<StoredType, bool> type_of(const Json& metadata, const std::string& pat
     }
   }
   bad_input(path, "a dtype of integers of 8 to 64 bits or floats of 16 to 64 bits",
-            text.empty() ? "a structure or none" : isoweave::quoted(text));
+            text.empty() ? "a structure or none" : in_quotes(text));
 }
 
-std::vector<Codec> codecs_of(const Json& metadata, const std::string& path) {
+std::vector<Codec> zarr2_codecs(const Json& metadata, const std::string& path) {
   const Json* filters = member(metadata, "filters");
   if (filters != nullptr && filters->is_array() && !filters->empty()) {
-    bad_input(path, "an array without filters", "filter " + isoweave::quoted(text_member((*filters)[0], "id")));
+    bad_input(path, "an array without filters", "filter " + in_quotes(text_member((*filters)[0], "id")));
   }
   const Json* compressor = member(metadata, "compressor");
   if (compressor == nullptr || compressor->is_null()) return {};
   const std::string name = text_member(*compressor, "id");
   const std::optional<Codec> codec = zarr_codec(name);
-  if (!codec) bad_input(path, "compressor gzip, zlib, zstd, blosc or lz4", isoweave::quoted(name));
+  if (!codec) bad_input(path, "compressor gzip, zlib, zstd, blosc or lz4", in_quotes(name));
   return {*codec};
 }
 
@@ -64,10 +64,10 @@ ChunkedArray zarr2_array(const ZarrNode& node) {
   for (const std::int64_t size : integers_member(metadata, "shape", path)) array.axes.push_back({size, {}});
   array.chunk = integers_member(metadata, "chunks", path);
   StoredType stored;
-  std::tie(stored, array.big_endian) = type_of(metadata, path);
+  std::tie(stored, array.big_endian) = stored_type_of(metadata, path);
   array.type = stored.type;
   array.is_half = stored.is_half;
-  array.codecs = codecs_of(metadata, path);
+  array.codecs = zarr2_codecs(metadata, path);
   array.fill = fill_sample(member(metadata, "fill_value"), stored, array.big_endian, path);
   array.stored_order.resize(array.axes.size());
   const std::string order = text_member(metadata, "order");
@@ -76,11 +76,11 @@ ChunkedArray zarr2_array(const ZarrNode& node) {
   } else if (order == "C") {
     std::iota(array.stored_order.begin(), array.stored_order.end(), std::size_t{0});
   } else {
-    bad_input(path, "order C or F", isoweave::quoted(order));
+    bad_input(path, "order C or F", in_quotes(order));
   }
   const std::string separator = text_member(metadata, "dimension_separator");
   if (!separator.empty() && separator != "." && separator != "/") {
-    bad_input(path, "dimension_separator '.' or '/'", isoweave::quoted(separator));
+    bad_input(path, "dimension_separator '.' or '/'", in_quotes(separator));
   }
   array.separator = separator.empty() ? '.' : separator[0];
   name_axes(array.axes, member(node.attributes, "_ARRAY_DIMENSIONS"));

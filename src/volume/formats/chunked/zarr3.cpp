@@ -33,7 +33,7 @@ std::vector<Named> named_list(const Json* json, const std::string& what, const s
 bool is_big_endian(const Named& bytes, const std::string& path) {
   const std::string endian = text_member(bytes.configuration, "endian");
   if (!endian.empty() && endian != "little" && endian != "big")
-    bad_input(path, "endian little or big", isoweave::quoted(endian));
+    bad_input(path, "endian little or big", in_quotes(endian));
   return endian == "big";
 }
 
@@ -68,13 +68,12 @@ void take_codecs(ChunkedArray& array, const std::vector<Named>& chain) {
     return take_shards(array, chain[n]);
   }
   if (chain[n].name != "bytes") {
-    bad_input(array.header, "codec 'bytes' or 'sharding_indexed'", isoweave::quoted(chain[n].name));
+    bad_input(array.header, "codec 'bytes' or 'sharding_indexed'", in_quotes(chain[n].name));
   }
   array.big_endian = is_big_endian(chain[n], array.header);
   for (++n; n < chain.size(); ++n) {
     const std::optional<Codec> codec = zarr_codec(chain[n].name);
-    if (!codec)
-      bad_input(array.header, "codec gzip, zlib, zstd, blosc, lz4 or crc32c", isoweave::quoted(chain[n].name));
+    if (!codec) bad_input(array.header, "codec gzip, zlib, zstd, blosc, lz4 or crc32c", in_quotes(chain[n].name));
     array.codecs.insert(array.codecs.begin(), *codec);
   }
 }
@@ -95,7 +94,7 @@ void take_shards(ChunkedArray& array, const Named& codec) {
   }
   const std::string location = text_member(configuration, "index_location");
   if (!location.empty() && location != "start" && location != "end") {
-    bad_input(path, "index_location start or end", isoweave::quoted(location));
+    bad_input(path, "index_location start or end", in_quotes(location));
   }
   shards.index_at_end = location != "start";
   const std::vector<Named> index = named_list(member(configuration, "index_codecs"), "index_codecs", path);
@@ -112,7 +111,7 @@ void take_shards(ChunkedArray& array, const Named& codec) {
 void take_keys(ChunkedArray& array, const Named& encoding) {
   const std::string separator = text_member(encoding.configuration, "separator");
   if (!separator.empty() && separator != "." && separator != "/") {
-    bad_input(array.header, "separator '.' or '/'", isoweave::quoted(separator));
+    bad_input(array.header, "separator '.' or '/'", in_quotes(separator));
   }
   if (encoding.name == "default") {
     array.separator = separator.empty() ? '/' : separator[0];
@@ -120,7 +119,7 @@ void take_keys(ChunkedArray& array, const Named& encoding) {
   } else if (encoding.name == "v2") {
     array.separator = separator.empty() ? '.' : separator[0];
   } else {
-    bad_input(array.header, "chunk_key_encoding default or v2", isoweave::quoted(encoding.name));
+    bad_input(array.header, "chunk_key_encoding default or v2", in_quotes(encoding.name));
   }
 }
 
@@ -139,13 +138,13 @@ ChunkedArray zarr3_array(const ZarrNode& node) {
   array.format = "zarr";
   for (const std::int64_t size : integers_member(metadata, "shape", path)) array.axes.push_back({size, {}});
   const Named grid = named(member(metadata, "chunk_grid"));
-  if (grid.name != "regular") bad_input(path, "chunk_grid regular", isoweave::quoted(grid.name));
+  if (grid.name != "regular") bad_input(path, "chunk_grid regular", in_quotes(grid.name));
   array.chunk = integers_member(grid.configuration, "chunk_shape", path);
   const std::string type = text_member(metadata, "data_type");
   const std::optional<StoredType> known = parse_stored_type(type == "bool" ? "uint8" : type);
   if (!known) {
     bad_input(path, "data_type of integers of 8 to 64 bits or floats of 16 to 64 bits",
-              type.empty() ? "another kind" : isoweave::quoted(type));
+              type.empty() ? "another kind" : in_quotes(type));
   }
   array.type = known->type;
   array.is_half = known->is_half;

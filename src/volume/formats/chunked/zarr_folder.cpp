@@ -89,14 +89,14 @@ std::vector<std::string> images_below(ObjectStore& store, const ZarrNode& root) 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t n = 0; n < std::min(names.size(), kMostNamed); ++n)
-    text += (n == 0 ? "" : ", ") + isoweave::quoted(names[n]);
+    text += (n == 0 ? "" : ", ") + in_quotes(names[n]);
   if (names.size() > kMostNamed) text += " and " + std::to_string(names.size() - kMostNamed) + " more";
   return text;
 }
 
 ZarrNode node_at(ObjectStore& store, const std::string& root, const std::string& name, const std::string& header) {
   std::optional<ZarrNode> node = open_node(store, inside(root, name, header));
-  if (!node) bad_input(header, "an array or group at " + isoweave::quoted(name), "no metadata of Zarr or N5");
+  if (!node) bad_input(header, "an array or group at " + in_quotes(name), "no metadata of Zarr or N5");
   return std::move(*node);
 }
 
@@ -119,7 +119,7 @@ FoundArray level_of_image(ObjectStore& store, const ZarrNode& node, const Multis
   const std::int64_t number = options.level.value_or(0);
   const Multiscale::Level& level = image.levels[static_cast<std::size_t>(number)];
   FoundArray found{node_at(store, node.folder, level.path, node.header), {}, level.places, {}, {}};
-  if (!found.node.is_array) bad_input(node.header, "an array at " + isoweave::quoted(level.path), "a group");
+  if (!found.node.is_array) bad_input(node.header, "an array at " + in_quotes(level.path), "a group");
   if (!image.axis_names.is_null()) found.axis_names = image.axis_names;
   note_levels(found, image.levels.size(), number);
   if (open_node(store, node.folder + "/nifti")) {
@@ -188,7 +188,7 @@ std::optional<FoundArray> described_by(const ZarrNode& group, const ZarrNode& ar
   } else {
     return std::nullopt;
   }
-  found.notes.push_back("the array is level " + isoweave::quoted(level) + " of the image in a folder above it, which " +
+  found.notes.push_back("the array is level " + in_quotes(level) + " of the image in a folder above it, which " +
                         "says where its samples lie");
   return found;
 }
@@ -221,7 +221,7 @@ FoundArray find_array(ObjectStore& store, const ZarrNode& node, const OpenOption
   if (images.empty()) bad_input(node.header, "an image or array in the group", "none");
   if (images.size() > 1) bad_input(node.header, "--dataset with one of " + listed(images), "no choice");
   FoundArray found = find_array(store, node_at(store, node.folder, images[0], node.header), options);
-  found.notes.push_back(isoweave::quoted(images[0]) + " is the only array in the folder, and is read");
+  found.notes.push_back(in_quotes(images[0]) + " is the only array in the folder, and is read");
   return found;
 }
 
@@ -286,7 +286,7 @@ void note_parts(VolumeInfo& info, const std::string& version, std::initializer_l
 
 OpenedVolume open_precomputed(const StorePtr& store, const std::string& folder, const OpenOptions& options) {
   if (!options.dataset.empty()) {
-    bad_input(folder, "an array or group at " + isoweave::quoted(options.dataset), "no metadata of Zarr or N5");
+    bad_input(folder, "an array or group at " + in_quotes(options.dataset), "no metadata of Zarr or N5");
   }
   const std::optional<Json> metadata = look_for_json(*store, folder + "/info");
   if (!metadata) {

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 ZarrNode zarr3_node(const std::string& folder, const std::string& header, Json metadata) {
   ZarrNode node{ZarrNode::Format::kZarr3, false, folder, header, std::move(metadata), {}};
   const std::string type = text_member(node.metadata, "node_type");
-  if (type != "array" && type != "group") bad_input(header, "node_type array or group", isoweave::quoted(type));
+  if (type != "array" && type != "group") bad_input(header, "node_type array or group", in_quotes(type));
   node.is_array = type == "array";
   if (const Json* attributes = member(node.metadata, "attributes")) node.attributes = *attributes;
   return node;
@@ -31,7 +31,7 @@ ZarrNode zarr3_node(const std::string& folder, const std::string& header, Json m
 
 [[noreturn]] void refuse_fill(const Json& value, const StoredType& type, const std::string& path) {
   const std::string text = value.is_string() ? value.get<std::string>() : std::string(value.type_name());
-  bad_input(path, "a fill value of " + std::string(stored_type_name(type)), isoweave::quoted(text));
+  bad_input(path, "a fill value of " + std::string(stored_type_name(type)), in_quotes(text));
 }
 
 // "0x7fc00000": the bits of a sample.
@@ -167,7 +167,7 @@ std::string inside(const std::string& folder, const std::string& name, const std
   const fs::path relative(name);
   const bool leads_out =
       std::any_of(relative.begin(), relative.end(), [](const fs::path& part) { return part == ".."; });
-  if (relative.is_absolute() || leads_out) bad_input(path, "a path inside the folder", isoweave::quoted(name));
+  if (relative.is_absolute() || leads_out) bad_input(path, "a path inside the folder", in_quotes(name));
   return name.empty() ? folder : folder + "/" + name;
 }
 

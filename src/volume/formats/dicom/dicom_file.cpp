@@ -116,7 +116,7 @@ void read_meta_group(DicomSlice& slice, DicomBytes& file) {
   const bool known = is_plain(syntax) || syntax == kRunLength || syntax.starts_with(kJpegFamily);
   if (!known) {
     bad_input(slice.path, "a transfer syntax of plain, deflated, JPEG, JPEG-LS, JPEG 2000 or RLE samples",
-              quoted(syntax));
+              in_quotes(syntax));
   }
 }
 

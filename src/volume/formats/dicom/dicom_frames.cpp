@@ -65,7 +65,7 @@ void DicomFrames::set_samples(bool packed, DicomFragments fragments, DicomRange 
 
 std::size_t DicomFrames::count_of(const DicomSlice& common) const {
   const auto said = common.frames.empty() ? 1 : parse_integer(common.frames).value_or(0);
-  if (said < 1) bad_input(common.path, "a number of frames", quoted(common.frames));
+  if (said < 1) bad_input(common.path, "a number of frames", in_quotes(common.frames));
   if (static_cast<std::uint64_t>(said) > kMostFrames) {
     bad_input(common.path, "no more than " + std::to_string(kMostFrames) + " frames", std::to_string(said));
   }

@@ -35,7 +35,8 @@ std::vector<double> numbers_of(const std::string& text, std::string_view what, s
                                const std::string& path) {
   std::vector<double> numbers = leading_numbers(text);
   if (numbers.size() != count) {
-    bad_input(path, std::to_string(count) + " numbers as " + std::string(what), text.empty() ? "none" : quoted(text));
+    bad_input(path, std::to_string(count) + " numbers as " + std::string(what),
+              text.empty() ? "none" : in_quotes(text));
   }
   return numbers;
 }

@@ -29,7 +29,7 @@ SampleType sample_type_of(const DicomSlice& slice) {
 SliceKindFacts facts_of(const DicomSlice& slice) {
   if (slice.samples != 1 || !slice.photometric.starts_with("MONOCHROME")) {
     bad_input(slice.path, "grey samples (MONOCHROME1 or 2)",
-              quoted(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
+              in_quotes(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
   }
   if (slice.stored < 1 || slice.high >= slice.bits || slice.stored > slice.high + 1) {
     bad_input(slice.path, "bits stored within those allocated",
@@ -47,7 +47,7 @@ SlicePlane plane_of(const DicomSlice& slice) {
                            std::abs(dot(plane.column, plane.column) - 1) < kSlack &&
                            std::abs(dot(plane.row, plane.column)) < kSlack;
   if (!orthonormal) {
-    bad_input(slice.path, "orthogonal unit vectors as Image Orientation (Patient)", quoted(slice.orientation));
+    bad_input(slice.path, "orthogonal unit vectors as Image Orientation (Patient)", in_quotes(slice.orientation));
   }
   return plane;
 }
@@ -67,7 +67,7 @@ PlacedSlice placed(DicomSlice slice, const Vector3& normal) {
   const auto at = numbers_of(slice.position, "Image Position (Patient)", 3, slice.path);
   for (std::size_t n = 0; n < 3; ++n) result.position[n] = at[n] + slice.offset * normal[n];
   result.depth = dot(result.position, normal);
-  if (!std::isfinite(result.depth)) bad_input(slice.path, "a finite position", quoted(slice.position));
+  if (!std::isfinite(result.depth)) bad_input(slice.path, "a finite position", in_quotes(slice.position));
   result.slope = number_or(slice.slope, 1, "Rescale Slope", slice.path);
   result.intercept = number_or(slice.intercept, 0, "Rescale Intercept", slice.path);
   result.slice = std::move(slice);
@@ -81,7 +81,7 @@ void drop_copies(PlacedSeries& series) {
   for (PlacedSlice& slice : series.slices) {
     const bool same_place = !kept.empty() && kept.back().position == slice.position;
     if (same_place && is_copy(kept.back().slice, slice.slice)) {
-      copy = quoted(slice.slice.name());
+      copy = in_quotes(slice.slice.name());
     } else {
       kept.push_back(std::move(slice));
     }
@@ -106,11 +106,11 @@ PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   for (DicomSlice& slice : slices) {
     const SliceKindFacts found = facts_of(slice);
     if (found != result.facts) {
-      bad_input(slice.path, text_of(result.facts) + " as in " + quoted(first.name()), text_of(found));
+      bad_input(slice.path, text_of(result.facts) + " as in " + in_quotes(first.name()), text_of(found));
     }
     if (!is_close(result.plane, plane_of(slice))) {
-      bad_input(slice.path, "the orientation and pixel spacing of " + quoted(first.name()),
-                quoted(slice.orientation + " " + slice.pixel_spacing));
+      bad_input(slice.path, "the orientation and pixel spacing of " + in_quotes(first.name()),
+                in_quotes(slice.orientation + " " + slice.pixel_spacing));
     }
     result.slices.push_back(placed(std::move(slice), result.plane.normal()));
   }

@@ -79,7 +79,7 @@ std::vector<DicomSlice> without_scouts(const std::vector<DicomSlice>& series, st
     if (is_same(looks[n], usual)) {
       slices.push_back(series[n]);
     } else if (n - slices.size() < kNamed) {
-      names += (names.empty() ? "" : ", ") + quoted(series[n].name()) + " (" + reason(looks[n], usual) + ")";
+      names += (names.empty() ? "" : ", ") + in_quotes(series[n].name()) + " (" + reason(looks[n], usual) + ")";
     }
   }
   const std::size_t left_out = series.size() - slices.size();

@@ -29,7 +29,7 @@ std::string listing(const SeriesByUid& all) {
   std::size_t n = 0;
   for (const auto& [uid, series] : all) {
     if (n++ == kListed) return text + "; ...";
-    text += (n == 1 ? "" : "; ") + name_of(uid) + " (" + quoted(series.front().description) + ", " +
+    text += (n == 1 ? "" : "; ") + name_of(uid) + " (" + in_quotes(series.front().description) + ", " +
             std::to_string(series.size()) + (series.size() == 1 ? " slice)" : " slices)");
   }
   return text;
@@ -39,7 +39,7 @@ const Series& chosen_series(const SeriesByUid& all, const std::string& chosen, c
   if (chosen.empty() && all.size() == 1) return all.begin()->second;
   if (chosen.empty()) bad_input(path, "one series, or --series UID for one of them", listing(all));
   const auto found = all.find(chosen == kWithoutUid ? std::string() : chosen);
-  if (found == all.end()) bad_input(path, "the series " + quoted(chosen), listing(all));
+  if (found == all.end()) bad_input(path, "the series " + in_quotes(chosen), listing(all));
   return found->second;
 }
 
@@ -92,7 +92,8 @@ OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options
   if (self.empty()) bad_input(path, "a DICOM image", "a DICOM file without one");
   const std::string& uid = self.front().series;
   const std::string& chosen = options.series;
-  if (!chosen.empty() && chosen != name_of(uid)) bad_input(path, "the series " + quoted(chosen), quoted(name_of(uid)));
+  if (!chosen.empty() && chosen != name_of(uid))
+    bad_input(path, "the series " + in_quotes(chosen), in_quotes(name_of(uid)));
   Series series;
   const Places places = places_of(self);
   std::size_t files = 0;

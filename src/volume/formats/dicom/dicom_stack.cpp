@@ -155,7 +155,7 @@ void DicomStack::place(std::vector<DicomSlice>& frames) const {
   std::string notes;
   const auto fill = [&notes](std::string& text, const std::string& other, const char* otherwise, const char* what) {
     if (!text.empty()) return;
-    if (other.empty()) note(notes, std::string(what) + " is not given and taken as " + quoted(otherwise));
+    if (other.empty()) note(notes, std::string(what) + " is not given and taken as " + in_quotes(otherwise));
     text = other.empty() ? otherwise : other;
   };
   fill(common.position, detector_position_, "0\\0\\0", "the position");

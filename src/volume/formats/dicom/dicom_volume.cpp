@@ -208,7 +208,7 @@ void note_bits(VolumeInfo& info, const PlacedSeries& series) {
   const std::size_t bytes = to_size(info.slice_samples(), sample_bytes(series.facts.type));
   if (!has_bits_above(slice, series.facts.type, bytes)) return;
   info.notes.push_back("samples have bits above the " + std::to_string(slice.stored) +
-                       " that are said to be stored (Bits Stored), as in " + quoted(slice.name()) +
+                       " that are said to be stored (Bits Stored), as in " + in_quotes(slice.name()) +
                        ": they are cleared, and values are wrong if they belong to them");
 }
 

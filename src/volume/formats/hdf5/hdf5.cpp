@@ -21,7 +21,6 @@ namespace isoweave {
 namespace {
 
 constexpr unsigned kReadOnly = 0;  // H5F_ACC_RDONLY
-constexpr hid_t kDefault = 0;      // H5P_DEFAULT
 
 // A file and one of its datasets.
 struct OpenDataset {
@@ -99,7 +98,7 @@ class DatasetStream final : public BandStream {
       for (std::size_t n = 0; n < first.size(); ++n) place[n] = first[n] - begin[n];
       return h5.sselect_hyperslab(from.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) >= 0 &&
              h5.sselect_hyperslab(to.id(), H5S_SELECT_SET, place.data(), nullptr, count.data(), nullptr) >= 0 &&
-             h5.dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefault, out.data()) >= 0;
+             h5.dread(open_.dataset.id(), type.id(), to.id(), from.id(), kDefaultProperties, out.data()) >= 0;
     };
     const bool whole = chunk_.empty() || gaps_->needed == nullptr;
     const bool done = ready && (whole ? read(begin, size) : read_chunks(begin, size, read));
@@ -149,7 +148,7 @@ class DatasetStream final : public BandStream {
 };
 
 std::string text_of(const Hdf5Dataset& dataset) {
-  std::string text = isoweave::quoted(dataset.name) + " (";
+  std::string text = in_quotes(dataset.name) + " (";
   for (std::size_t n = 0; n < dataset.shape.size(); ++n)
     text += (n == 0 ? "" : " x ") + std::to_string(dataset.shape[n]);
   return text + " " + dataset.type_text + ")";
@@ -166,7 +165,7 @@ std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::strin
   }
   if (volumes.size() == 1) return volumes[0]->name;
   if (volumes.empty() && unread.size() == 1) {
-    bad_input(path, std::string(kReadTypes) + " in " + isoweave::quoted(unread[0]->name), unread[0]->type_text);
+    bad_input(path, std::string(kReadTypes) + " in " + in_quotes(unread[0]->name), unread[0]->type_text);
   }
   std::string listed;
   for (std::size_t n = 0; n < std::min(found.size(), kMostNamed); ++n)
@@ -270,7 +269,7 @@ FoundDataset find_dataset(const Hdf5File& file, const OpenOptions& options) {
     found.notes = found.place->notes;
   } else if (found.name.empty()) {
     found.name = only_dataset(find_datasets(file.session, file.id), file.path);
-    found.notes.push_back(isoweave::quoted(found.name) + " is the only dataset of 3 axes or more, and is read");
+    found.notes.push_back(in_quotes(found.name) + " is the only dataset of 3 axes or more, and is read");
     found.place = find_hdf5_place(file, found.name, options);
     if (found.place) found.notes.insert(found.notes.end(), found.place->notes.begin(), found.place->notes.end());
   }
@@ -290,8 +289,7 @@ std::vector<ArrayAxis> axes_of(const Hdf5Dataset& dataset, const FoundDataset& f
   }
   const std::vector<std::string>& names = found.place->axis_names;
   if (names.size() != axes.size()) {
-    bad_input(path, std::to_string(names.size()) + " axes in " + isoweave::quoted(found.name),
-              std::to_string(axes.size()));
+    bad_input(path, std::to_string(names.size()) + " axes in " + in_quotes(found.name), std::to_string(axes.size()));
   }
   for (std::size_t n = 0; n < axes.size(); ++n) {
     axes[n].name = names[n];
@@ -394,17 +392,17 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   const Hdf5Session session(path);
   const Hdf5Functions& h5 = session.h5();
   OpenDataset open;
-  open.file = Hdf5Handle(h5.fopen(FileName(*file).text().c_str(), kReadOnly, kDefault), h5.fclose);
+  open.file = Hdf5Handle(h5.fopen(FileName(*file).text().c_str(), kReadOnly, kDefaultProperties), h5.fclose);
   if (!open.file) session.refuse(path, "a readable HDF5 file");
   const FoundDataset found = find_dataset({session, open.file.id(), path}, options);
-  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), found.name.c_str(), kDefault), h5.oclose);
-  if (!open.dataset) session.refuse(path, "a dataset " + isoweave::quoted(found.name));
+  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), found.name.c_str(), kDefaultProperties), h5.oclose);
+  if (!open.dataset) session.refuse(path, "a dataset " + in_quotes(found.name));
   if (h5.iget_type(open.dataset.id()) != H5I_DATASET) {
-    bad_input(path, "a dataset " + isoweave::quoted(found.name), "a group");
+    bad_input(path, "a dataset " + in_quotes(found.name), "a group");
   }
   const Hdf5Dataset dataset = describe_dataset(session, open.dataset.id(), found.name);
   if (!dataset.type) {
-    bad_input(path, std::string(kReadTypes) + " in " + isoweave::quoted(found.name), dataset.type_text);
+    bad_input(path, std::string(kReadTypes) + " in " + in_quotes(found.name), dataset.type_text);
   }
   const ArrayAttributes attributes = hdf5_attributes(session, open.dataset.id());
   const std::vector<ArrayAxis> axes = axes_of(dataset, found, attributes, path);

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kMostObjects = 10000;
 constexpr std::size_t kDeepest = 32;
-constexpr hid_t kDefault = 0;  // H5P_DEFAULT
 
 struct Number {
   H5T_class_t kind = H5T_INTEGER;
@@ -106,7 +105,7 @@ class Search {
     for (hsize_t n = 0; n < info.nlinks && visited_ < kMostObjects; ++n, ++visited_) {
       const std::string name = name_of(group, n);
       if (name.empty()) continue;
-      const Hdf5Handle object(h5_.oopen(group, name.c_str(), kDefault), h5_.oclose);
+      const Hdf5Handle object(h5_.oopen(group, name.c_str(), kDefaultProperties), h5_.oclose);
       if (!object) continue;
       const H5I_type_t kind = h5_.iget_type(object.id());
       std::string inner = path;
@@ -122,11 +121,11 @@ class Search {
   // The name of a hard link; empty for any other.
   std::string name_of(hid_t group, hsize_t n) const {
     H5L_info_t link{};
-    if (h5_.lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefault) < 0) return {};
+    if (h5_.lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefaultProperties) < 0) return {};
     if (link.type != H5L_TYPE_HARD) return {};
     std::array<char, 1024> name{};
     const ssize_t length =
-        h5_.lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefault);
+        h5_.lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefaultProperties);
     return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : std::string();
   }
 
@@ -225,7 +224,7 @@ ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
   const Hdf5Functions& h5 = session.h5();
   const auto open = [&h5, object](const std::string& name) {
     const bool there = h5.aexists(object, name.c_str()) > 0;
-    return Hdf5Handle(there ? h5.aopen(object, name.c_str(), kDefault) : -1, h5.aclose);
+    return Hdf5Handle(there ? h5.aopen(object, name.c_str(), kDefaultProperties) : -1, h5.aclose);
   };
   const auto numbers = [&h5, open](const std::string& name) {
     const Hdf5Handle attribute = open(name);
@@ -245,7 +244,7 @@ std::optional<std::vector<double>> hdf5_numbers(const Hdf5Session& session, hid_
   const Hdf5Handle space(h5.dget_space(dataset), h5.sclose);
   if (!type || !space) return std::nullopt;
   return read_plain(h5, type.id(), space.id(), kMostNumbers,
-                    [&](void* to) { return h5.dread(dataset, type.id(), H5S_ALL, H5S_ALL, kDefault, to); });
+                    [&](void* to) { return h5.dread(dataset, type.id(), H5S_ALL, H5S_ALL, kDefaultProperties, to); });
 }
 
 void name_hdf5_axes(const ArrayAttributes& attributes, std::vector<ArrayAxis>& axes) {

@@ -8,7 +8,7 @@
 namespace isoweave {
 namespace {
 
-constexpr const char* kImage = "/DataSetInfo/Image";
+constexpr const char* kImarisImage = "/DataSetInfo/Image";
 constexpr const char* kLevels = "/DataSet";
 
 struct Choice {
@@ -72,16 +72,16 @@ std::int64_t size_along(Hdf5Place& place, const ArrayAttributes& channel, const 
     return stored;
   }
   const auto size = parse_integer(text);
-  if (!size || *size < 1) bad_input(path, "a size of at least 1 as ImageSize" + axis, isoweave::quoted(text));
+  if (!size || *size < 1) bad_input(path, "a size of at least 1 as ImageSize" + axis, in_quotes(text));
   return *size;
 }
 
 // The shape of a dataset of three axes.
 std::vector<std::int64_t> shape_of(const Hdf5File& file, const std::string& name) {
   const Hdf5Handle dataset = open_object(file, name);
-  if (!dataset) bad_input(file.path, "a dataset " + isoweave::quoted(name), "none");
+  if (!dataset) bad_input(file.path, "a dataset " + in_quotes(name), "none");
   std::vector<std::int64_t> shape = describe_dataset(file.session, dataset.id(), name).shape;
-  if (shape.size() != 3) bad_input(file.path, "3 axes in " + isoweave::quoted(name), std::to_string(shape.size()));
+  if (shape.size() != 3) bad_input(file.path, "3 axes in " + in_quotes(name), std::to_string(shape.size()));
   return shape;
 }
 
@@ -101,7 +101,7 @@ void take_extent(Hdf5Place& place, const ArrayAttributes& image, std::size_t axi
 }  // namespace
 
 std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& named, const OpenOptions& options) {
-  const Hdf5Handle image = open_object(file, kImage);
+  const Hdf5Handle image = open_object(file, kImarisImage);
   if (!image || !open_object(file, level_path({}))) return std::nullopt;
   Hdf5Place place;
   place.format = "Imaris";
@@ -119,7 +119,7 @@ std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& n
   place.dataset = channel_path(choice) + "/Data";
   if (!named.empty() && named != place.dataset) return std::nullopt;
   const Hdf5Handle channel = open_object(file, channel_path(choice));
-  if (!channel) bad_input(file.path, "a group " + isoweave::quoted(channel_path(choice)), "none");
+  if (!channel) bad_input(file.path, "a group " + in_quotes(channel_path(choice)), "none");
   const ArrayAttributes of_image = hdf5_attributes(file.session, image.id());
   const ArrayAttributes of_channel = hdf5_attributes(file.session, channel.id());
   const std::vector<std::int64_t> stored = shape_of(file, place.dataset);

@@ -13,8 +13,7 @@ std::vector<double> numbers_of(const Hdf5File& file, const std::string& name, st
   std::optional<std::vector<double>> numbers = numbers_in(file, name);
   const bool right = numbers && (count == 0 ? !numbers->empty() : numbers->size() == count);
   if (!right) {
-    bad_input(file.path,
-              (count == 0 ? "numbers" : std::to_string(count) + " numbers") + " in " + isoweave::quoted(name),
+    bad_input(file.path, (count == 0 ? "numbers" : std::to_string(count) + " numbers") + " in " + in_quotes(name),
               numbers ? std::to_string(numbers->size()) : "none");
   }
   return std::move(*numbers);

@@ -126,7 +126,7 @@ Hdf5Session::~Hdf5Session() { functions_.eset_auto2(H5E_DEFAULT, printer_, print
 void Hdf5Session::refuse(const std::string& path, const std::string& expected) const {
   std::string message;
   functions_.ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_message, &message);
-  bad_input(path, expected, message.empty() ? "damaged data" : isoweave::quoted(message));
+  bad_input(path, expected, message.empty() ? "damaged data" : in_quotes(message));
 }
 
 }  // namespace isoweave

@@ -9,6 +9,8 @@
 
 namespace isoweave {
 
+inline constexpr hid_t kDefaultProperties = 0;  // H5P_DEFAULT, which some versions define with a cast
+
 // The functions that are used: those of hdf5.h, without their H5 in front. Some names there are macros for one of
 // several versions.
 struct Hdf5Functions {

@@ -12,7 +12,7 @@
 namespace isoweave {
 namespace {
 
-constexpr const char* kImage = "/minc-2.0/image/0/image";
+constexpr const char* kMincImage = "/minc-2.0/image/0/image";
 constexpr const char* kRange = "/minc-2.0/image/0/image-";
 constexpr const char* kDimensions = "/minc-2.0/dimensions/";
 
@@ -48,10 +48,10 @@ double number_or(const ArrayAttributes& attributes, const std::string& name, dou
 void take_dimension(Hdf5Place& place, const Hdf5File& file, std::size_t axis) {
   const std::string name = std::string(kDimensions) + kSpatial[axis].minc;
   const Hdf5Handle dimension = open_object(file, name);
-  if (!dimension) bad_input(file.path, "a dimension " + isoweave::quoted(name), "none");
+  if (!dimension) bad_input(file.path, "a dimension " + in_quotes(name), "none");
   const ArrayAttributes attributes = hdf5_attributes(file.session, dimension.id());
   if (text_in(attributes, "spacing").starts_with("irregular")) {
-    bad_input(file.path, "samples at one distance along " + isoweave::quoted(name), "an irregular spacing");
+    bad_input(file.path, "samples at one distance along " + in_quotes(name), "an irregular spacing");
   }
   if (!attributes.numbers("step")) {
     place.notes.push_back("the spacing of axis " + std::to_string(axis) + " is not given and taken as 1");
@@ -74,7 +74,7 @@ void check_units(const Hdf5Place& place, const std::string& path) {
   for (const std::string& unit : place.units) {
     if (known.empty()) known = unit;
     if (unit == known || unit.empty()) continue;
-    bad_input(path, "one unit for all dimensions", isoweave::quoted(known) + " and " + isoweave::quoted(unit));
+    bad_input(path, "one unit for all dimensions", in_quotes(known) + " and " + in_quotes(unit));
   }
 }
 
@@ -139,19 +139,19 @@ void take_scaling(Hdf5Place& place, const Hdf5File& file, const ArrayAttributes&
 }  // namespace
 
 std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& named) {
-  if (!named.empty() && named != kImage) return std::nullopt;
-  const Hdf5Handle image = open_object(file, kImage);
+  if (!named.empty() && named != kMincImage) return std::nullopt;
+  const Hdf5Handle image = open_object(file, kMincImage);
   if (!image) return std::nullopt;
   Hdf5Place place;
   place.format = "MINC";
-  place.dataset = kImage;
+  place.dataset = kMincImage;
   place.space = Space::kRas;
-  const Hdf5Dataset dataset = describe_dataset(file.session, image.id(), kImage);
+  const Hdf5Dataset dataset = describe_dataset(file.session, image.id(), kMincImage);
   const ArrayAttributes attributes = hdf5_attributes(file.session, image.id());
   place.axis_names = names_of(text_in(attributes, "dimorder"));
   if (place.axis_names.size() != dataset.shape.size()) {
     bad_input(file.path, std::to_string(dataset.shape.size()) + " names of axes in dimorder",
-              isoweave::quoted(text_in(attributes, "dimorder")));
+              in_quotes(text_in(attributes, "dimorder")));
   }
   for (std::size_t axis = 0; axis < kSpatial.size(); ++axis) {
     const auto& names = place.axis_names;

@@ -3,15 +3,11 @@
 #include "files/header_text.hpp"
 
 namespace isoweave {
-namespace {
-
-constexpr hid_t kDefault = 0;  // H5P_DEFAULT
-
-}  // namespace
+namespace {}  // namespace
 
 Hdf5Handle open_object(const Hdf5File& file, const std::string& name) {
   const Hdf5Functions& h5 = file.session.h5();
-  return Hdf5Handle(h5.oopen(file.id, name.c_str(), kDefault), h5.oclose);
+  return Hdf5Handle(h5.oopen(file.id, name.c_str(), kDefaultProperties), h5.oclose);
 }
 
 std::optional<std::vector<double>> numbers_in(const Hdf5File& file, const std::string& name) {

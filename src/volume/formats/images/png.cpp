@@ -34,7 +34,7 @@ class PngFile {
   PngFile& operator=(const PngFile&) = delete;
 
   [[noreturn]] void refuse(std::string_view expected) {
-    const std::string found = message_[0] != '\0' ? quoted(message_.data()) : "damaged data";
+    const std::string found = message_[0] != '\0' ? in_quotes(message_.data()) : "damaged data";
     bad_input(file_->path(), expected, found);
   }
 

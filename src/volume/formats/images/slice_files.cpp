@@ -67,7 +67,7 @@ SliceKind kind_of(const std::string& path, bool only_dicom) {
 void take_slice(SliceFiles& slices, const std::string& path, SliceKind kind) {
   if (slices.files.empty()) slices.kind = kind;
   if (kind != slices.kind) {
-    bad_input(path, std::string(name_of(slices.kind)) + " as " + isoweave::quoted(slices.files.front()),
+    bad_input(path, std::string(name_of(slices.kind)) + " as " + in_quotes(slices.files.front()),
               std::string(name_of(kind)));
   }
   slices.files.push_back(path);
@@ -138,8 +138,7 @@ std::vector<std::string> files_below(const std::string& top) {
   std::set<fs::path> seen{fs::canonical(top, unknown)};
   std::vector<std::string> level = entries_of(top).folders;
   for (std::size_t depth = 1; !level.empty(); ++depth) {
-    if (depth > kDeepest)
-      bad_input(top, "folders no deeper than " + std::to_string(kDeepest), isoweave::quoted(level[0]));
+    if (depth > kDeepest) bad_input(top, "folders no deeper than " + std::to_string(kDeepest), in_quotes(level[0]));
     std::vector<std::string> next;
     for (const std::string& folder : level) {
       std::error_code error;

@@ -99,8 +99,7 @@ void add_missing(Missing& missing, const NumberedName& a, const NumberedName& b,
   if (numbers <= step) return;
   missing.slices += std::max<std::int64_t>((numbers + step / 2) / step - 1, 1);
   if (++missing.gaps > kNamed) return;
-  missing.where +=
-      (missing.gaps == 1 ? "between " : ", between ") + isoweave::quoted(a.file) + " and " + isoweave::quoted(b.file);
+  missing.where += (missing.gaps == 1 ? "between " : ", between ") + in_quotes(a.file) + " and " + in_quotes(b.file);
 }
 
 std::string missing_text(const Missing& missing, std::int64_t step) {
@@ -123,7 +122,7 @@ void note_numbers(Names names, std::size_t run, std::vector<std::string>& notes)
   for (std::size_t n = 1; n < names.size(); ++n) {
     add_missing(missing, names[n - 1], names[n], names[n].numbers[run] - names[n - 1].numbers[run], step);
     if (names[n].numbers != names[n - 1].numbers) continue;
-    if (++twice == 1) which = isoweave::quoted(names[n - 1].file) + " and " + isoweave::quoted(names[n].file);
+    if (++twice == 1) which = in_quotes(names[n - 1].file) + " and " + in_quotes(names[n].file);
   }
   if (missing.slices > 0) notes.push_back(missing_text(missing, step));
   if (twice == 1) notes.push_back(which + " have the same number, and both are taken as slices");

@@ -32,7 +32,7 @@ void check_slice(const VolumeInfo& slice, const VolumeInfo& first) {
   }
   const bool same = slice.dims == first.dims && slice.type == first.type && slice.slope == first.slope &&
                     slice.intercept == first.intercept;
-  if (!same) bad_input(slice.path, text_of(first) + " as in " + quoted(first.path), text_of(slice));
+  if (!same) bad_input(slice.path, text_of(first) + " as in " + in_quotes(first.path), text_of(slice));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::int64_t count_of(std::string_view text, std::string_view what, std::string_
   const auto count = parse_integer(trimmed(text));
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
   if (!count || *count < 1 || *count > kMost) {
-    bad_input(path, "a count of at least 1 as " + std::string(what), quoted(text));
+    bad_input(path, "a count of at least 1 as " + std::string(what), in_quotes(text));
   }
   return *count;
 }
@@ -120,7 +120,7 @@ void set_ome_axes(StackDescription& stack, std::string_view tag, std::string_vie
     return std::any_of(stack.axes.begin(), stack.axes.end(), [name](const ArrayAxis& a) { return a.name == name; });
   };
   if (!named("z") || !named("channel") || !named("time")) {
-    bad_input(path, "a DimensionOrder such as XYZCT", quoted(order));
+    bad_input(path, "a DimensionOrder such as XYZCT", in_quotes(order));
   }
 }
 

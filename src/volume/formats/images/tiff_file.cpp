@@ -36,7 +36,7 @@ TiffFile::TiffFile(FilePtr file) : file_(std::move(file)) {
 }
 
 void TiffFile::refuse(std::string_view expected) const {
-  bad_input(file_->path(), expected, message_.empty() ? "damaged data" : quoted(message_));
+  bad_input(file_->path(), expected, message_.empty() ? "damaged data" : in_quotes(message_));
 }
 
 bool TiffFile::next_directory() {

@@ -15,12 +15,13 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int32_t kHeaderBytes = 348;
+constexpr std::int32_t kAnalyzeBytes = 348;
 
 // SPM's.
-constexpr std::array<TypeCode, 3> kAddedTypes{
+constexpr std::array<TypeCode, 3> kAnalyzeAddedTypes{
     {{130, SampleType::kInt8}, {132, SampleType::kUint16}, {136, SampleType::kUint32}}};
-constexpr TypeCodes kTypes{"Analyze", "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats", kAddedTypes};
+constexpr TypeCodes kAnalyzeTypes{"Analyze", "a scalar type of 8 to 32 bit integers or 32 or 64 bit floats",
+                                  kAnalyzeAddedTypes};
 
 struct AnalyzeHeader {
   bool swapped = false;
@@ -33,11 +34,11 @@ struct AnalyzeHeader {
   std::array<std::int64_t, 3> origin{};  // SPM's, a sample counted from 1
 };
 
-std::optional<AnalyzeHeader> parse_header(std::string_view bytes) {
-  if (bytes.size() < kHeaderBytes) return std::nullopt;
+std::optional<AnalyzeHeader> parse_analyze(std::string_view bytes) {
+  if (bytes.size() < kAnalyzeBytes) return std::nullopt;
   for (const bool swapped : {false, true}) {
     const HeaderFields field(bytes, swapped);
-    if (field.at<std::int32_t>(0) != kHeaderBytes) continue;
+    if (field.at<std::int32_t>(0) != kAnalyzeBytes) continue;
     AnalyzeHeader header;
     header.swapped = swapped;
     field.fill<std::int16_t>(header.dim, 40);
@@ -108,18 +109,18 @@ std::uint64_t data_offset(const AnalyzeHeader& header, std::string_view path) {
 }  // namespace
 
 bool is_analyze(std::string_view head) {
-  const std::optional<AnalyzeHeader> header = parse_header(head);
+  const std::optional<AnalyzeHeader> header = parse_analyze(head);
   return header && header->dim[0] >= 1 && header->dim[0] <= 7;
 }
 
 OpenedVolume open_analyze(const FilePtr& file, const OpenOptions& options) {
-  const std::optional<AnalyzeHeader> header = parse_header(file->head(kHeaderBytes));
+  const std::optional<AnalyzeHeader> header = parse_analyze(file->head(kAnalyzeBytes));
   if (!header) bad_input(file->path(), "an Analyze header, whose first number is 348", "other content");
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "analyze";
-  info.type = type_of_code(header->type, kTypes, info.path);
+  info.type = type_of_code(header->type, kAnalyzeTypes, info.path);
   const std::int64_t volumes = set_dims(*header, info);
   const std::uint64_t before = choose_in_row(info, volumes, options);
   set_axes(*header, info);

@@ -59,7 +59,7 @@ MetaFields parse_fields(const std::string& text, std::string_view path) {
     if (trimmed(*line).empty()) continue;
     const std::size_t equals = line->find('=');
     if (equals == std::string_view::npos) {
-      bad_input(path, "header lines 'Key = value'", quoted(*line));
+      bad_input(path, "header lines 'Key = value'", in_quotes(*line));
     }
     const std::string key = lower_case(trimmed(line->substr(0, equals)));
     fields.values[key] = trimmed(line->substr(equals + 1));
@@ -83,7 +83,7 @@ std::optional<std::int64_t> integer_of(const MetaFields& fields, std::initialize
   const std::string_view text = fields.get(keys);
   if (text.empty()) return std::nullopt;
   const auto value = parse_integer(text);
-  if (!value) bad_input(path, "a whole number as " + std::string(*keys.begin()), quoted(text));
+  if (!value) bad_input(path, "a whole number as " + std::string(*keys.begin()), in_quotes(text));
   return value;
 }
 
@@ -93,7 +93,7 @@ std::vector<double> numbers_of(const MetaFields& fields, std::initializer_list<c
   std::vector<double> numbers;
   for (const std::string_view word : words_of(fields.get(keys))) {
     const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers in " + std::string(*keys.begin()), quoted(word));
+    if (!number) bad_input(path, "numbers in " + std::string(*keys.begin()), in_quotes(word));
     numbers.push_back(*number);
   }
   if (!numbers.empty() && numbers.size() != count) {
@@ -116,7 +116,7 @@ SampleType sample_type_of(const MetaFields& fields, std::string_view path) {
   const std::string name = lower_case(text);
   const auto found = kTypes.find(name);
   if (found == kTypes.end()) {
-    bad_input(path, "an ElementType of 8 to 64 bit integers, MET_FLOAT or MET_DOUBLE", quoted(text));
+    bad_input(path, "an ElementType of 8 to 64 bit integers, MET_FLOAT or MET_DOUBLE", in_quotes(text));
   }
   return found->second;
 }
@@ -124,10 +124,10 @@ SampleType sample_type_of(const MetaFields& fields, std::string_view path) {
 void check_kind(const MetaFields& fields, std::string_view path) {
   const std::string_view object = fields.get({"objecttype"});
   if (!object.empty() && lower_case(object) != "image") {
-    bad_input(path, "ObjectType Image", quoted(object));
+    bad_input(path, "ObjectType Image", in_quotes(object));
   }
   const std::string_view binary = fields.get({"binarydata"});
-  if (!binary.empty() && !is_true(binary)) bad_input(path, "BinaryData True", quoted(binary));
+  if (!binary.empty() && !is_true(binary)) bad_input(path, "BinaryData True", in_quotes(binary));
 }
 
 // Values of one sample, which lie together. They are no choice of volumes, unless the caller chooses.
@@ -152,7 +152,7 @@ std::vector<ArrayAxis> axes_of(const MetaFields& fields, const OpenOptions& opti
   std::vector<ArrayAxis> named{{channels_of(fields, options, path), "channel"}};
   for (std::size_t n = 0; n < words.size(); ++n) {
     const auto side = parse_integer(words[n]);
-    if (!side || *side < 1) bad_input(path, "DimSize of at least 1", quoted(words[n]));
+    if (!side || *side < 1) bad_input(path, "DimSize of at least 1", in_quotes(words[n]));
     if (n >= kNames.size() && *side > 1) {
       bad_input(path, "3 dimensions, or 4 with time",
                 "axis " + std::to_string(n) + " with " + std::to_string(*side) + " samples");
@@ -235,7 +235,7 @@ void note_compressed_size(VolumeInfo& info, const FilePtr& file, const MetaField
 }
 
 // "name%03d.raw 1 100 1", where the step may be missing.
-std::optional<DataFiles> numbered_series(std::string_view value, const std::string& path) {
+std::optional<DataFiles> metaimage_series(std::string_view value, const std::string& path) {
   const std::vector<std::string_view> words = words_of(value);
   if (words.size() < 3 || words.size() > 4 || words[0].find('%') == std::string_view::npos) return std::nullopt;
   std::vector<std::int64_t> numbers;
@@ -261,7 +261,7 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
     return open_only_file(info, file, fields.end, layout, bytes);
   }
   if (is_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
-  if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
+  if (const auto series = metaimage_series(value, path)) return open_samples(info, *series, layout, bytes);
   const FilePtr data = open_part(path, "its samples in", beside(path, value));
   if (layout.encoding == DataLayout::Encoding::kRaw) return open_only_file(info, data, 0, layout, bytes);
   const std::uint64_t begin = compressed_begin(data, fields, std::exchange(layout.byte_skip, 0));

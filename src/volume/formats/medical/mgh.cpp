@@ -13,7 +13,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 284;
+constexpr std::size_t kMghBytes = 284;
 constexpr std::size_t kFieldBytes = 90;  // of the header, the rest is not used
 constexpr bool kSwapped = std::endian::native == std::endian::little;
 
@@ -25,7 +25,7 @@ struct MghHeader {
   Vector3 centre{};                    // of the volume: of the sample at half of the dimensions
 };
 
-MghHeader parse_header(std::string_view bytes) {
+MghHeader parse_mgh(std::string_view bytes) {
   const HeaderFields field(bytes, kSwapped);
   MghHeader header;
   field.fill<std::int32_t>(header.numbers, 0);
@@ -83,7 +83,7 @@ void set_axes(const MghHeader& header, VolumeInfo& info) {
 // There is no magic: the numbers must be those of a header.
 bool is_mgh(std::string_view head) {
   if (head.size() < kFieldBytes) return false;
-  const std::array<std::int32_t, 7> numbers = parse_header(head).numbers;
+  const std::array<std::int32_t, 7> numbers = parse_mgh(head).numbers;
   constexpr std::int32_t kTypes = 12;  // codes that FreeSurfer knows
   bool sane = numbers[0] == 1 && numbers[5] >= 0 && numbers[5] < kTypes;
   for (std::size_t n = 1; n < 5; ++n) sane = sane && numbers[n] > 0;
@@ -91,9 +91,9 @@ bool is_mgh(std::string_view head) {
 }
 
 OpenedVolume open_mgh(const FilePtr& file, const OpenOptions& options) {
-  const std::string head = file->head(kHeaderBytes);
+  const std::string head = file->head(kMghBytes);
   if (!is_mgh(head)) bad_input(file->path(), "an MGH header: version 1, dimensions of at least 1", "other content");
-  MghHeader header = parse_header(head);
+  MghHeader header = parse_mgh(head);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
@@ -108,7 +108,7 @@ OpenedVolume open_mgh(const FilePtr& file, const OpenOptions& options) {
   const std::uint64_t before = choose_in_row(info, header.numbers[4], options);
   place_by_default(header, info);
   set_axes(header, info);
-  volume.samples = samples_in(file, kHeaderBytes + before, checked_volume_bytes(info));
+  volume.samples = samples_in(file, kMghBytes + before, checked_volume_bytes(info));
   volume.swap_bytes = kSwapped;
   return volume;
 }

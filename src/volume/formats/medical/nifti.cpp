@@ -29,16 +29,17 @@ namespace {
 constexpr std::int32_t kHeader1 = 348;
 constexpr std::int32_t kHeader2 = 540;
 
-constexpr std::array<TypeCode, 9> kAddedTypes{{{256, SampleType::kInt8},
-                                               {512, SampleType::kUint16},
-                                               {768, SampleType::kUint32},
-                                               {1024, SampleType::kInt64},
-                                               {1280, SampleType::kUint64},
-                                               {1536, std::nullopt, "float128"},
-                                               {1792, std::nullopt, "complex128"},
-                                               {2048, std::nullopt, "complex256"},
-                                               {2304, std::nullopt, "RGBA"}}};
-constexpr TypeCodes kTypes{"NIfTI", "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats", kAddedTypes};
+constexpr std::array<TypeCode, 9> kNiftiAddedTypes{{{256, SampleType::kInt8},
+                                                    {512, SampleType::kUint16},
+                                                    {768, SampleType::kUint32},
+                                                    {1024, SampleType::kInt64},
+                                                    {1280, SampleType::kUint64},
+                                                    {1536, std::nullopt, "float128"},
+                                                    {1792, std::nullopt, "complex128"},
+                                                    {2048, std::nullopt, "complex256"},
+                                                    {2304, std::nullopt, "RGBA"}}};
+constexpr TypeCodes kNiftiTypes{"NIfTI", "a scalar type of 8 to 64 bit integers or 32 or 64 bit floats",
+                                kNiftiAddedTypes};
 
 // The fields of both versions in one form.
 struct NiftiHeader {
@@ -98,7 +99,7 @@ NiftiHeader parse_version2(const HeaderFields& field) {
 }
 
 // The header, or nothing unless both the size field and the magic are those of NIfTI.
-std::optional<NiftiHeader> parse_header(std::string_view bytes) {
+std::optional<NiftiHeader> parse_nifti(std::string_view bytes) {
   for (const bool swapped : {false, true}) {
     const HeaderFields field(bytes, swapped);
     if (bytes.size() >= kHeader1 && field.at<std::int32_t>(0) == kHeader1) {
@@ -287,7 +288,7 @@ VolumeInfo read_info(const NiftiHeader& header, const std::vector<ArrayAxis>& ax
   VolumeInfo info;
   info.path = path;
   info.format = "nifti";
-  info.type = type_of_code(header.type, kTypes, path);
+  info.type = type_of_code(header.type, kNiftiTypes, path);
   info.dims = choice.dims(axes);
   info.notes = choice.notes;
   info.part = choice.part;
@@ -324,10 +325,10 @@ FilePtr image_of_header(const std::string& header_path) {
   return unpacked(open_part(header_path, "its samples in", only_packed ? packed : plain));
 }
 
-bool is_nifti(std::string_view head) { return parse_header(head).has_value(); }
+bool is_nifti(std::string_view head) { return parse_nifti(head).has_value(); }
 
 OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options) {
-  const std::optional<NiftiHeader> header = parse_header(file->head(kNiftiHeadBytes));
+  const std::optional<NiftiHeader> header = parse_nifti(file->head(kNiftiHeadBytes));
   if (!header) bad_input(file->path(), "a NIfTI header (size 348 or 540 and its magic)", "other bytes");
   const std::vector<ArrayAxis> axes = axes_of(*header, file->path());
   const AxisChoice choice = choose_axes(axes, options, file->path());

@@ -136,7 +136,7 @@ Vector3 set_space(VolumeInfo& info, const NrrdFields& fields) {
     info.geometry.space = Space::kLps;
     return {1, -1, 1};
   } else {
-    info.notes.push_back("the space " + quoted(space) + " is taken as unknown");
+    info.notes.push_back("the space " + in_quotes(space) + " is taken as unknown");
   }
   return {1, 1, 1};
 }
@@ -232,7 +232,7 @@ DataLayout layout_of(const NrrdFields& fields, SampleType type, std::string_view
   } else if (encoding == "hex") {
     layout.encoding = DataLayout::Encoding::kHex;
   } else if (encoding != "raw") {
-    bad_input(path, "encoding raw, gzip, ascii or hex", quoted(encoding));
+    bad_input(path, "encoding raw, gzip, ascii or hex", in_quotes(encoding));
   }
   layout.line_skip = nrrd_integer(fields, "lineskip", 0, path);
   layout.byte_skip = nrrd_integer(fields, "byteskip", 0, path);
@@ -242,13 +242,13 @@ DataLayout layout_of(const NrrdFields& fields, SampleType type, std::string_view
 bool is_swapped(const NrrdFields& fields, SampleType type, std::string_view path) {
   const std::string endian = lower_case(fields.get("endian"));
   if (endian != "little" && endian != "big" && sample_bytes(type) > 1) {
-    bad_input(path, "endian 'little' or 'big'", quoted(endian));
+    bad_input(path, "endian 'little' or 'big'", in_quotes(endian));
   }
   return (endian == "big") != (std::endian::native == std::endian::big);
 }
 
 // "name%03d.raw 1 100 1 [axes]" as pattern and numbers; nothing if it is a plain name.
-std::optional<DataFiles> numbered_series(std::string_view value, const std::string& path) {
+std::optional<DataFiles> nrrd_series(std::string_view value, const std::string& path) {
   std::vector<std::string_view> words = words_of(value);
   std::vector<std::int64_t> numbers;
   while (words.size() > 1 && numbers.size() < 4) {
@@ -272,7 +272,7 @@ std::unique_ptr<ByteStream> samples_of(VolumeInfo& info, const FilePtr& file, co
     return open_only_file(info, file, fields.end, layout, bytes);
   }
   if (is_nrrd_list(value)) return open_samples(info, listed_files(path, fields.listed), layout, bytes);
-  if (const auto series = numbered_series(value, path)) return open_samples(info, *series, layout, bytes);
+  if (const auto series = nrrd_series(value, path)) return open_samples(info, *series, layout, bytes);
   return open_only_file(info, open_part(path, "its samples in", beside(path, std::string(value))), 0, layout, bytes);
 }
 

@@ -39,7 +39,7 @@ std::vector<double> axis_numbers(const NrrdFields& fields, const std::string& na
   std::vector<double> numbers;
   for (const std::string_view word : axis_words(fields, name, axes, path)) {
     const auto number = parse_double(word);
-    if (!number) bad_input(path, "numbers in '" + name + "'", quoted(word));
+    if (!number) bad_input(path, "numbers in '" + name + "'", in_quotes(word));
     numbers.push_back(*number);
   }
   return numbers;
@@ -51,12 +51,12 @@ NrrdVector parse_vector(std::string_view text, std::string_view path) {
   for (std::size_t count = 0; count <= vector.space.size(); ++count) {
     const std::size_t comma = text.find(',');
     const auto number = parse_double(trimmed(text.substr(0, comma)));
-    if (!number) bad_input(path, "vectors of numbers", quoted(text));
+    if (!number) bad_input(path, "vectors of numbers", in_quotes(text));
     (count < vector.space.size() ? vector.space[count] : vector.time) = *number;
     if (comma == std::string_view::npos) return vector;
     text.remove_prefix(comma + 1);
   }
-  bad_input(path, "vectors of up to 3 numbers, and one of time", quoted(text));
+  bad_input(path, "vectors of up to 3 numbers, and one of time", in_quotes(text));
 }
 
 // An axis with a direction in space and none in time, or the other way round.
@@ -78,7 +78,7 @@ NrrdFields parse_nrrd_fields(const std::string& text, const std::string& path) {
   LineReader lines(text);
   const std::string_view magic = lines.next().value_or("");
   if (magic.size() != 8 || magic < "NRRD0001" || magic > "NRRD0005") {
-    bad_input(path, "the magic NRRD0001 to NRRD0005", quoted(magic));
+    bad_input(path, "the magic NRRD0001 to NRRD0005", in_quotes(magic));
   }
   NrrdFields fields;
   while (const auto line = lines.next()) {
@@ -92,7 +92,7 @@ NrrdFields parse_nrrd_fields(const std::string& text, const std::string& path) {
     if (!comment && key_and_value) fields.pairs.emplace(trimmed(line->substr(0, colon)), line->substr(colon + 2));
     if (comment || key_and_value) continue;
     if (colon == std::string_view::npos) {
-      bad_input(path, "header lines 'field: value'", quoted(*line));
+      bad_input(path, "header lines 'field: value'", in_quotes(*line));
     }
     const std::string name = field_name(line->substr(0, colon));
     const std::string_view value = trimmed(line->substr(colon + 1));
@@ -119,7 +119,7 @@ std::int64_t nrrd_integer(const NrrdFields& fields, const std::string& name, std
   const std::string_view text = fields.get(name);
   if (text.empty()) return missing;
   const auto value = parse_integer(text);
-  if (!value) bad_input(path, "a whole number as '" + name + "'", quoted(text));
+  if (!value) bad_input(path, "a whole number as '" + name + "'", in_quotes(text));
   return *value;
 }
 
@@ -133,7 +133,7 @@ std::vector<std::optional<NrrdVector>> parse_nrrd_vectors(std::string_view text,
     }
     const std::size_t close = text.find(')');
     if (text[0] != '(' || close == std::string_view::npos) {
-      bad_input(path, "vectors such as (1,0,0)", quoted(text));
+      bad_input(path, "vectors such as (1,0,0)", in_quotes(text));
     }
     const NrrdVector vector = parse_vector(text.substr(1, close - 1), path);
     const bool none = std::all_of(vector.space.begin(), vector.space.end(), [](double v) { return std::isnan(v); });
@@ -160,10 +160,10 @@ std::vector<std::string> quoted_words(std::string_view text) {
 }
 
 std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::string& path) {
-  constexpr std::int64_t kMostAxes = 16;
+  constexpr std::int64_t kMostDimensions = 16;
   required_nrrd_field(fields, "dimension", path);
   const std::int64_t dimension = nrrd_integer(fields, "dimension", 0, path);
-  if (dimension < 1 || dimension > kMostAxes) {
+  if (dimension < 1 || dimension > kMostDimensions) {
     bad_input(path, "a dimension of 1 to 16", std::to_string(dimension));
   }
   std::vector<NrrdAxis> axes(static_cast<std::size_t>(dimension));
@@ -181,7 +181,7 @@ std::vector<NrrdAxis> parse_nrrd_axes(const NrrdFields& fields, const std::strin
   }
   for (std::size_t n = 0; n < axes.size(); ++n) {
     const auto size = parse_integer(sizes[n]);
-    if (!size || *size < 1) bad_input(path, "sizes of at least 1", quoted(sizes[n]));
+    if (!size || *size < 1) bad_input(path, "sizes of at least 1", in_quotes(sizes[n]));
     axes[n].size = *size;
     if (!kinds.empty()) axes[n].kind = lower_case(kinds[n]);
     if (!spacings.empty()) axes[n].spacing = spacings[n];

@@ -75,7 +75,7 @@ class SegmentReader {
   Label label_of(std::string_view text, const std::string& what) const {
     if (text.empty()) return 1;
     const std::optional<Label> label = parse_label(text);
-    if (!label) bad_input(path_, "a whole number as " + what, quoted(text));
+    if (!label) bad_input(path_, "a whole number as " + what, in_quotes(text));
     return *label;
   }
 
@@ -84,7 +84,7 @@ class SegmentReader {
     const std::optional<std::int64_t> layer = text.empty() ? number : parse_integer(text);
     if (!layer || *layer < 0 || *layer >= layers_) {
       bad_input(path_, what + " from 0 to " + std::to_string(layers_ - 1),
-                text.empty() ? "segment " + std::to_string(number) : quoted(text));
+                text.empty() ? "segment " + std::to_string(number) : in_quotes(text));
     }
     return *layer;
   }

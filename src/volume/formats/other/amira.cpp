@@ -65,7 +65,7 @@ std::string sides_of(std::string_view line, const std::string& before) {
   return words.size() > 1 && words[1] == "Lattice" ? std::string(behind(line, "Lattice")) : before;
 }
 
-AmiraHeader read_header(const FilePtr& file) {
+AmiraHeader read_amira_header(const FilePtr& file) {
   const std::string head = file->head(kLargestHeader);
   LineReader lines(head);
   AmiraHeader header;
@@ -82,7 +82,8 @@ AmiraHeader read_header(const FilePtr& file) {
     if (!line.starts_with('@')) continue;
     header.data = lines.position();
     if (line != header.label) {
-      bad_input(file->path(), "an array over a lattice as the first one", header.label.empty() ? "none" : quoted(line));
+      bad_input(file->path(), "an array over a lattice as the first one",
+                header.label.empty() ? "none" : in_quotes(line));
     }
     return header;
   }
@@ -99,7 +100,7 @@ std::array<double, kCount> numbers_of(const std::string& text, std::string_view 
     sane = number.has_value();
     if (sane) numbers[n] = *number;
   }
-  if (!sane) bad_input(path, std::to_string(kCount) + " numbers as " + std::string(what), quoted(text));
+  if (!sane) bad_input(path, std::to_string(kCount) + " numbers as " + std::string(what), in_quotes(text));
   return numbers;
 }
 
@@ -107,7 +108,7 @@ void set_dims(VolumeInfo& info, const AmiraHeader& header) {
   const std::vector<std::string_view> words = words_of(header.sides);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto side = words.size() == 3 ? parse_integer(words[axis]) : std::nullopt;
-    if (!side) bad_input(info.path, "three whole numbers behind 'define Lattice'", quoted(header.sides));
+    if (!side) bad_input(info.path, "three whole numbers behind 'define Lattice'", in_quotes(header.sides));
     info.dims[axis] = *side;
   }
 }
@@ -119,7 +120,7 @@ double scale_of_unit(VolumeInfo& info, std::string_view text) {
   if (text.empty()) return 1;
   const std::optional<LengthUnit> unit = find_metric_unit(text);
   if (!unit) {
-    info.notes.push_back("the unit " + quoted(text) + " is no known length");
+    info.notes.push_back("the unit " + in_quotes(text) + " is no known length");
     return 1;
   }
   info.geometry.unit = unit->name;
@@ -129,7 +130,7 @@ double scale_of_unit(VolumeInfo& info, std::string_view text) {
 // The box ends at the first and the last sample, not at the sides of cells around them.
 void set_axes(VolumeInfo& info, const AmiraHeader& header) {
   if (header.coordinates.find("uniform") == std::string::npos) {
-    bad_input(info.path, "CoordType \"uniform\"", quoted(header.coordinates));
+    bad_input(info.path, "CoordType \"uniform\"", in_quotes(header.coordinates));
   }
   if (header.box.empty()) {
     info.notes.emplace_back("the spacing is not given and taken as 1");
@@ -152,21 +153,22 @@ SampleType sample_type_of(const std::string& name, std::string_view path) {
       {"byte", SampleType::kUint8}, {"short", SampleType::kInt16},   {"ushort", SampleType::kUint16},
       {"int", SampleType::kInt32},  {"float", SampleType::kFloat32}, {"double", SampleType::kFloat64}};
   const auto found = kTypes.find(name);
-  if (found == kTypes.end()) bad_input(path, "one byte, short, ushort, int, float or double per sample", quoted(name));
+  if (found == kTypes.end())
+    bad_input(path, "one byte, short, ushort, int, float or double per sample", in_quotes(name));
   return found->second;
 }
 
 std::unique_ptr<ByteStream> unpacked_samples(const FilePtr& file, const AmiraHeader& header, std::uint64_t bytes) {
   const std::string& path = file->path();
   const auto size = parse_integer(header.codec_bytes);
-  if (!size || *size < 1) bad_input(path, "the bytes that an array is packed in", quoted(header.codec_bytes));
+  if (!size || *size < 1) bad_input(path, "the bytes that an array is packed in", in_quotes(header.codec_bytes));
   const auto stored = static_cast<std::uint64_t>(*size);
   auto packed = samples_in(file, header.data, stored);
   if (header.codec == "HxByteRLE") {
     check_plausible(path, bytes, stored, kRunRatio);
     return std::make_unique<RunStream>(std::move(packed));
   }
-  if (header.codec != "HxZip") bad_input(path, "an array plain, in HxByteRLE or in HxZip", quoted(header.codec));
+  if (header.codec != "HxZip") bad_input(path, "an array plain, in HxByteRLE or in HxZip", in_quotes(header.codec));
   check_plausible(path, bytes, stored, kDeflateRatio);
   return std::make_unique<InflateStream>(std::move(packed), path);
 }
@@ -187,14 +189,14 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const AmiraHeader& h
 bool is_amira(std::string_view head) { return head.starts_with("# AmiraMesh") || head.starts_with("# Avizo"); }
 
 OpenedVolume open_amira(const FilePtr& file) {
-  const AmiraHeader header = read_header(file);
+  const AmiraHeader header = read_amira_header(file);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "amira";
   const bool little = header.form == "BINARY-LITTLE-ENDIAN";
   if (header.form != "ASCII" && header.form != "BINARY" && !little) {
-    bad_input(info.path, "ASCII, BINARY or BINARY-LITTLE-ENDIAN in the first line", quoted(header.form));
+    bad_input(info.path, "ASCII, BINARY or BINARY-LITTLE-ENDIAN in the first line", in_quotes(header.form));
   }
   info.type = sample_type_of(header.type, info.path);
   set_dims(info, header);

@@ -22,7 +22,7 @@ struct FitsHeader {
   std::uint64_t data = 0;
 };
 
-FitsHeader read_header(const FilePtr& file) {
+FitsHeader read_fits_header(const FilePtr& file) {
   const std::string head = file->head(kLargestHeader);
   FitsHeader header;
   for (std::size_t at = 0; at + kCard <= head.size(); at += kCard) {
@@ -43,7 +43,7 @@ std::int64_t integer_of(const FitsHeader& header, const std::string& key, const 
   const auto found = header.values.find(key);
   const auto value = found == header.values.end() ? std::nullopt : parse_integer(found->second);
   if (!value)
-    bad_input(path, "a whole number as " + key, found == header.values.end() ? "none" : quoted(found->second));
+    bad_input(path, "a whole number as " + key, found == header.values.end() ? "none" : in_quotes(found->second));
   return *value;
 }
 
@@ -51,7 +51,7 @@ double number_of(const FitsHeader& header, const std::string& key, double missin
   const auto found = header.values.find(key);
   if (found == header.values.end()) return missing;
   const auto value = parse_double(found->second);
-  if (!value) bad_input(path, "a number as " + key, quoted(found->second));
+  if (!value) bad_input(path, "a number as " + key, in_quotes(found->second));
   return *value;
 }
 
@@ -99,7 +99,7 @@ std::int64_t set_dims(const FitsHeader& header, VolumeInfo& info) {
 bool is_fits(std::string_view head) { return head.starts_with("SIMPLE  ="); }
 
 OpenedVolume open_fits(const FilePtr& file, const OpenOptions& options) {
-  const FitsHeader header = read_header(file);
+  const FitsHeader header = read_fits_header(file);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
@@ -113,7 +113,7 @@ OpenedVolume open_fits(const FilePtr& file, const OpenOptions& options) {
     bad_input(info.path, "a BSCALE other than 0", number_text(info.slope));
   }
   if (header.values.contains("BLANK")) {
-    info.notes.push_back("BLANK is not applied: samples of " + quoted(header.values.find("BLANK")->second) +
+    info.notes.push_back("BLANK is not applied: samples of " + in_quotes(header.values.find("BLANK")->second) +
                          " are values");
   }
   info.notes.emplace_back("coordinates of the sky and of spectra are not applied: the spacing is taken as 1");

@@ -212,8 +212,8 @@ void set_axes(const MrcHeader& header, VolumeInfo& info) {
 }  // namespace
 
 bool is_mrc(std::string_view head) {
-  constexpr std::size_t kMagic = 208;
-  return head.size() >= kMrcHeadBytes && head.substr(kMagic, 3) == "MAP" && find_header(head).has_value();
+  constexpr std::size_t kMapWord = 208;
+  return head.size() >= kMrcHeadBytes && head.substr(kMapWord, 3) == "MAP" && find_header(head).has_value();
 }
 
 bool is_old_mrc(std::string_view head) { return find_header(head).has_value(); }

@@ -19,7 +19,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 // The dictionary of a header: texts, truth values and tuples of whole numbers between braces.
 class NpyDictionary {
@@ -39,7 +39,7 @@ class NpyDictionary {
 
  private:
   [[noreturn]] void wrong() const {
-    bad_input(path_, "a dictionary of descr, fortran_order and shape as NumPy writes it", quoted(text_));
+    bad_input(path_, "a dictionary of descr, fortran_order and shape as NumPy writes it", in_quotes(text_));
   }
 
   // Whether the next character that is no blank is this one.
@@ -111,7 +111,7 @@ NpyHeader read_npy_header(const FilePtr& file) {
     if (bytes > head.size()) bad_input(file->path(), what, "a file of " + std::to_string(head.size()) + " bytes");
   };
   expect_bytes(kBeforeLength, "the version of NPY at byte 6");
-  const int version = static_cast<unsigned char>(head[kMagic.size()]);
+  const int version = static_cast<unsigned char>(head[kNpyMagic.size()]);
   if (version < 1 || version > 3) bad_input(file->path(), "NPY of version 1, 2 or 3", std::to_string(version));
   const std::size_t begin = kBeforeLength + (version == 1 ? 2 : 4);
   expect_bytes(begin, "the length of an NPY header at byte 8");
@@ -142,7 +142,7 @@ namespace {
 StoredType stored_type_of(const NpyHeader& header, std::string_view path) {
   if (const std::optional<StoredType> type = npy_type(header)) return *type;
   bad_input(path, "integers of 8 to 64 bits, floats of 16 to 64 bits, or truth values",
-            "numbers of type " + quoted(header.type));
+            "numbers of type " + in_quotes(header.type));
 }
 
 bool is_swapped(const std::string& type) {
@@ -230,7 +230,7 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const NpyHeader& hea
 
 }  // namespace
 
-bool is_npy(std::string_view head) { return head.starts_with(kMagic); }
+bool is_npy(std::string_view head) { return head.starts_with(kNpyMagic); }
 
 OpenedVolume open_npy_array(const FilePtr& file, const NpyHeader& header, const OpenOptions& options) {
   OpenedVolume volume;

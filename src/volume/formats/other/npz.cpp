@@ -52,13 +52,13 @@ NpzLook look_at(const FilePtr& file, const NpzArray& array) {
   try {
     const NpyHeader header = read_npy_header(open_array(file, array));
     const std::optional<StoredType> type = npy_type(header);
-    std::string text = quoted(array.name) + " (";
+    std::string text = in_quotes(array.name) + " (";
     for (const ArrayAxis& axis : header.axes) text += std::to_string(axis.size) + " x ";
     text.resize(header.axes.empty() ? text.size() : text.size() - 2);
     text += type ? std::string(stored_type_name(*type)) : printable(header.type);
     return {type && header.axes.size() >= kVolumeAxes, text + ")"};
   } catch (const BadInput&) {
-    return {false, quoted(array.name) + " (not read)"};
+    return {false, in_quotes(array.name) + " (not read)"};
   }
 }
 
@@ -67,10 +67,10 @@ const NpzArray& named_array(const FilePtr& file, const std::vector<NpzArray>& ar
   std::string listed;
   for (std::size_t n = 0; n < arrays.size(); ++n) {
     if (arrays[n].name == name || arrays[n].record.name == name) return arrays[n];
-    if (n < kMostNamed) listed += (n == 0 ? "" : ", ") + quoted(arrays[n].name);
+    if (n < kMostNamed) listed += (n == 0 ? "" : ", ") + in_quotes(arrays[n].name);
   }
   if (arrays.size() > kMostNamed) listed += " and " + std::to_string(arrays.size() - kMostNamed) + " more";
-  bad_input(file->path(), "an array " + quoted(name), listed);
+  bad_input(file->path(), "an array " + in_quotes(name), listed);
 }
 
 // The one that is taken when none is named: the only array, or the only one of three axes or more.
@@ -90,7 +90,7 @@ const NpzArray& only_array(const FilePtr& file, const std::vector<NpzArray>& arr
   }
   if (arrays.size() > kMostListed) listed += " and " + std::to_string(arrays.size() - kMostListed) + " more";
   if (volumes != 1) bad_input(file->path(), "--dataset with one of " + listed, "no choice");
-  info.notes.push_back(quoted(chosen->name) + " is the only array of 3 axes or more, and is read");
+  info.notes.push_back(in_quotes(chosen->name) + " is the only array of 3 axes or more, and is read");
   return *chosen;
 }
 
@@ -106,7 +106,8 @@ OpenedVolume open_npz(const FilePtr& file, const OpenOptions& options) {
   const NpzArray& array =
       options.dataset.empty() ? only_array(file, arrays, found) : named_array(file, arrays, options.dataset);
   const FilePtr content = open_array(file, array);
-  if (!is_npy(content->head(kLargestHeader))) bad_input(file->path(), "NPY in " + quoted(array.name), "other content");
+  if (!is_npy(content->head(kLargestHeader)))
+    bad_input(file->path(), "NPY in " + in_quotes(array.name), "other content");
   OpenedVolume volume = open_npy_array(content, read_npy_header(content), options);
   VolumeInfo& info = volume.info;
   info.format = "npz";

@@ -56,38 +56,38 @@ int version_of(std::string_view magic, std::string_view path) {
   if (magic == "PVM") return 1;
   if (magic == "PVM2") return 2;
   if (magic == "PVM3") return 3;
-  bad_input(path, "PVM, PVM2 or PVM3", quoted(magic));
+  bad_input(path, "PVM, PVM2 or PVM3", in_quotes(magic));
 }
 
 void set_dims(VolumeInfo& info, const std::string& line) {
   const std::vector<std::string_view> words = words_of(line);
-  if (words.size() != 3) bad_input(info.path, "a line 'width height depth'", quoted(line));
+  if (words.size() != 3) bad_input(info.path, "a line 'width height depth'", in_quotes(line));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto side = parse_integer(words[axis]);
-    if (!side) bad_input(info.path, "whole numbers as dimensions", quoted(words[axis]));
+    if (!side) bad_input(info.path, "whole numbers as dimensions", in_quotes(words[axis]));
     info.dims[axis] = *side;
   }
 }
 
 void set_spacing(VolumeInfo& info, const std::string& line) {
   const std::vector<std::string_view> words = words_of(line);
-  if (words.size() != 3) bad_input(info.path, "a line of 3 spacings", quoted(line));
+  if (words.size() != 3) bad_input(info.path, "a line of 3 spacings", in_quotes(line));
   Axes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto spacing = parse_double(words[axis]);
     if (!spacing || !(*spacing > 0)) {
-      bad_input(info.path, "positive spacings", quoted(words[axis]));
+      bad_input(info.path, "positive spacings", in_quotes(words[axis]));
     }
     axes.steps[axis][axis] = *spacing;
   }
   set_geometry(info.geometry, axes, info.path);
 }
 
-SampleType sample_type_of(const std::string& line, std::string_view path) {
+SampleType pvm_type_of(const std::string& line, std::string_view path) {
   const std::string_view components = trimmed(line);
   if (components == "1") return SampleType::kUint8;
   if (components == "2") return SampleType::kUint16;
-  const std::string found = components == "3" ? "3 (RGB)" : quoted(components);
+  const std::string found = components == "3" ? "3 (RGB)" : in_quotes(components);
   bad_input(path, "1 or 2 bytes per sample", found);
 }
 
@@ -127,7 +127,7 @@ OpenedVolume open_pvm(const FilePtr& file) {
   const int version = version_of(header.line(), info.path);
   set_dims(info, header.line());
   if (version > 1) set_spacing(info, header.line());
-  info.type = sample_type_of(header.line(), info.path);
+  info.type = pvm_type_of(header.line(), info.path);
   const std::uint64_t bytes = checked_volume_bytes(info);
   if (content.bytes - header.position() < bytes) {
     bad_input(info.path, std::to_string(bytes) + " bytes of samples",

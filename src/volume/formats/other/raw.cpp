@@ -74,11 +74,11 @@ RawLayout parse_raw_layout(std::string_view text) {
 }
 
 std::optional<RawLayout> raw_layout_from_name(std::string_view path) {
-  constexpr std::string_view kEnding = ".raw";
-  constexpr std::string_view kPacked = ".gz";
-  if (path.ends_with(kPacked)) path.remove_suffix(kPacked.size());
-  if (!path.ends_with(kEnding)) return std::nullopt;
-  path.remove_suffix(kEnding.size());
+  constexpr std::string_view kRawEnding = ".raw";
+  constexpr std::string_view kGzipEnding = ".gz";
+  if (path.ends_with(kGzipEnding)) path.remove_suffix(kGzipEnding.size());
+  if (!path.ends_with(kRawEnding)) return std::nullopt;
+  path.remove_suffix(kRawEnding.size());
   path = path.substr(path.find_last_of('/') + 1);
   const std::vector<std::string_view> parts = split(path, '_');
   if (parts.size() < 2) return std::nullopt;

@@ -14,7 +14,7 @@
 namespace isoweave {
 namespace {
 
-constexpr std::string_view kMagic = "11111";
+constexpr std::string_view kSlcMagic = "11111";
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::size_t kSlcHeadBytes = 4096;  // no header is longer
 
@@ -28,7 +28,7 @@ class SlcWords {
     const std::size_t end = std::min(text_.find_first_of(" \t\r\nX", begin), text_.size());
     const std::string_view word = text_.substr(begin, end - begin);
     const auto value = parse_double(word);
-    if (!value) bad_input(path_, "a number as the " + std::string(what) + " of an SLC header", quoted(word));
+    if (!value) bad_input(path_, "a number as the " + std::string(what) + " of an SLC header", in_quotes(word));
     position_ = end;
     return *value;
   }
@@ -62,7 +62,7 @@ struct SlcHeader {
   std::uint64_t data = 0;
 };
 
-SlcHeader read_header(const FilePtr& file) {
+SlcHeader read_slc_header(const FilePtr& file) {
   const std::string& path = file->path();
   const std::string head = file->head(kSlcHeadBytes);
   SlcWords words(head, path);
@@ -110,11 +110,11 @@ class SlcStream final : public ByteStream {
     constexpr std::size_t kLongest = 32;
     for (std::optional<std::uint8_t> c = reader_.next(); c != 'X'; c = reader_.next()) {
       if (!c && trimmed(word).empty()) return false;
-      if (!c || word.size() > kLongest) bad_input(path_, "the size of a packed slice and X", quoted(word));
+      if (!c || word.size() > kLongest) bad_input(path_, "the size of a packed slice and X", in_quotes(word));
       word += static_cast<char>(*c);
     }
     const auto size = parse_integer(trimmed(word));
-    if (!size || *size < 0) bad_input(path_, "the size of a packed slice", quoted(word));
+    if (!size || *size < 0) bad_input(path_, "the size of a packed slice", in_quotes(word));
     stored_ = static_cast<std::uint64_t>(*size);
     runs_ = RunLengths();
     left_ = slice_;
@@ -139,11 +139,12 @@ class SlcStream final : public ByteStream {
 }  // namespace
 
 bool is_slc(std::string_view head) {
-  return head.starts_with(kMagic) && head.size() > kMagic.size() && kBlanks.find(head[kMagic.size()]) != kBlanks.npos;
+  return head.starts_with(kSlcMagic) && head.size() > kSlcMagic.size() &&
+         kBlanks.find(head[kSlcMagic.size()]) != kBlanks.npos;
 }
 
 OpenedVolume open_slc(const FilePtr& file) {
-  const SlcHeader header = read_header(file);
+  const SlcHeader header = read_slc_header(file);
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();

@@ -98,12 +98,12 @@ class HeaderReader {
     const std::string& type = header_.form.type;
     for (const std::string_view mesh : {"PolyData", "PPolyData", "UnstructuredGrid", "PUnstructuredGrid"}) {
       if (type != mesh) continue;
-      bad_input(header_.path, kRead, quoted(type) + ", a mesh: isoweave simplify takes it");
+      bad_input(header_.path, kRead, in_quotes(type) + ", a mesh: isoweave simplify takes it");
     }
     for (const std::string_view known : {"ImageData", "PImageData", "RectilinearGrid", "PRectilinearGrid"}) {
       if (type == known) return;
     }
-    bad_input(header_.path, kRead, quoted(type));
+    bad_input(header_.path, kRead, in_quotes(type));
   }
 
   void take_image(std::string_view tag) {
@@ -167,11 +167,11 @@ std::array<double, kCount> numbers_of(const std::string& text, std::string_view 
   const std::vector<std::string_view> words = words_of(text);
   for (std::size_t n = 0; n < std::min(kCount, words.size()); ++n) {
     const auto number = parse_double(words[n]);
-    if (!number) bad_input(path, "numbers as " + std::string(what), quoted(words[n]));
+    if (!number) bad_input(path, "numbers as " + std::string(what), in_quotes(words[n]));
     numbers[n] = *number;
   }
   if (words.size() != kCount) {
-    bad_input(path, std::to_string(kCount) + " numbers as " + std::string(what), quoted(text));
+    bad_input(path, std::to_string(kCount) + " numbers as " + std::string(what), in_quotes(text));
   }
   return numbers;
 }
@@ -188,7 +188,7 @@ Extent extent_of(const std::string& text, std::string_view path) {
     sane = number && *number > -kFarthest && *number < kFarthest;
     if (sane) extent[n] = *number;
   }
-  if (!sane) bad_input(path, "six whole numbers as an extent", quoted(text));
+  if (!sane) bad_input(path, "six whole numbers as an extent", in_quotes(text));
   return extent;
 }
 
@@ -226,7 +226,7 @@ bool is_bits(const VtkArray& array) { return array.type == "Bit"; }
 
 SampleType sample_type_of(const VtkArray& array, std::string_view path) {
   const auto type = is_bits(array) ? SampleType::kUint8 : parse_sample_type(lower_case(array.type));
-  if (!type) bad_input(path, "an array of integers of 8 bits or more, Bit, Float32 or Float64", quoted(array.type));
+  if (!type) bad_input(path, "an array of integers of 8 bits or more, Bit, Float32 or Float64", in_quotes(array.type));
   return *type;
 }
 
@@ -264,7 +264,7 @@ VolumePiece piece_of(const std::shared_ptr<const ImageHeader>& header, const Ima
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const VtkArray& array) { return array.name == like.name; });
   if (samples_in(box) > 0 && (found == all.end() || found->type != like.type || found->components != 1)) {
-    bad_input(header->path, "the array " + quoted(like.name) + " of type " + like.type + " in each piece",
+    bad_input(header->path, "the array " + in_quotes(like.name) + " of type " + like.type + " in each piece",
               "a piece without");
   }
   if (samples_in(box) == 0) return {box};
@@ -324,7 +324,7 @@ void take_coordinates(const ImageHeader& header, const ImagePiece& piece, const 
     const VtkArray& array = piece.coordinates[axis];
     const auto count = static_cast<std::uint64_t>(box.end[axis] - box.first[axis]);
     if (box.first[axis] < 0 || static_cast<std::uint64_t>(box.end[axis]) > points.at(axis).size()) {
-      bad_input(header.path, "pieces within the whole extent", quoted(piece.extent));
+      bad_input(header.path, "pieces within the whole extent", in_quotes(piece.extent));
     }
     const PieceSamples stored = open_samples(header, array, count);
     const std::vector<double> part =

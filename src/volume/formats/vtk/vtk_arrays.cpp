@@ -45,12 +45,14 @@ VtkChoice choose_vtk_array(const VtkArrayNames& points, const VtkArrayNames& cel
     const VtkArrayNames& names = in_cells ? cells : points;
     const std::optional<std::size_t> found = chosen(names, wanted);
     if (found && names.all[*found].components == 1) return {in_cells, *found};
-    if (found) bad_input(path, "one component per sample in " + quoted(names.all[*found].name), text_of(points, cells));
+    if (found)
+      bad_input(path, "one component per sample in " + in_quotes(names.all[*found].name), text_of(points, cells));
     if (wanted.empty() && !names.active.empty()) {
-      bad_input(path, "the active array " + quoted(names.active), text_of(points, cells));
+      bad_input(path, "the active array " + in_quotes(names.active), text_of(points, cells));
     }
   }
-  bad_input(path, wanted.empty() ? "an array of one component" : "the array " + quoted(wanted), text_of(points, cells));
+  bad_input(path, wanted.empty() ? "an array of one component" : "the array " + in_quotes(wanted),
+            text_of(points, cells));
 }
 
 void note_vtk_choice(VolumeInfo& info, const VtkArrayNames& points, const VtkArrayNames& cells,

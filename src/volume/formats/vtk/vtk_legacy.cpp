@@ -30,7 +30,7 @@ struct LegacyHeader {
 // "X_COORDINATES count type"
 void take_coordinates(LegacyHeader& header, LegacyFile& file, const std::vector<std::string>& words) {
   const auto axis = static_cast<std::size_t>(legacy_key(words).front() - 'X');
-  if (words.size() != 3) bad_input(file.path(), "a count and a type behind " + quoted(words[0]), "others");
+  if (words.size() != 3) bad_input(file.path(), "a count and a type behind " + in_quotes(words[0]), "others");
   header.coordinates.at(axis) = file.array_here(words[0], words[2], 1, file.count_of(words, 1));
   file.skip(*header.coordinates.at(axis));
 }
@@ -38,7 +38,7 @@ void take_coordinates(LegacyHeader& header, LegacyFile& file, const std::vector<
 void check_kind(const LegacyFile& file, const std::vector<std::string>& words) {
   const std::string kind = words.size() < 2 ? "" : legacy_key({words[1]});
   if (kind == "STRUCTURED_POINTS" || kind == "RECTILINEAR_GRID") return;
-  bad_input(file.path(), "DATASET STRUCTURED_POINTS or RECTILINEAR_GRID of a volume", quoted(kind));
+  bad_input(file.path(), "DATASET STRUCTURED_POINTS or RECTILINEAR_GRID of a volume", in_quotes(kind));
 }
 
 // Stops at the scalars of the points, which are what is read, if nothing else is wanted.
@@ -61,11 +61,11 @@ LegacyHeader read_header(LegacyFile& file, const std::string& wanted) {
 
 std::array<double, 3> numbers_of(const std::string& text, std::string_view what, const std::string& path) {
   const std::vector<std::string_view> words = words_of(text);
-  if (words.size() != 3) bad_input(path, "3 numbers as " + std::string(what), quoted(text));
+  if (words.size() != 3) bad_input(path, "3 numbers as " + std::string(what), in_quotes(text));
   std::array<double, 3> numbers{};
   for (std::size_t n = 0; n < numbers.size(); ++n) {
     const auto number = parse_double(words[n]);
-    if (!number) bad_input(path, "numbers as " + std::string(what), quoted(words[n]));
+    if (!number) bad_input(path, "numbers as " + std::string(what), in_quotes(words[n]));
     numbers[n] = *number;
   }
   return numbers;
@@ -73,7 +73,7 @@ std::array<double, 3> numbers_of(const std::string& text, std::string_view what,
 
 SampleType sample_type_of(const LegacyArray& array, std::string_view path) {
   const auto type = array.type == "Bit" ? SampleType::kUint8 : parse_sample_type(lower_case(array.type));
-  if (!type) bad_input(path, "numbers in the array " + quoted(array.name), quoted(array.type));
+  if (!type) bad_input(path, "numbers in the array " + in_quotes(array.name), in_quotes(array.type));
   return *type;
 }
 
@@ -144,7 +144,7 @@ void set_dimensions(VolumeInfo& info, const LegacyHeader& header) {
   const std::vector<std::string_view> sides = words_of(text);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto side = sides.size() == 3 ? parse_integer(sides[axis]) : std::nullopt;
-    if (!side || *side < 1) bad_input(info.path, "3 whole numbers as DIMENSIONS", quoted(text));
+    if (!side || *side < 1) bad_input(info.path, "3 whole numbers as DIMENSIONS", in_quotes(text));
     info.dims[axis] = *side;
   }
 }
@@ -196,7 +196,7 @@ OpenedVolume open_vtk_legacy(const FilePtr& input, const OpenOptions& options) {
   info.type = sample_type_of(array, info.path);
   const std::uint64_t samples = checked_volume_bytes(info) / sample_bytes(info.type);
   if (array.tuples != samples) {
-    bad_input(info.path, std::to_string(samples) + " samples in the array " + quoted(array.name),
+    bad_input(info.path, std::to_string(samples) + " samples in the array " + in_quotes(array.name),
               std::to_string(array.tuples));
   }
   volume.samples = open_samples(file, array, info.type);

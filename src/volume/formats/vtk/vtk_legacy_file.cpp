@@ -60,7 +60,7 @@ LegacyFile::LegacyFile(std::shared_ptr<const InputFile> file) : file_(std::move(
   next_line(line);
   next_line(line);
   const std::string form = upper_case(trimmed(line));
-  if (form != "ASCII" && form != "BINARY") bad_input(path(), "ASCII or BINARY in the third line", quoted(form));
+  if (form != "ASCII" && form != "BINARY") bad_input(path(), "ASCII or BINARY in the third line", in_quotes(form));
   is_text_ = form == "ASCII";
 }
 
@@ -110,8 +110,8 @@ bool LegacyFile::is_next(std::string_view text) {
 std::uint64_t LegacyFile::count_of(const std::vector<std::string>& words, std::size_t word) const {
   const auto count = word < words.size() ? parse_integer(words[word]) : std::nullopt;
   if (!count || *count < 0 || static_cast<std::uint64_t>(*count) > kMost) {
-    bad_input(path(), "a whole number behind " + quoted(words[0]),
-              word < words.size() ? quoted(words[word]) : "nothing");
+    bad_input(path(), "a whole number behind " + in_quotes(words[0]),
+              word < words.size() ? in_quotes(words[word]) : "nothing");
   }
   return static_cast<std::uint64_t>(*count);
 }
@@ -149,7 +149,7 @@ std::string LegacyFile::type_here(std::string_view type, std::uint64_t numbers) 
   for (const auto& [legacy, xml] : kTypes) {
     if (legacy == name) return std::string(xml);
   }
-  bad_input(path(), "a type of VTK", quoted(type));
+  bad_input(path(), "a type of VTK", in_quotes(type));
 }
 
 LegacyArray LegacyFile::array_here(const std::string& name, std::string_view type, std::uint64_t components,
@@ -209,7 +209,7 @@ void LegacyFile::skip(const LegacyArray& array) {
   const std::uint64_t bytes = (array.numbers() * bits_of(array.type) + kBits - 1) / kBits;
   const std::uint64_t left = file_->size() - std::min(array.at, file_->size());
   if (bytes > left) {
-    bad_input(path(), std::to_string(bytes) + " bytes of the array " + quoted(array.name), std::to_string(left));
+    bad_input(path(), std::to_string(bytes) + " bytes of the array " + in_quotes(array.name), std::to_string(left));
   }
   position_ += bytes;
 }
@@ -229,7 +229,7 @@ void LegacyFile::take_array(LegacyArray array) {
 
 // "name type [components]", or for colours "name components"; then the name of a look-up table.
 void LegacyFile::take_scalars(const std::vector<std::string>& words) {
-  if (words.size() < 3) bad_input(path(), "a name and a type behind " + quoted(words[0]), "less");
+  if (words.size() < 3) bad_input(path(), "a name and a type behind " + in_quotes(words[0]), "less");
   const bool colours = legacy_key(words) == "COLOR_SCALARS";
   if (!colours && is_next("LOOKUP_TABLE")) next_words();
   const std::uint64_t components = colours ? count_of(words, 2) : words.size() > 3 ? count_of(words, 3) : 1;
@@ -253,7 +253,7 @@ bool LegacyFile::take_attribute(const std::vector<std::string>& words) {
   for (const auto& [known, components] : kComponents) {
     if (key != known) continue;
     const std::size_t type = components == 0 ? 3 : 2;
-    if (words.size() <= type) bad_input(path(), "a name and a type behind " + quoted(words[0]), "less");
+    if (words.size() <= type) bad_input(path(), "a name and a type behind " + in_quotes(words[0]), "less");
     LegacyArray array =
         array_here(words[1], words[type], components == 0 ? count_of(words, 2) : components, section_->tuples);
     array.is_normals = key == "NORMALS";

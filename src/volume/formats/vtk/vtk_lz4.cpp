@@ -12,9 +12,10 @@ namespace isoweave {
 namespace {
 
 // A stored byte adds at most 255 to the length of a match.
-constexpr std::uint64_t kLargestRatio = 255;
+constexpr std::uint64_t kLz4Ratio = 255;
 
-std::vector<std::byte> decoded(ByteStream& input, std::uint64_t stored, std::uint64_t bytes, const std::string& path) {
+std::vector<std::byte> unpacked_lz4(ByteStream& input, std::uint64_t stored, std::uint64_t bytes,
+                                    const std::string& path) {
   std::vector<std::byte> packed(static_cast<std::size_t>(stored));
   std::vector<std::byte> out(static_cast<std::size_t>(bytes));
   const bool whole = input.read(packed) == packed.size();
@@ -30,12 +31,12 @@ std::vector<std::byte> decoded(ByteStream& input, std::uint64_t stored, std::uin
 
 std::unique_ptr<ByteStream> open_lz4_block(std::unique_ptr<ByteStream> input, std::uint64_t stored, std::uint64_t bytes,
                                            const std::string& path) {
-  check_plausible(path, bytes, stored, kLargestRatio);
+  check_plausible(path, bytes, stored, kLz4Ratio);
   if (stored > LZ4_MAX_INPUT_SIZE || bytes > LZ4_MAX_INPUT_SIZE) {
     bad_input(path, "LZ4 blocks of less than 2 GB", std::to_string(bytes) + " bytes");
   }
   const std::shared_ptr<ByteStream> source = std::move(input);
-  return std::make_unique<DecodedStream>([=] { return decoded(*source, stored, bytes, path); });
+  return std::make_unique<DecodedStream>([=] { return unpacked_lz4(*source, stored, bytes, path); });
 }
 
 }  // namespace isoweave

@@ -12,7 +12,8 @@
 namespace isoweave {
 namespace {
 
-std::vector<std::byte> decoded(ByteStream& input, std::uint64_t stored, std::uint64_t bytes, const std::string& path) {
+std::vector<std::byte> unpacked_lzma(ByteStream& input, std::uint64_t stored, std::uint64_t bytes,
+                                     const std::string& path) {
   constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 28;
   std::vector<std::byte> packed(to_size(stored));
   std::vector<std::byte> out(to_size(bytes));
@@ -35,7 +36,7 @@ std::unique_ptr<ByteStream> open_lzma_block(std::unique_ptr<ByteStream> input, s
                                             std::uint64_t bytes, const std::string& path) {
   check_plausible(path, bytes, stored, kLzmaRatio);
   const std::shared_ptr<ByteStream> source = std::move(input);
-  return std::make_unique<DecodedStream>([=] { return decoded(*source, stored, bytes, path); });
+  return std::make_unique<DecodedStream>([=] { return unpacked_lzma(*source, stored, bytes, path); });
 }
 
 }  // namespace isoweave

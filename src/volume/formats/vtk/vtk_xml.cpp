@@ -134,7 +134,7 @@ VtkXmlForm vtk_xml_form(std::string_view tag, const std::string& path) {
   form.big_endian = xml_attribute(tag, "byte_order") == "BigEndian";
   const std::string word = xml_attribute(tag, "header_type");
   if (!word.empty() && word != "UInt32" && word != "UInt64") {
-    bad_input(path, "header_type UInt32 or UInt64", quoted(word));
+    bad_input(path, "header_type UInt32 or UInt64", in_quotes(word));
   }
   form.word = word == "UInt64" ? 8 : 4;
   const std::string compressor = xml_attribute(tag, "compressor");
@@ -146,7 +146,7 @@ VtkXmlForm vtk_xml_form(std::string_view tag, const std::string& path) {
   } else if (compressor == "vtkLZMADataCompressor") {
     form.blocks = BlockForm::kLzma;
   } else {
-    bad_input(path, "the compressor of zlib, LZ4 or LZMA", quoted(compressor));
+    bad_input(path, "the compressor of zlib, LZ4 or LZMA", in_quotes(compressor));
   }
   return form;
 }
@@ -167,7 +167,7 @@ VtkArray vtk_array(std::string_view tag, std::uint64_t behind, const std::string
   } else if (format == "binary") {
     array.format = VtkArray::Format::kInline;
   } else if (format != "ascii") {
-    bad_input(path, "an array of format ascii, binary or appended", quoted(format));
+    bad_input(path, "an array of format ascii, binary or appended", in_quotes(format));
   }
   return array;
 }
