@@ -7,12 +7,14 @@
 #include <stdexcept>
 
 #include "isoweave/mesh.hpp"
+#include "lattice/vec3.hpp"
 
 namespace isoweave::measure {
 
 using Vector = std::array<double, 3>;
 
 inline Vector vector_of(const Point& p) { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
+inline Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
 inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vector operator*(double s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }

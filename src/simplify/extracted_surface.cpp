@@ -16,30 +16,16 @@ using measure::operator*;
 using measure::cross;
 using measure::dot;
 using measure::Vector;
+using measure::vector_of;
 
 constexpr std::size_t kMostCells = 256;  // of one grid that a triangle is listed in
 constexpr std::size_t kMixed = 16;       // triangles of a list: the order of more is mixed
+constexpr int kKeyBits = 19;             // of a cell's place along an axis, in its key
 constexpr double kFewCells = 8;          // of a triangle's box: they are taken as they are
 constexpr double kSlack = 1e-9;          // of lengths, for rounding
-constexpr double kUsualReach = 1;     // of the distance, beyond the largest triangle: longer parts are seldom near one
-constexpr double kFinest = 1.0 / 16;  // of the distance
-constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
-
-Vector vector_of(const Vec3& p) { return {p.x, p.y, p.z}; }
 
 // The number of a cell. It is clamped, as mesh files may lie anywhere.
 std::int64_t cell_number(double cells) { return static_cast<std::int64_t>(std::floor(std::clamp(cells, -1e15, 1e15))); }
-
-// Puts the longest side first.
-void turn_longest_side_first(ExtractedSurface::Corners& t) {
-  std::array<double, 3> squared{};
-  for (std::size_t n = 0; n < 3; ++n) {
-    const Vector side = t[(n + 1) % 3] - t[n];
-    squared[n] = dot(side, side);
-  }
-  const auto longest = std::max_element(squared.begin(), squared.end()) - squared.begin();
-  std::rotate(t.begin(), t.begin() + longest, t.end());
-}
 
 // A triangle, or the polygon that is left of it between planes.
 class CutPolygon {
@@ -108,19 +94,6 @@ void mix(std::span<Item> list) {
   }
 }
 
-// Calls visit(cell) for all cells of a box, until visit() answers false.
-template <class CellBox, class Visit>
-void each_cell(const CellBox& box, const Visit& visit) {
-  auto cell = box.first;
-  for (cell[2] = box.first[2]; cell[2] <= box.last[2]; ++cell[2]) {
-    for (cell[1] = box.first[1]; cell[1] <= box.last[1]; ++cell[1]) {
-      for (cell[0] = box.first[0]; cell[0] <= box.last[0]; ++cell[0]) {
-        if (!visit(cell)) return;
-      }
-    }
-  }
-}
-
 }  // namespace
 
 ExtractedSurface::ExtractedSurface(double most, const Vec3& cell, const Vec3& largest)
@@ -132,32 +105,9 @@ ExtractedSurface::ExtractedSurface(double most, const Vec3& cell, const Vec3& la
   }
 }
 
-ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, double most, std::uint64_t* looks) {
-  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), {}, 0, most, looks};
-  for (std::size_t n = 0; n < 4; ++n) {
-    const Vector& p = n < 3 ? corners[n] : part.centre;
-    part.points.x[n] = p[0];
-    part.points.y[n] = p[1];
-    part.points.z[n] = p[2];
-    const Vector to = p - part.centre;
-    part.radius = std::max(part.radius, dot(to, to));
-  }
-  return part;
-}
-
 ExtractedSurface::Corners ExtractedSurface::corners_of(const Piece& piece, std::uint32_t number) {
   const auto& [a, b, c] = piece.triangles[number];
   return {vector_of(piece.positions[a]), vector_of(piece.positions[b]), vector_of(piece.positions[c])};
-}
-
-// Whether a part is too long to be near one triangle: such a part is cut at once. That is a guess, and cutting early is
-// never wrong.
-bool ExtractedSurface::is_long(const Part& part) const {
-  for (std::size_t n = 0; n < 3; ++n) {
-    const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
-    if (high - low > largest_[n] + kUsualReach * part.most) return true;
-  }
-  return false;
 }
 
 ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p, int level) const {
@@ -167,10 +117,9 @@ ExtractedSurface::Cell ExtractedSurface::cell_of(const Vector& p, int level) con
 
 // The key of a cell. Cells far apart may share a key, and are looked into together.
 std::uint64_t ExtractedSurface::key_of(int level, const Cell& cell) {
-  constexpr int kBits = 19;
-  constexpr std::uint64_t kMask = (1U << kBits) - 1;
+  constexpr std::uint64_t kMask = (1U << kKeyBits) - 1;
   const auto part = [&](std::size_t n) { return static_cast<std::uint64_t>(cell[n]) & kMask; };
-  return static_cast<std::uint64_t>(level) << 3 * kBits | part(2) << 2 * kBits | part(1) << kBits | part(0);
+  return static_cast<std::uint64_t>(level) << 3 * kKeyBits | part(2) << 2 * kKeyBits | part(1) << kKeyBits | part(0);
 }
 
 double ExtractedSurface::CellBox::cells() const {
@@ -316,10 +265,13 @@ void ExtractedSurface::fill_slots(Piece& piece, std::span<const Place> places) {
   for (const Slot& slot : piece.slots) mix(std::span(piece.listed.data() + slot.first, slot.count));
 }
 
-// The slot of a key, or the free one that the key would get.
+// The slot of a key, or the free one that the key would get. Cells come in blocks of two along each axis, whose slots
+// lie beside each other: a look goes to several of them.
 std::size_t ExtractedSurface::slot_of(const Piece& piece, std::uint64_t key) {
+  constexpr std::uint64_t kLow = 1 | std::uint64_t{1} << kKeyBits | std::uint64_t{1} << 2 * kKeyBits;
+  const std::uint64_t in_block = (key & 1) | (key >> (kKeyBits - 1) & 2) | (key >> (2 * kKeyBits - 2) & 4);
   const std::size_t mask = piece.slots.size() - 1;
-  std::size_t at = static_cast<std::size_t>(mix_bits(key)) & mask;
+  std::size_t at = static_cast<std::size_t>(mix_bits(key & ~kLow) << 3 | in_block) & mask;
   while (piece.slots[at].count > 0 && piece.slots[at].key != key) at = (at + 1) & mask;
   return at;
 }
@@ -364,123 +316,12 @@ std::uint64_t ExtractedSurface::bytes() const {
   return sum;
 }
 
-// Finds how much of a part is within the distance of a triangle, where `known` is what other triangles have given.
-ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Piece& piece, std::uint32_t number,
-                                                    Found known) const {
-  constexpr unsigned kCorners = 7;
-  constexpr unsigned kCentre = 8;
-  const auto& [a, b, c] = piece.triangles[number];
-  const unsigned near = kernels_.points_within(part.most * part.most, part.points,
-                                               {&piece.positions[a], &piece.positions[b], &piece.positions[c]});
-  if ((near & kCorners) == kCorners) return Found::kAll;
-  return (near & kCentre) != 0 ? std::max(known, Found::kCentre) : known;
-}
-
-ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
-                                                       std::span<const Piece> pieces) const {
-  Found found = Found::kNothing;
-  for (const Piece& piece : pieces) {
-    const Slot& slot = piece.slots[slot_of(piece, key)];
-    for (const std::uint32_t number : std::span(piece.listed.data() + slot.first, slot.count)) {
-      if (part.looks != nullptr) ++*part.looks;
-      found = find_near(part, piece, number, found);
-      if (found == Found::kAll) return found;
-    }
-  }
-  return found;
-}
-
-// Whether a cell comes within the distance of a point.
-bool ExtractedSurface::is_near(const Part& part, int level, const Cell& cell) const {
-  double squared = 0;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const double side = length(level, n);
-    const double low = static_cast<double>(cell[n]) * side;
-    const double outside = std::max({low - part.centre[n], 0.0, part.centre[n] - (low + side)});
-    squared += outside * outside;
-  }
-  return squared <= part.most * part.most;
-}
-
-// Looks into the cells that are `ring` cells away from that of the centre.
-ExtractedSurface::Found ExtractedSurface::find_in_ring(const Part& part, const Cell& centre, std::int64_t ring,
-                                                       std::span<const Piece> pieces) const {
-  Found found = Found::kNothing;
-  Cell cell{};
-  for (cell[2] = centre[2] - ring; cell[2] <= centre[2] + ring; ++cell[2]) {
-    for (cell[1] = centre[1] - ring; cell[1] <= centre[1] + ring; ++cell[1]) {
-      const bool side = std::max(std::abs(cell[2] - centre[2]), std::abs(cell[1] - centre[1])) == ring;
-      const std::int64_t step = side ? 1 : 2 * ring;
-      for (cell[0] = centre[0] - ring; cell[0] <= centre[0] + ring; cell[0] += step) {
-        if (!is_near(part, 0, cell)) continue;
-        found = std::max(found, find_in_cell(part, key_of(0, cell), pieces));
-        if (found == Found::kAll) return found;
-      }
-    }
-  }
-  return found;
-}
-
-// Looks into the grids of larger triangles, where few cells come near the centre: into its own cell first.
-ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span<const Piece> pieces) const {
-  std::uint64_t levels = 0;
-  for (const Piece& piece : pieces) levels |= piece.levels;
-  Found found = Found::kNothing;
-  for (levels &= ~std::uint64_t{1}; levels != 0 && found != Found::kAll; levels &= levels - 1) {
-    const int level = std::countr_zero(levels);
-    const Cell own = cell_of(part.centre, level);
-    found = std::max(found, find_in_cell(part, key_of(level, own), pieces));
-    if (found == Found::kAll) break;
-    each_cell(cells_around(part, level), [&](const Cell& cell) {
-      if (cell == own || !is_near(part, level, cell)) return true;
-      found = std::max(found, find_in_cell(part, key_of(level, cell), pieces));
-      return found != Found::kAll;
-    });
-  }
-  return found;
-}
-
-// The pieces with triangles that may be within the distance of a point.
-std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_near(const Part& part) const {
-  const auto first = std::ranges::lower_bound(pieces_, part.centre[2] - part.most, {}, &Piece::highest);
-  const auto end = std::upper_bound(first, pieces_.end(), part.centre[2] + part.most,
-                                    [](double z, const Piece& piece) { return z < piece.lowest; });
+// The pieces with triangles that may lie between two heights.
+std::span<const ExtractedSurface::Piece> ExtractedSurface::pieces_between(double low, double high) const {
+  const auto first = std::ranges::lower_bound(pieces_, low, {}, &Piece::highest);
+  const auto end =
+      std::upper_bound(first, pieces_.end(), high, [](double z, const Piece& piece) { return z < piece.lowest; });
   return {first, end};
-}
-
-// Looks into the cells around the centre, ring by ring. For a part that can be cut some more, the search ends at the
-// first ring that is near: the surface farther away will do no better.
-ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
-  const std::span<const Piece> pieces = pieces_near(part);
-  if (pieces.empty()) return Found::kNothing;
-  Found found = find_above(part, pieces);
-  const Cell centre = cell_of(part.centre, 0);
-  const double smallest = *std::min_element(cell_.begin(), cell_.end());
-  const auto rings = static_cast<std::int64_t>(std::ceil(part.most / smallest));
-  for (std::int64_t ring = 0; ring <= rings && found != Found::kAll; ++ring) {
-    if (found == Found::kCentre && !part.is_below(kSmall * part.most)) break;
-    found = std::max(found, find_in_ring(part, centre, ring, pieces));
-  }
-  return found;
-}
-
-Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks) const {
-  std::array<Corners, 128> parts;  // cut in depth: one sibling waits for each cut
-  std::size_t open = 0;
-  parts[open++] = {vector_of(a), vector_of(b), vector_of(c)};
-  for (int looked_at = 0; open > 0; ++looked_at) {
-    Part part = part_of(parts[--open], most, looks);
-    const Found found = is_long(part) ? Found::kCentre : find(part);
-    if (found == Found::kAll) continue;
-    if (part.centre[2] + most > complete_below_) return Reach::kUnknown;
-    if (found == Found::kNothing || part.is_below(kFinest * most)) return Reach::kBeyond;
-    if (open + 2 > parts.size() || looked_at == kMostParts) return Reach::kBeyond;
-    turn_longest_side_first(part.corners);
-    const Vector middle = 0.5 * (part.corners[0] + part.corners[1]);
-    parts[open++] = {part.corners[0], middle, part.corners[2]};
-    parts[open++] = {middle, part.corners[1], part.corners[2]};
-  }
-  return Reach::kWithin;
 }
 
 }  // namespace isoweave

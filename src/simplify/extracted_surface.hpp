@@ -20,8 +20,9 @@ namespace isoweave {
 // The triangles of a surface that comes in pieces, ordered by z, in grids of cells, for one question: is every point of
 // a triangle within a distance of them? The answer, once it is known, depends on the whole surface alone, not on the
 // pieces. The cost of an answer is bounded: no more than kMostParts parts of a triangle are looked at, each among the
-// triangles in a few cells of the few pieces that are near in z, however many there are. A triangle is listed in the
-// cells that it touches, so the triangles of a cell come near each other, whatever their shape and direction.
+// triangles in a few cells of the few pieces that are near in z, however many there are; wide parts among the few
+// hundred at most that come near them. A triangle is listed in the cells that it touches, so the triangles of a cell
+// come near each other, whatever their shape and direction.
 class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
@@ -41,13 +42,17 @@ class ExtractedSurface {
   void forget_below(double z);
 
   // Whether all of a triangle lies within a distance, which must be no larger, but for rounding, than the one that was
-  // named first. The triangle is cut at its longest side until the corners of each part are within the distance of one
-  // and the same triangle of the surface. The points within the distance of a triangle form a convex set, so all of the
-  // part is within it then. Parts smaller than a sixteenth of the distance are not cut again. So a triangle within
-  // 15/16 of the distance is always found to be within it, unless that takes more parts than kMostParts. A triangle
-  // beyond the distance never is. May be called by several threads at the same time. looks: unless null, counts the
-  // comparisons of a part with a triangle.
+  // named first; unknown where later pieces may come within it. The triangle is cut at its longest side until the
+  // corners of each part are within the distance of one and the same triangle of the surface. The points within the
+  // distance of a triangle form a convex set, so all of the part is within it then. A wide part is not cut where the
+  // surface is seen to lie above or below all of it within 0.93 of the distance (ProjectedSurface). Parts smaller than
+  // a sixteenth of the distance are not cut again. So a triangle within 15/16 of the distance is always found to be
+  // within it, unless that takes more parts than kMostParts. A triangle beyond the distance never is. May be called by
+  // several threads at the same time. looks: unless null, counts the comparisons of a part with a triangle.
   Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks = nullptr) const;
+
+  // Whether a point is known to lie beyond a distance, as for reach().
+  bool is_beyond(const Vec3& p, double most) const;
 
   std::uint64_t bytes() const;
 
@@ -103,6 +108,8 @@ class ExtractedSurface {
     bool is_below(double length) const { return radius <= length * length; }
   };
 
+  class Look;
+
   enum class Found : std::uint8_t { kNothing, kCentre, kAll };  // what is within the distance of some triangle
 
   // The cells from one to another, in a grid of some level. Cells of level 0 have the length that was asked for; those
@@ -112,6 +119,19 @@ class ExtractedSurface {
     double cells() const;
     double longest() const;
   };
+
+  // Calls visit(cell) for all cells of a box, until visit() answers false.
+  template <class Visit>
+  static void each_cell(const CellBox& box, const Visit& visit) {
+    Cell cell = box.first;
+    for (cell[2] = box.first[2]; cell[2] <= box.last[2]; ++cell[2]) {
+      for (cell[1] = box.first[1]; cell[1] <= box.last[1]; ++cell[1]) {
+        for (cell[0] = box.first[0]; cell[0] <= box.last[0]; ++cell[0]) {
+          if (!visit(cell)) return;
+        }
+      }
+    }
+  }
 
   static Part part_of(const Corners& corners, double most, std::uint64_t* looks);
   bool is_long(const Part& part) const;
@@ -128,7 +148,7 @@ class ExtractedSurface {
   static void fill_slots(Piece& piece, std::span<const Place> places);
   static std::size_t slot_of(const Piece& piece, std::uint64_t key);
   void push_piece(Piece&& piece);
-  std::span<const Piece> pieces_near(const Part& part) const;
+  std::span<const Piece> pieces_between(double low, double high) const;
   Found find(const Part& part) const;
   Found find_above(const Part& part, std::span<const Piece> pieces) const;
   Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring, std::span<const Piece> pieces) const;

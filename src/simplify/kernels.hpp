@@ -64,6 +64,44 @@ struct alignas(64) SeenSides {
   }
 };
 
+// Triangles as they are seen along a direction: two coordinates across, and the height above or below a face.
+struct alignas(64) SeenTriangles {
+  static constexpr std::size_t kRoom = 256;
+
+  double x[3][kRoom], y[3][kRoom], height[3][kRoom];  // of the corners
+  std::size_t count = 0;
+
+  // Fills the last vectors, of which nobody asks, with numbers.
+  void pad() {
+    for (std::size_t n = count; n % SeenSides::kLanes != 0; ++n) {
+      for (std::size_t corner = 0; corner < 3; ++corner) x[corner][n] = y[corner][n] = height[corner][n] = 0;
+    }
+  }
+};
+
+// A part of the face that triangles are seen from. Its corners go around it to the left.
+struct SeenPart {
+  double x[3], y[3];
+  double centre_x, centre_y;
+  double most;                           // height that is allowed
+  double slack;                          // of lengths, for rounding: what is as near as that is touched
+  double left_x[3], left_y[3], from[3];  // of each side: a direction to its left, and where the side lies along it
+
+  // How far to the left of a side a point is, in terms of the side's length.
+  template <class Real>
+  Real left_of(std::size_t side, const Real& px, const Real& py) const {
+    return left_x[side] * px + left_y[side] * py - from[side];
+  }
+};
+
+// How a triangle lies over a part of a face, in bits.
+namespace seen {
+inline constexpr std::int64_t kTouches = 1;       // its first side touches the part; 2 and 4: its other sides
+inline constexpr std::int64_t kOverCentre = 8;    // it lies over the part's centre
+inline constexpr std::int64_t kFacesUp = 16;      // the centre is to the left of its first side
+inline constexpr std::int64_t kNowhereHigh = 32;  // its corners are all within the height
+}  // namespace seen
+
 // Four points, by coordinates.
 struct alignas(32) FourPoints {
   double x[4], y[4], z[4];
@@ -94,6 +132,10 @@ struct Kernels {
 
   // Which of four points are within a distance of a triangle: bit n is for point n. most: the distance, squared.
   unsigned (*points_within)(double most, const FourPoints& points, const std::array<const Vec3*, 3>& triangle);
+
+  // How each of some triangles lies over a part of a face, in bits of `seen`: 0 where it lies beside the part, or all
+  // above or all below what is allowed.
+  void (*lie_over)(const SeenTriangles& triangles, const SeenPart& part, std::uint8_t* bits);
 };
 
 // The best kernels for this processor.

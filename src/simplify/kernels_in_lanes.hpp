@@ -13,7 +13,7 @@ template <std::size_t N>
 class KernelsInLanes {
  public:
   static constexpr Kernels table() {
-    return {edge_costs, measure, sum_faces, keeps_sides, count_common, height_of_crossings, points_within};
+    return {edge_costs, measure, sum_faces, keeps_sides, count_common, height_of_crossings, points_within, lie_over};
   }
 
  private:
@@ -210,6 +210,91 @@ class KernelsInLanes {
       unrolled<kFew>([&](auto lane) { bits |= static_cast<unsigned>(mask[lane.value] & 1) << (n + lane); });
     }
     return bits;
+  }
+
+  using Mask = typename Real::Mask;
+
+  // The corners of N triangles, and which of them lie beside a side of a part.
+  struct SeenLanes {
+    Real x[3], y[3], height[3];
+    Mask beside[3][3];  // side, corner
+  };
+
+  [[gnu::always_inline]] static SeenLanes load_seen(const SeenTriangles& triangles, const SeenPart& part,
+                                                    std::size_t begin) {
+    SeenLanes corners;
+    unrolled<3>([&](auto n) {
+      corners.x[n] = Real::load(triangles.x[n] + begin);
+      corners.y[n] = Real::load(triangles.y[n] + begin);
+      corners.height[n] = Real::load(triangles.height[n] + begin);
+      unrolled<3>([&](auto side) {
+        const double reach = part.slack * (std::abs(part.left_x[side]) + std::abs(part.left_y[side]));
+        corners.beside[side][n] = Real(-reach) > part.left_of(side, corners.x[n], corners.y[n]);
+      });
+    });
+    return corners;
+  }
+
+  static Real absolute(const Real& a) { return select<N>(a > 0, a, -a); }
+
+  // Whether the side between two corners touches the part. It does not where a line parts the two: a side of the part,
+  // or the side itself, whose ends are taken in an order of their own, so that the triangle beyond gets the same
+  // answer. left: whether the centre is to the left of the side.
+  template <std::size_t kFrom, std::size_t kTo>
+  [[gnu::always_inline]] static Mask touches(const SeenLanes& corners, const SeenPart& part, Mask& left) {
+    const Real& ax = corners.x[kFrom];
+    const Real& ay = corners.y[kFrom];
+    const Real& bx = corners.x[kTo];
+    const Real& by = corners.y[kTo];
+    const Mask turned = (ax > bx) | ((ax >= bx) & (bx >= ax) & (ay > by));
+    const Real from_x = select<N>(turned, bx, ax);
+    const Real from_y = select<N>(turned, by, ay);
+    const Real left_x = from_y - select<N>(turned, ay, by);
+    const Real left_y = select<N>(turned, ax, bx) - from_x;
+    const Real from = left_x * from_x + left_y * from_y;
+    const Real reach = Real(part.slack) * (absolute(left_x) + absolute(left_y));
+    left = (left_x * part.centre_x + left_y * part.centre_y >= from) ^ turned;
+    Mask parted{};
+    Mask all_left = ~Mask{};
+    Mask all_right = ~Mask{};
+    unrolled<3>([&](auto n) {
+      const Real side = left_x * part.x[n] + left_y * part.y[n] - from;
+      all_left &= side > reach;
+      all_right &= -reach > side;
+      parted |= corners.beside[n][kFrom] & corners.beside[n][kTo];
+    });
+    return ~(parted | all_left | all_right);
+  }
+
+  [[gnu::always_inline]] static Mask bits_over(const SeenLanes& corners, const SeenPart& part) {
+    Mask left[3];
+    Mask bits = (touches<0, 1>(corners, part, left[0]) & seen::kTouches) |
+                (touches<1, 2>(corners, part, left[1]) & (2 * seen::kTouches)) |
+                (touches<2, 0>(corners, part, left[2]) & (4 * seen::kTouches));
+    bits |= ~(left[0] ^ left[1]) & ~(left[1] ^ left[2]) & seen::kOverCentre;
+    Mask inside = ~Mask{};
+    Mask above = ~Mask{};
+    Mask below = ~Mask{};
+    unrolled<3>([&](auto n) {
+      const Mask is_above = corners.height[n] > part.most;
+      const Mask is_below = -corners.height[n] > part.most;
+      inside &= ~(is_above | is_below);
+      above &= is_above;
+      below &= is_below;
+    });
+    const Mask is_of_use = (bits != Mask{}) & ~above & ~below;
+    return (bits | (left[0] & seen::kFacesUp) | (inside & seen::kNowhereHigh)) & is_of_use;
+  }
+
+  static void lie_over(const SeenTriangles& triangles, const SeenPart& part, std::uint8_t* bits) {
+    for (std::size_t begin = 0; begin < triangles.count; begin += N) {
+      const SeenLanes corners = load_seen(triangles, part, begin);
+      Mask beside{};
+      unrolled<3>(
+          [&](auto side) { beside |= corners.beside[side][0] & corners.beside[side][1] & corners.beside[side][2]; });
+      const Mask out = all<N>(beside) ? Mask{} : bits_over(corners, part) & ~beside;
+      unrolled<N>([&](auto n) { bits[begin + n] = static_cast<std::uint8_t>(out[n.value]); });
+    }
   }
 };
 

@@ -39,7 +39,7 @@ bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const 
 bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place,
                        const FaceBounds& bounds) {
   const auto is_beyond = [&](const Vec3& p) {
-    return zone.extracted->reach(p, p, p, (1 + 1e-9) * zone.options.most_distance) == Reach::kBeyond;
+    return zone.extracted->is_beyond(p, (1 + 1e-9) * zone.options.most_distance);
   };
   bool beyond = false;
   bool is_first = true;

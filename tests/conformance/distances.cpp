@@ -25,8 +25,8 @@ class Distances : public ::testing::TestWithParam<std::tuple<std::string, bool>>
 };
 
 TEST_P(Distances, EveryScheduleGivesTheMeshOfTheReferenceQueue) {
-  for (const double distance : {0.15, 0.6}) {
-    if (kSanitized && distance > 0.5) continue;
+  for (const double distance : {0.04, 0.15, 0.6}) {
+    if (kSanitized && distance != 0.15) continue;
     SurfaceCase surface = this->surface();
     surface.max_distance = distance;
     const SurfaceRun expected = reference_run(surface);

@@ -172,7 +172,7 @@ TEST(PlainRules, Levels) {
 
 TEST(PlainRules, DistancesThatAreBounded) {
   for (const std::string& kind : some({"noise", "gyroid", "box"})) {
-    for (const double distance : {0.13, 0.37, 1.1}) {
+    for (const double distance : {0.03, 0.13, 0.37, 1.1}) {
       Scene scene = generated(kind);
       scene.options.error.value = 1;
       scene.options.closed = distance < 1;
@@ -304,7 +304,7 @@ Scene any_scene(std::mt19937& random) {
   options.quality = pick(random, {Quality::kFast, Quality::kNormal, Quality::kFine});
   options.drop_specks = pick(random, {true, false});
   options.normals = pick(random, {Normals::kAbsent, Normals::kGradient, Normals::kQuadric});
-  options.max_distance = Length::voxels(pick(random, {0.0, 0.0, 0.2, 0.6, 1.5}));
+  options.max_distance = Length::voxels(pick(random, {0.0, 0.0, 0.05, 0.2, 0.6, 1.5}));
   options.triangles = pick<std::uint64_t>(random, {0, 0, 60, 250});
   scene.slab = pick<std::int64_t>(random, {0, 1, 3, 100});
   return scene;

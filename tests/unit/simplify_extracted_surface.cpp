@@ -157,6 +157,65 @@ TEST(ExtractedSurface, IsExactToASixteenth) {
   EXPECT_EQ(at(-1.0001), Reach::kBeyond);
 }
 
+// Wide faces over a gentle sheet: the surface is seen along their normals, in one piece and in many.
+TEST(ExtractedSurface, SaysOfWideFacesWhatDistancesSay) {
+  std::vector<Corners> triangles = sheet(11);
+  triangles.resize(triangles.size() - 3);
+  for (Corners& t : triangles) {
+    for (Vector& p : t) p[2] = 0.1 * p[2];
+  }
+  constexpr double kMost = 0.06;
+  ExtractedSurface whole(kMost, {0.5, 0.5, 0.1}, largest_of(triangles));
+  append(whole, triangles, kAll);
+  ExtractedSurface pieces(kMost, {0.5, 0.5, 0.1}, largest_of(triangles));
+  for (const Corners& t : triangles) append(pieces, std::span(&t, 1), kAll);
+  Random random(12);
+  int within = 0;
+  int beyond = 0;
+  for (int trial = 0; trial < (testing::kSanitized ? 40 : 400); ++trial) {
+    const auto corner = [&] {
+      return Vector{random.number(0.2, 5.8), random.number(0.2, 5.8), random.number(0.28, 0.32)};
+    };
+    const Corners face{corner(), corner(), corner()};
+    const Reach found = reach(whole, face, kMost);
+    EXPECT_EQ(reach(pieces, face, kMost), found) << trial;
+    const double distance = farthest(triangles, face);
+    if (found == Reach::kWithin) {
+      ++within;
+      EXPECT_LE(distance, kMost * (1 + 1e-9)) << trial;
+    } else {
+      ++beyond;
+      EXPECT_GT(distance, kMost * 15 / 16 - 0.02) << trial;
+    }
+  }
+  EXPECT_GT(within, 0);
+  EXPECT_GT(beyond, 0);
+}
+
+// A face over 40,000 triangles of a flat: cut into the parts over each of them it would be refused.
+TEST(ExtractedSurface, FindsThatTheWidestFacesAreNear) {
+  std::vector<Corners> flat;
+  for (int i = 0; i < 200; ++i) {
+    for (int j = 0; j < 200; ++j) {
+      const double x = i;
+      const double y = j;
+      flat.push_back({Vector{x, y, 0}, Vector{x + 1, y, 0}, Vector{x, y + 1, 0}});
+      flat.push_back({Vector{x + 1, y, 0}, Vector{x + 1, y + 1, 0}, Vector{x, y + 1, 0}});
+    }
+  }
+  constexpr double kMost = 0.2;
+  ExtractedSurface surface(kMost, {1.3, 1.3, 1}, {1, 1, 0});
+  append(surface, flat, kAll);
+  std::uint64_t looks = 0;
+  const auto at = [&](double z) {
+    return surface.reach({1.2, 1.3, z}, {198.1, 3.4, z}, {90.1, 197.2, z}, kMost, &looks);
+  };
+  EXPECT_EQ(at(0), Reach::kWithin);
+  EXPECT_EQ(at(0.9 * kMost), Reach::kWithin);
+  EXPECT_EQ(looks, 0) << "the surface is seen above all of the face";
+  EXPECT_EQ(at(-1.01 * kMost), Reach::kBeyond);
+}
+
 // What is known of a part of the surface holds for all of it.
 TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
   std::vector<Corners> triangles = sheet(3);

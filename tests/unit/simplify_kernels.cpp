@@ -1,6 +1,7 @@
 // Every instruction set gives the bits of plain doubles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -162,6 +163,93 @@ TEST_P(EachSet, FindsThePointsNearATriangle) {
     near += static_cast<int>(std::popcount(expected));
   }
   EXPECT_GT(near, 500);
+}
+
+// Bits for a triangle over a part, by doubles one after the other.
+std::uint8_t bits_over(const SeenTriangles& triangles, std::size_t t, const SeenPart& part) {
+  const auto x = [&](std::size_t n) { return triangles.x[n][t]; };
+  const auto y = [&](std::size_t n) { return triangles.y[n][t]; };
+  // Where a line from one point to another leaves a third: above 0 to the left.
+  const auto left_of = [](double ax, double ay, double bx, double by, double px, double py) {
+    return (ay - by) * px + (bx - ax) * py - ((ay - by) * ax + (bx - ax) * ay);
+  };
+  const auto reach = [&](double ax, double ay, double bx, double by) {
+    return part.slack * (std::abs(bx - ax) + std::abs(by - ay));
+  };
+  const auto is_beside = [&](std::size_t corner, std::size_t side) {
+    return part.left_of(side, x(corner), y(corner)) <
+           -part.slack * (std::abs(part.left_x[side]) + std::abs(part.left_y[side]));
+  };
+  unsigned bits = 0;
+  std::array<bool, 3> left{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    std::size_t a = n;
+    std::size_t b = (n + 1) % 3;
+    const bool turned = x(a) > x(b) || (x(a) == x(b) && y(a) > y(b));
+    if (turned) std::swap(a, b);
+    left[n] = (left_of(x(a), y(a), x(b), y(b), part.centre_x, part.centre_y) >= 0) != turned;
+    int to_left = 0;
+    int to_right = 0;
+    bool parted = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double at = left_of(x(a), y(a), x(b), y(b), part.x[k], part.y[k]);
+      if (at > reach(x(a), y(a), x(b), y(b))) ++to_left;
+      if (at < -reach(x(a), y(a), x(b), y(b))) ++to_right;
+      parted = parted || (is_beside(a, k) && is_beside(b, k));
+    }
+    if (!parted && to_left < 3 && to_right < 3) bits |= 1U << n;
+  }
+  if (left[0] == left[1] && left[1] == left[2]) bits |= 8;
+  int above = 0;
+  int below = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    if (triangles.height[n][t] > part.most) ++above;
+    if (triangles.height[n][t] < -part.most) ++below;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (is_beside(0, k) && is_beside(1, k) && is_beside(2, k)) return 0;
+  }
+  if (bits == 0 || above == 3 || below == 3) return 0;
+  return static_cast<std::uint8_t>(bits | (left[0] ? 16U : 0U) | (above + below == 0 ? 32U : 0U));
+}
+
+TEST_P(EachSet, TellsHowTrianglesLieOverAPart) {
+  std::array<int, 64> seen{};
+  for (std::size_t trial = 0; trial < 200; ++trial) {
+    const auto place = [&] { return trial % 3 == 0 ? std::round(real()) : real(); };  // rounded: much touches
+    SeenTriangles triangles;
+    triangles.count = 1 + trial % 41;
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t t = 0; t < triangles.count; ++t) {
+        triangles.x[n][t] = place();
+        triangles.y[n][t] = place();
+        triangles.height[n][t] = real();
+      }
+    }
+    triangles.pad();
+    SeenPart part{};
+    part.most = 1.2;
+    part.slack = 1e-9;
+    for (std::size_t n = 0; n < 3; ++n) {
+      part.x[n] = place();
+      part.y[n] = place();
+      part.centre_x += part.x[n] / 3;
+      part.centre_y += part.y[n] / 3;
+    }
+    for (std::size_t n = 0; n < 3; ++n) {
+      const std::size_t next = (n + 1) % 3;
+      part.left_x[n] = part.y[n] - part.y[next];
+      part.left_y[n] = part.x[next] - part.x[n];
+      part.from[n] = part.left_x[n] * part.x[n] + part.left_y[n] * part.y[n];
+    }
+    std::array<std::uint8_t, SeenTriangles::kRoom> bits{};
+    kernels().lie_over(triangles, part, bits.data());
+    for (std::size_t t = 0; t < triangles.count; ++t) {
+      EXPECT_EQ(bits[t], bits_over(triangles, t, part)) << trial << ", triangle " << t;
+      ++seen[bits[t]];
+    }
+  }
+  EXPECT_GT(std::ranges::count_if(seen, [](int count) { return count > 0; }), 30) << "of the cases are met";
 }
 
 TEST_P(EachSet, CountsCommonNumbers) {
