@@ -1,7 +1,6 @@
 // Whether a face is within a distance of the extracted surface.
 #include <algorithm>
 #include <bit>
-#include <tuple>
 
 #include "simplify/extracted_surface.hpp"
 #include "simplify/prism.hpp"
@@ -208,17 +207,20 @@ class ExtractedSurface::Look {
     return is_seen && seen_.covers(part.corners, kSeenHeight * most_);
   }
 
+  struct Box {
+    Vector low{}, high{};
+  };
+
   // Gathers the triangles that come near a part. Returns false where they are too many.
   bool see_around(const Part& part) {
     const double height = kSeenHeight * most_;
-    Vector low{};
-    Vector high{};
+    Box around;
     for (std::size_t n = 0; n < 3; ++n) {
-      std::tie(low[n], high[n]) = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
-      low[n] -= height;
-      high[n] += height;
+      const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
+      around.low[n] = low - height;
+      around.high[n] = high + height;
     }
-    const std::span<const Piece> pieces = surface_.pieces_between(low[2], high[2]);
+    const std::span<const Piece> pieces = surface_.pieces_between(around.low[2], around.high[2]);
     std::uint64_t levels = 0;
     for (const Piece& piece : pieces) levels |= piece.levels;
     const Prism prism(part.corners, height);
@@ -227,28 +229,39 @@ class ExtractedSurface::Look {
     seen_.clear();
     for (; fits && levels != 0; levels &= levels - 1) {
       const int level = std::countr_zero(levels);
-      const CellBox box{surface_.cell_of(low, level), surface_.cell_of(high, level)};
+      const CellBox box{surface_.cell_of(around.low, level), surface_.cell_of(around.high, level)};
       if (box.cells() > kMostSeenCells) return false;
       const CellsOfPrism cells(prism, surface_.lengths_[static_cast<std::size_t>(level)]);
       each_cell(box, [&](const Cell& cell) {
-        if (cells.may_touch(cell)) fits = see_cell(key_of(level, cell), pieces, taken);
+        if (cells.may_touch(cell)) fits = see_cell(key_of(level, cell), around, pieces, taken);
         return fits;
       });
     }
     return fits;
   }
 
-  bool see_cell(std::uint64_t key, std::span<const Piece> pieces, TriangleSet& taken) {
+  // Adds the triangles of a cell whose boxes touch another: whether they are too many must not depend on what else
+  // their pieces hold.
+  bool see_cell(std::uint64_t key, const Box& around, std::span<const Piece> pieces, TriangleSet& taken) {
     for (std::size_t n = 0; n < pieces.size(); ++n) {
       const Piece& piece = pieces[n];
       const Slot& slot = piece.slots[slot_of(piece, key)];
       for (const std::uint32_t t : std::span(piece.listed.data() + slot.first, slot.count)) {
-        if (!taken.insert(n, t)) continue;
         const auto& [a, b, c] = piece.triangles[t];
+        if (!touches(around, corners_of(piece, t)) || !taken.insert(n, t)) continue;
         if (!seen_.add(piece.positions[a], piece.positions[b], piece.positions[c])) return false;
       }
     }
     return true;
+  }
+
+  static bool touches(const Box& box, const Corners& t) {
+    bool touching = true;
+    for (std::size_t n = 0; n < 3; ++n) {
+      touching &= std::min({t[0][n], t[1][n], t[2][n]}) <= box.high[n];
+      touching &= std::max({t[0][n], t[1][n], t[2][n]}) >= box.low[n];
+    }
+    return touching;
   }
 
   void cut(Open& part) {

@@ -81,11 +81,22 @@ struct alignas(64) SeenTriangles {
 
 // A part of the face that triangles are seen from. Its corners go around it to the left.
 struct SeenPart {
-  double x[3], y[3];
+  double x[3], y[3];  // of the corners
   double centre_x, centre_y;
   double most;                           // height that is allowed
   double slack;                          // of lengths, for rounding: what is as near as that is touched
   double left_x[3], left_y[3], from[3];  // of each side: a direction to its left, and where the side lies along it
+
+  // Finds the centre and the sides of the corners.
+  void set_sides() {
+    centre_x = (x[0] + x[1] + x[2]) / 3;
+    centre_y = (y[0] + y[1] + y[2]) / 3;
+    for (std::size_t n = 0; n < 3; ++n) {
+      left_x[n] = y[n] - y[(n + 1) % 3];
+      left_y[n] = x[(n + 1) % 3] - x[n];
+      from[n] = left_x[n] * x[n] + left_y[n] * y[n];
+    }
+  }
 
   // How far to the left of a side a point is, in terms of the side's length.
   template <class Real>

@@ -53,20 +53,15 @@ SeenPart ProjectedSurface::seen_part(const Corners& corners, double most) const 
     const Vector from = corners[n] - origin_;
     part.x[n] = dot(from, across_);
     part.y[n] = dot(from, along_);
-    part.centre_x += part.x[n] / 3;
-    part.centre_y += part.y[n] / 3;
   }
+  part.set_sides();
   for (std::size_t n = 0; n < 3; ++n) {
-    const std::size_t next = (n + 1) % 3;
-    part.left_x[n] = part.y[n] - part.y[next];
-    part.left_y[n] = part.x[next] - part.x[n];
-    part.from[n] = part.left_x[n] * part.x[n] + part.left_y[n] * part.y[n];
     part.slack = std::max(part.slack, kSeenSlack * (std::abs(part.left_x[n]) + std::abs(part.left_y[n])));
   }
   return part;
 }
 
-// What of the polygon is to the left of a side of the part.
+// Cuts the polygon at a side of the part, and keeps the piece to the left.
 ProjectedSurface::Polygon ProjectedSurface::Polygon::left_of(std::size_t side) const {
   Polygon cut;
   for (std::size_t n = 0; n < count; ++n) {

@@ -216,6 +216,34 @@ TEST(ExtractedSurface, FindsThatTheWidestFacesAreNear) {
   EXPECT_EQ(at(-1.01 * kMost), Reach::kBeyond);
 }
 
+// Triangles far from a face, in cells that the face touches: how often the face is cut does not depend on the pieces
+// that they come in.
+TEST(ExtractedSurface, CutsAFaceAsOftenWhateverElseAPieceHolds) {
+  std::vector<Corners> flat;
+  std::vector<Corners> far;
+  for (int n = 0; n < 64; ++n) {
+    const double x = n % 8;
+    const double y = n / 8;
+    for (const double z : {0.0, 5.0, 6.0, 7.0, 8.0}) {
+      std::vector<Corners>& list = z > 0 ? far : flat;
+      list.push_back({Vector{x, y, z}, Vector{x + 1, y, z}, Vector{x, y + 1, z}});
+      list.push_back({Vector{x + 1, y, z}, Vector{x + 1, y + 1, z}, Vector{x, y + 1, z}});
+    }
+  }
+  const auto looks_of = [&](std::span<const std::vector<Corners>> pieces) {
+    ExtractedSurface surface(0.2, {2, 2, 20}, {1, 1, 0});
+    for (const std::vector<Corners>& piece : pieces) append(surface, piece, kAll);
+    std::uint64_t looks = 0;
+    EXPECT_EQ(surface.reach({0.5, 0.5, 0.1}, {7.5, 0.6, 0.1}, {0.6, 7.5, 0.1}, 0.2, &looks), Reach::kWithin);
+    return looks;
+  };
+  const std::vector<std::vector<Corners>> two{flat, far};
+  std::vector<std::vector<Corners>> one{flat};
+  one[0].insert(one[0].end(), far.begin(), far.end());
+  EXPECT_EQ(looks_of(two), 0);
+  EXPECT_EQ(looks_of(one), 0);
+}
+
 // What is known of a part of the surface holds for all of it.
 TEST(ExtractedSurface, NeverTakesAnAnswerBack) {
   std::vector<Corners> triangles = sheet(3);

@@ -233,15 +233,8 @@ TEST_P(EachSet, TellsHowTrianglesLieOverAPart) {
     for (std::size_t n = 0; n < 3; ++n) {
       part.x[n] = place();
       part.y[n] = place();
-      part.centre_x += part.x[n] / 3;
-      part.centre_y += part.y[n] / 3;
     }
-    for (std::size_t n = 0; n < 3; ++n) {
-      const std::size_t next = (n + 1) % 3;
-      part.left_x[n] = part.y[n] - part.y[next];
-      part.left_y[n] = part.x[next] - part.x[n];
-      part.from[n] = part.left_x[n] * part.x[n] + part.left_y[n] * part.y[n];
-    }
+    part.set_sides();
     std::array<std::uint8_t, SeenTriangles::kRoom> bits{};
     kernels().lie_over(triangles, part, bits.data());
     for (std::size_t t = 0; t < triangles.count; ++t) {

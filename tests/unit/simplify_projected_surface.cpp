@@ -167,7 +167,7 @@ TEST(ProjectedSurface, SeesAHoleWhereItIs) {
   EXPECT_FALSE(covers(triangles, face, inside, kMost)) << "nothing is over it";
 }
 
-// What is far above or below, in whatever order, changes nothing.
+// Triangles far above or below change nothing, nor does the order in which triangles come.
 TEST(ProjectedSurface, MoreTrianglesInAnyOrderGiveTheSameAnswer) {
   Random random(9);
   int covered = 0;
