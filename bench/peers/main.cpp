@@ -11,11 +11,19 @@
 namespace bench {
 namespace {
 
+// With one thread, and with all.
+Settings default_settings() {
+  Settings settings;
+  const int all = static_cast<int>(std::thread::hardware_concurrency());
+  if (all > 1) settings.threads.push_back(all);
+  return settings;
+}
+
 struct Arguments {
   std::string suite, output;
   SuiteInput input;
   std::vector<double> left{50, 20, 10, 5, 1};
-  Settings settings;
+  Settings settings = default_settings();
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -28,7 +36,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--iso", input.iso)->required();
   app.add_option("--name", input.name, "Of the volume, in the results")->required();
   app.add_option("--left", arguments.left, "Percentages of the triangles to be left")->delimiter(',');
-  app.add_option("--threads", settings.threads)->delimiter(',');
+  app.add_option("--threads", settings.threads, "Without it: one, and all")->delimiter(',');
   app.add_option("--rounds", settings.most_rounds, "Of a pair, at most");
   app.add_option("--enough", settings.enough_seconds, "Seconds after which a pair has no further round");
   app.add_option("--only", settings.only, "Only peers with this in their name");

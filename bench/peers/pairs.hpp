@@ -29,7 +29,7 @@ Runner bind(const Contestant<Input>& contestant, const Input& input) {
 }
 
 struct Settings {
-  std::vector<int> threads{1, 4};
+  std::vector<int> threads{1};
   int most_rounds = 9;
   double enough_seconds = 6;  // a pair whose runs have taken this long has no further round
   double limit_seconds = 900;

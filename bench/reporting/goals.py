@@ -211,10 +211,12 @@ def measured_text(goal, results, processors):
 
 
 def goal_table(results):
+    """The goals that a machine has of which there are results."""
     found = machines(results)
     lines = [
         [goal.what, goal.against or UNKNOWN, goal.text(),
          *(measured_text(goal, on_machine(results, at), at) for at in found)]
         for goal in GOALS
+        if any(goal.bound_on(at) is not None for at in found)
     ]
     return table(["", "beside", "goal", *(f"{at} processors" for at in found)], lines)

@@ -144,9 +144,9 @@ struct RunControl {
   // begins again. A volume that is held in memory needs no opening. Null: the volume can be read once only. A resumed
   // run needs it where the run before it had it.
   std::function<std::unique_ptr<SliceSource>()> reopen{};
-  // An error, in the unit of the volume, that is expected to leave clearly more triangles than the number
+  // An error, in the unit of the volume or mesh, that is expected to leave clearly more triangles than the number
   // (Forecast::head_start); 0: no such error is known. Without a value a run without a cap on memory makes a forecast
-  // of its own, where the volume is large.
+  // of its own, where the volume or mesh is large. Whatever the value is, the result is the same.
   // @throws std::invalid_argument from the run for one that is negative or not finite
   std::optional<double> head_start{};
   // mesh_volume to a number of triangles only: sweeps the volume once to count how many triangles each error leaves,

@@ -2,12 +2,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include "isoweave/pipeline.hpp"
 #include "output/world.hpp"
 #include "parallel/float_environment.hpp"
+#include "pipeline/forecast/mesh_head_start.hpp"
 #include "pipeline/host_back_end.hpp"
 #include "pipeline/loop.hpp"
 #include "pipeline/mesh_surface.hpp"
@@ -54,25 +58,27 @@ MeshSurface::Pieces pieces_of(const TriangleMesh& mesh, const SimplifyOptions& o
 
 class MeshRun {
  public:
-  MeshRun(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
-          const RunControl& control)
+  MeshRun(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyTask& task,
+          const MeshSurface::Pieces& pieces, const Executor& executor, const RunControl& control,
+          const HeadStart& head_start)
       : mesh_(mesh),
         sinks_(sinks),
         allow_empty_(control.allow_empty),
-        executor_(control.threads),
-        task_(resolve_simplification(options, measure_of(mesh, options, executor_))),
+        executor_(executor),
+        task_(task),
         world_(mesh.offset, common_offset(sinks)),
-        back_end_(task_, world_, sinks, executor_, control, control.stop.get()),
-        pieces_(mesh, executor_, pieces_of(mesh, options, control.piece)),
+        back_end_(task_, world_, sinks, executor_, control, control.stop.get(), head_start),
+        pieces_(mesh, executor_, pieces),
         loop_(pieces_, {}, &back_end_, report_) {}
 
-  MeshReport run() {
-    Stopwatch total;
+  // The report; or the head start of the run that has to take the place of this one.
+  std::variant<MeshReport, HeadStart> run() {
     report_.threads = executor_.threads();
     report_errors(task_, report_);
     do {
       loop_.step();
     } while (!loop_.complete());
+    if (const std::optional<HeadStart> next = back_end_.overshot()) return *next;
     loop_.wait_for_sinks();
     loop_.finish();
     warn();
@@ -83,7 +89,6 @@ class MeshRun {
     Stopwatch finishing;
     for (MeshSink* sink : sinks_) sink->finish();
     finishing.lap(report_.seconds_write);
-    total.lap(report_.seconds_total);
     report_.peak_bytes = system::peak_bytes();
     return std::move(report_);
   }
@@ -107,14 +112,23 @@ class MeshRun {
   const TriangleMesh& mesh_;
   const std::span<MeshSink* const> sinks_;
   const bool allow_empty_;
-  const Executor executor_;
-  const SimplifyTask task_;
+  const Executor& executor_;
+  const SimplifyTask& task_;
   const World world_;
   HostBackEnd back_end_;
   MeshSurface pieces_;
   MeshReport report_;
   Loop loop_;
 };
+
+// The head start of a run to a number, by an error that is known or by samples of the mesh.
+HeadStart head_start_of(const TriangleMesh& mesh, const SimplifyOptions& options, const SurfaceMeasure& measure,
+                        const Executor& executor, const RunControl& control) {
+  if (options.triangles == 0) return {};
+  const double error =
+      control.head_start ? *control.head_start : mesh_head_start(mesh, options, measure, executor, control);
+  return {head_start_cost(error, measure.a0)};
+}
 
 }  // namespace
 
@@ -135,7 +149,19 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> si
     throw std::invalid_argument("values of a mesh: expected one for each of " + std::to_string(mesh.vertices.size()) +
                                 " vertices, found " + std::to_string(mesh.values.size()));
   }
-  return MeshRun(mesh, sinks, options, control).run();
+  Stopwatch total;
+  const Executor executor(control.threads);
+  const SurfaceMeasure measure = measure_of(mesh, options, executor);
+  const SimplifyTask task = resolve_simplification(options, measure);
+  const MeshSurface::Pieces pieces = pieces_of(mesh, options, control.piece);
+  const auto run = [&](const HeadStart& head_start) {
+    return MeshRun(mesh, sinks, task, pieces, executor, control, head_start).run();
+  };
+  std::variant<MeshReport, HeadStart> made = run(head_start_of(mesh, options, measure, executor, control));
+  while (const HeadStart* const next = std::get_if<HeadStart>(&made)) made = run(*next);
+  MeshReport& report = std::get<MeshReport>(made);
+  total.lap(report.seconds_total);
+  return std::move(report);
 }
 
 }  // namespace isoweave

@@ -186,12 +186,11 @@ bool can_repeat(const SliceSource& volume, const MeshOptions& options, const Run
   return options.triangles > 0 && has_values && (control.reopen || !volume.held().empty());
 }
 
-CostBits head_start_cost(double error, const VolumeInfo& volume) {
+CostBits head_start_cost(double error, double a0) {
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("head start: expected a length of 0 or more, found " + std::to_string(error));
   }
-  const double voxel = mean_voxel(volume.geometry);
-  return retire_cost(error, voxel * voxel);
+  return retire_cost(error, a0);
 }
 
 void require_different(std::span<MeshSink* const> sinks) {

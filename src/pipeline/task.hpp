@@ -89,8 +89,8 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
 // Whether a run to a number of triangles may sweep the volume twice.
 bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control);
 
-// RunControl::head_start as a cost. Throws std::invalid_argument for one that is negative or no number.
-CostBits head_start_cost(double error, const VolumeInfo& volume);
+// RunControl::head_start as a cost, in units of a0. Throws std::invalid_argument for one that is negative or no number.
+CostBits head_start_cost(double error, double a0);
 
 // Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
 void require_different(std::span<MeshSink* const> sinks);

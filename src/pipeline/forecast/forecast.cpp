@@ -271,7 +271,7 @@ class Forecaster {
   // A counter for the middle third of the layers of a tile: ends hardly disturb it.
   CountBetween middle_of(const Tile& tile) const {
     const double third = layers(tile) / 3 * info_.geometry.spacing[2];
-    return {third, 2 * third};
+    return CountBetween({third, 2 * third});
   }
 
   // Meshes the open surface of a block, in samples.

@@ -22,13 +22,17 @@ void ForecastCurve::add(std::uint64_t all, std::uint64_t left, const CostHistogr
 double ForecastCurve::share_left() const { return all_ > 0 ? std::min(1.0, left_ / all_) : 1; }
 
 double ForecastCurve::head_start(const MeshOptions& options, double open, double of_caps) const {
-  if (!(open > 0)) return 0;
   auto wanted = static_cast<double>(options.triangles);
   if (const auto& chosen = options.components; chosen && chosen->triangles > 0) {
     // Tiles have all components.
     wanted *= 1 + static_cast<double>(chosen->triangles_dropped) / static_cast<double>(chosen->triangles);
   }
-  const double share = std::clamp((wanted - of_caps) / open, 0.0, 1.0);
+  return head_start(wanted - of_caps, open);
+}
+
+double ForecastCurve::head_start(double wanted, double all) const {
+  if (!(all > 0) || !(all_ > 0)) return 0;
+  const double share = std::clamp(wanted / all, 0.0, 1.0);
   // The more is removed, the more a tile may mislead.
   return std::min(error_that_leaves(share * (1 + kMargin * (1 - share))), kMostError * voxel_);
 }

@@ -24,6 +24,9 @@ class ForecastCurve {
   // `open` triangles on the open surface and `of_caps` others that stay. 0: none is known.
   double head_start(const MeshOptions& options, double open, double of_caps) const;
 
+  // The same of `wanted` triangles out of `all`.
+  double head_start(double wanted, double all) const;
+
  private:
   double error_that_leaves(double share) const;
 

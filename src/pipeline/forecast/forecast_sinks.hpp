@@ -18,23 +18,31 @@ class CountingSink : public MeshSink {
   std::uint64_t total = 0;
 };
 
-// Counts the triangles whose first corners lie between two heights.
-class CountBetween final : public MeshSink {
+// Counts the triangles whose first corners lie where they count: where(point).
+template <class Where>
+class CountWhere final : public MeshSink {
  public:
-  CountBetween(double from, double to) : from_(from), to_(to) {}
+  explicit CountWhere(const Where& where) : where_(where) {}
 
   void append(const MeshPiece& piece) override {
-    for (const Point& vertex : piece.vertices) is_between_.push_back(vertex[2] >= from_ && vertex[2] < to_);
-    for (const auto& t : piece.triangles) total += is_between_[t[0]] ? 1U : 0U;
+    for (const Point& vertex : piece.vertices) counts_.push_back(where_(vertex));
+    for (const auto& t : piece.triangles) total += counts_[t[0]] ? 1U : 0U;
   }
   void finish() override {}
 
   std::uint64_t total = 0;
 
  private:
-  double from_, to_;
-  std::vector<bool> is_between_;  // per vertex
+  Where where_;
+  std::vector<bool> counts_;  // per vertex
 };
+
+struct BetweenHeights {
+  double from, to;
+  bool operator()(const Point& p) const { return p[2] >= from && p[2] < to; }
+};
+
+using CountBetween = CountWhere<BetweenHeights>;
 
 // Tells where triangles are, by their first corners in samples: look(i, j, k).
 template <class Look>
