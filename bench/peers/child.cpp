@@ -45,18 +45,6 @@ void limit_memory() {
   }
 }
 
-// Touches memory and gives it back to this system, which hands it out again next. A virtual machine's host provides
-// memory when it is touched first, and takes back what is free, in large pieces: no run is to pay for that.
-void have_host_provide_memory() {
-  constexpr std::size_t kBytes = std::size_t{2} << 30;
-  constexpr std::size_t kPage = 4096;
-  void* const memory = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) fail("mmap");
-  madvise(memory, kBytes, MADV_HUGEPAGE);
-  for (std::size_t at = 0; at < kBytes; at += kPage) static_cast<volatile char*>(memory)[at] = 1;
-  munmap(memory, kBytes);
-}
-
 [[noreturn]] void be_child(const std::function<Json()>& work, int file) {
   Json message;
   try {
@@ -97,9 +85,18 @@ Outcome parse_message(const std::string& text, int status) {
 
 }  // namespace
 
+void have_host_provide_memory() {
+  constexpr std::size_t kBytes = std::size_t{2} << 30;
+  constexpr std::size_t kPage = 4096;
+  void* const memory = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) fail("mmap");
+  madvise(memory, kBytes, MADV_HUGEPAGE);
+  for (std::size_t at = 0; at < kBytes; at += kPage) static_cast<volatile char*>(memory)[at] = 1;
+  munmap(memory, kBytes);
+}
+
 Outcome run_in_child(const std::function<Json()>& work, double limit_seconds) {
   malloc_trim(0);  // freed memory of this process would count as the child's
-  have_host_provide_memory();
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("pipe2");
   const pid_t child = fork();

@@ -87,6 +87,7 @@ void repeat(Entry& entry, int threads, const Settings& settings, const FullSurfa
   Goal goal = entry.goal;
   goal.threads = threads;
   const FullSurface* const reference = entry.quality.is_null() ? full : nullptr;
+  have_host_provide_memory();
   Outcome outcome = run_in_child([&] { return measure(entry.runner, goal, reference); }, settings.limit_seconds);
   series.failure = std::move(outcome.failure);
   if (!series.failure.empty()) return;
