@@ -1,6 +1,6 @@
-# With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the library or of the command line, so
-# that what they all include is read once. It is on where all sources are compiled once, to be used or to be tested, and off
-# in `dev`, where a change compiles one source. Names inside of two sources of a folder must differ then.
+# With ISOWEAVE_UNITY, files are compiled that include some sources of one folder of the library, of the command line or of
+# tests, so that what they all include is read once. It is on where all sources are compiled once, to be used or to be
+# tested, and off in `dev`, where a change compiles one source. Names inside of two sources of a folder must differ then.
 option(ISOWEAVE_UNITY "Compile the sources of a folder together: faster where most of them have changed" OFF)
 
 if(ISOWEAVE_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -18,7 +18,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_blocks_test {
 namespace {
 
 using program::expect_failed;
@@ -247,4 +247,4 @@ TEST(CliTasks, OtherFoldersAndVolumesAreRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_blocks_test

@@ -13,7 +13,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_checkpoints_test {
 namespace {
 
 using program::listing;
@@ -299,4 +299,4 @@ TEST(CliCheckpoint, RefusedOutputsLeaveNoFolder) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_checkpoints_test

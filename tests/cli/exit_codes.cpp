@@ -8,7 +8,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_exit_codes_test {
 namespace {
 
 using program::listing;
@@ -132,4 +132,4 @@ TEST(CliUsage, AnEmptyValueIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_exit_codes_test

@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_failures_test {
 namespace {
 
 using program::listing;
@@ -330,4 +330,4 @@ TEST(CliInterrupted, InfoEndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_failures_test

@@ -6,7 +6,7 @@
 #include "golden/rows.hpp"
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_golden_test {
 namespace {
 
 // After each "digest " of what the program says.
@@ -33,4 +33,4 @@ TEST(CliGolden, DigestsAreThoseOfTheRows) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_golden_test

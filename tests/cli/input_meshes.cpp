@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_input_meshes_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -194,4 +194,4 @@ TEST(CliInputMeshes, FilesThatAMeshNamesAreReadUnlessTheyMustNot) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_input_meshes_test

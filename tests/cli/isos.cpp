@@ -7,7 +7,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_isos_test {
 namespace {
 
 using nlohmann::json;
@@ -143,4 +143,4 @@ TEST(CliIsos, AFileThatCannotBeWrittenLeavesNoneHalfWritten) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_isos_test

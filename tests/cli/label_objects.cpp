@@ -10,7 +10,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_label_objects_test {
 namespace {
 
 using nlohmann::json;
@@ -124,4 +124,4 @@ TEST_F(CliLabelObjects, TooManyForAFileEachAreToldTheWay) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_label_objects_test

@@ -11,7 +11,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_labels_test {
 namespace {
 
 using nlohmann::json;
@@ -411,4 +411,4 @@ TEST(CliSmooth, IsReportedAndSavedWithTheTask) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_labels_test

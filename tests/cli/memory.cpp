@@ -14,7 +14,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_memory_test {
 namespace {
 
 using program::listing;
@@ -266,4 +266,4 @@ TEST(CliMemory, AnArrayWithoutChunksIsAnsweredUnderACap) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_memory_test

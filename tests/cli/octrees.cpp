@@ -14,7 +14,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_octrees_test {
 namespace {
 
 using program::listing;
@@ -134,4 +134,4 @@ TEST_F(CliOctrees, TakeMemoryThatDoesNotGrowWithTheMesh) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_octrees_test

@@ -10,7 +10,7 @@
 #include "page_files.hpp"
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_opened_pages_test {
 namespace {
 
 using pages::json_in;
@@ -75,5 +75,5 @@ TEST_F(CliOpenedPage, IsNotWaitedFor) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_opened_pages_test
 #endif

@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_outputs_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -377,4 +377,4 @@ TEST(CliOutputs, AFolderIsNotWrittenOver) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_outputs_test

@@ -14,7 +14,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_pages_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -473,4 +473,4 @@ TEST(CliPage, OfIsoValuesOfAVolumeHoldsTheJson) {
 #endif
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_pages_test

@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_parts_test {
 namespace {
 
 using nlohmann::json;
@@ -238,4 +238,4 @@ TEST(CliParts, NothingIsLeftOfARunThatFails) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_parts_test

@@ -13,7 +13,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_pictures_test {
 namespace {
 
 using program::listing;
@@ -198,4 +198,4 @@ TEST(CliRender, WithoutLibpngItSaysSo) {
 #endif
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_pictures_test

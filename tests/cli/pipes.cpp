@@ -11,7 +11,7 @@
 #include "packing.hpp"
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_pipes_test {
 namespace {
 
 using program::Result;
@@ -160,4 +160,4 @@ TEST(CliPipes, DamagedGzipOfAMeshEndsWithThree) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_pipes_test

@@ -7,7 +7,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_places_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -163,4 +163,4 @@ TEST(CliPlaces, StlSaysHowFarItMovesVertices) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_places_test

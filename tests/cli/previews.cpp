@@ -8,7 +8,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_previews_test {
 namespace {
 
 using nlohmann::json;
@@ -154,4 +154,4 @@ TEST(CliPreview, ReplacesNothingWhereNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_previews_test

@@ -12,7 +12,7 @@
 #include "program.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_progress_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -71,4 +71,4 @@ TEST(CliProgress, LinesElsewhereHaveAll) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_progress_test

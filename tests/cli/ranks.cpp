@@ -18,7 +18,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_ranks_test {
 namespace {
 
 using program::listing;
@@ -302,4 +302,4 @@ INSTANTIATE_TEST_SUITE_P(Mpis, Ranks, ::testing::ValuesIn(kMpis), [](const auto&
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ranks);
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_ranks_test

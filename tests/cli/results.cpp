@@ -13,7 +13,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_results_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -254,4 +254,4 @@ TEST(CliHistogram, OfDistancesSaysThatAllAreZero) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_results_test

@@ -12,7 +12,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_runs_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -403,4 +403,4 @@ TEST(CliCheck, JsonHasThemToo) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_runs_test

@@ -9,7 +9,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_slices_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -134,4 +134,4 @@ TEST(CliSlices, FilesBesideThemAreToldApart) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_slices_test

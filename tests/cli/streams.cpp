@@ -9,7 +9,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_streams_test {
 namespace {
 
 using program::Result;
@@ -157,4 +157,4 @@ TEST(CliStreams, JsonEscapesWhatATextHides) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_streams_test

@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_units_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -190,4 +190,4 @@ TEST_F(CliUnits, PercentIsOfTheDiagonal) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_units_test

@@ -24,7 +24,7 @@
 #include "sanitized.hpp"
 #include "watch_client.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_watching_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -367,4 +367,4 @@ TEST(CliWatch, AResumedRunCanBeWatched) {
 #endif
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_watching_test

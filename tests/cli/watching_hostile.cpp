@@ -11,7 +11,7 @@
 #include "sanitized.hpp"
 #include "watch_client.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::cli_watching_hostile_test {
 namespace {
 
 using namespace watch;
@@ -117,6 +117,6 @@ TEST(CliWatch, RangesAreNotServed) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::cli_watching_hostile_test
 
 #endif

@@ -10,7 +10,7 @@
 #include "files.hpp"
 #include "isoweave/error.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::blocks_test {
 namespace {
 
 class Blocks : public ::testing::TestWithParam<BlockScene> {};
@@ -60,4 +60,4 @@ TEST(BlocksOf, ManyFinalTriangles) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::blocks_test

@@ -11,7 +11,7 @@
 #include "files.hpp"
 #include "isoweave/blocks.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::blocks_counts_test {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -112,4 +112,4 @@ TEST(BlocksToFewTriangles, AForecastOfTheRunSavesPasses) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::blocks_counts_test

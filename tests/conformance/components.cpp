@@ -4,7 +4,7 @@
 
 #include "component_scenes.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::components_test {
 namespace {
 
 void expect_dropped(const MeshReport& report, const Kept& kept) {
@@ -316,4 +316,4 @@ TEST(ComponentsOfMeshes, AreKeptInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::components_test

@@ -12,7 +12,7 @@
 #include "oracle.hpp"
 #include "simplify/count_target.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::counts_test {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -322,4 +322,4 @@ TEST(CountsHeld, NoMoreThanIsNeeded) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::counts_test

@@ -12,7 +12,7 @@
 #include "pipeline/device_back_end.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::device_test {
 namespace {
 
 // The pipeline's way through an engine, slab by slab.
@@ -226,4 +226,4 @@ TEST(DeviceEngine, IsRefusedWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::device_test

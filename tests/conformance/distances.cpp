@@ -5,7 +5,7 @@
 
 #include "oracle.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::distances_test {
 namespace {
 
 SurfaceCase make_case(const std::string& kind, bool closed) {
@@ -162,4 +162,4 @@ TEST(DistancesBeside, MeshesKeepTheirDistanceToo) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::distances_test

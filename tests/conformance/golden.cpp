@@ -17,7 +17,7 @@
 #include "sanitized.hpp"
 #include "simplify/kernels.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::golden_test {
 namespace {
 
 using golden::read_rows;
@@ -216,4 +216,4 @@ TEST(Golden, DigestOfAWideVolumeInAnySlabs) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::golden_test

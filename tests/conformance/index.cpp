@@ -13,7 +13,7 @@
 #include "surfaces.hpp"
 #include "volume/row_source.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::index_test {
 namespace {
 
 // A volume in chunks, of which those that are left out give wrong samples: it fails for a reader that needs one.
@@ -328,4 +328,4 @@ TEST(Indexed, ForecastsSeeTheWholeVolume) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::index_test

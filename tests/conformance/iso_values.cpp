@@ -8,7 +8,7 @@
 #include "surfaces.hpp"
 #include "volume/row_source.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::iso_values_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{19, 16, 21};
@@ -315,4 +315,4 @@ TEST(IsoSweepOptions, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::iso_values_test

@@ -7,7 +7,7 @@
 #include "label_maps.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::labels_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{18, 15, 18};
@@ -296,4 +296,4 @@ TEST(LabelSweepOptions, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::labels_test

@@ -11,7 +11,7 @@
 #include "pipeline/parts/label_boxes.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::labels_in_blocks_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{37, 33, 41};
@@ -234,4 +234,4 @@ TEST(LabelsInBlocksRefuse, WhatTheyDoNotHave) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::labels_in_blocks_test

@@ -4,7 +4,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::levels_test {
 namespace {
 
 const std::vector<double> kErrors{0, 0.1, 0.25, 0.7};
@@ -162,4 +162,4 @@ TEST(LevelsOfMeshes, AreTheMeshesOfRunsWithTheirErrors) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::levels_test

@@ -5,7 +5,7 @@
 
 #include "oracle.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::normals_test {
 namespace {
 
 class NormalsThatCount : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
@@ -156,4 +156,4 @@ TEST(NormalsBeside, LevelsNest) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::normals_test

@@ -14,7 +14,10 @@
 #include "sanitized.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing::plain_scenes {
+namespace isoweave::testing::plain_rules_test {
+
+using namespace plain_scenes;
+
 namespace {
 
 std::vector<std::string> kinds() { return kSanitized ? std::vector<std::string>{"noise", "box"} : generator_kinds(); }
@@ -351,4 +354,4 @@ TEST(PlainRules, Labels) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing::plain_scenes
+}  // namespace isoweave::testing::plain_rules_test

@@ -12,7 +12,10 @@
 #include "meshes.hpp"
 #include "plain_rules/volume_surface.hpp"
 
-namespace isoweave::testing::plain_scenes {
+namespace isoweave::testing::plain_rules_meshes_test {
+
+using namespace plain_scenes;
+
 namespace {
 
 // A hub with spokes, flat but for a wave; a double one has two hubs, one above the other, and no border.
@@ -189,4 +192,4 @@ TEST(PlainRules, MeshesWithHoles) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing::plain_scenes
+}  // namespace isoweave::testing::plain_rules_meshes_test

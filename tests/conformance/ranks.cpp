@@ -15,7 +15,7 @@
 #include "pipeline/parts/block_mesh.hpp"
 #include "pipeline/ranks/rank_plan.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::ranks_test {
 namespace {
 
 void rethrow_first(const std::vector<std::exception_ptr>& errors) {
@@ -285,4 +285,4 @@ TEST(BlockStages, TakersAndGiversBelongTogether) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::ranks_test

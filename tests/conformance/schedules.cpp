@@ -7,7 +7,7 @@
 #include "oracle.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::schedules_test {
 namespace {
 
 SurfaceCase make_case(const std::string& kind, bool closed, bool anisotropic) {
@@ -215,4 +215,4 @@ INSTANTIATE_TEST_SUITE_P(
     case_name);
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::schedules_test

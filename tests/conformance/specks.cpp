@@ -4,7 +4,7 @@
 
 #include "oracle.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::specks_test {
 namespace {
 
 SurfaceCase make_case(const std::string& kind, bool closed) {
@@ -105,4 +105,4 @@ TEST(Speck, GoesWhenHalfItsLongestEdgeIsWithinTheError) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::specks_test

@@ -14,7 +14,7 @@
 #include "files/file_lock.hpp"
 #include "isoweave/error.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::tasks_test {
 namespace {
 
 TaskMesh mesh_of(const BlockScene& scene, const std::string& folder, std::int64_t size = 12) {
@@ -169,4 +169,4 @@ TEST(TaskFolder, FilesOfTwoRunsOfATaskDoNotFitTogether) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::tasks_test

@@ -5,7 +5,7 @@
 #include "isoweave/error.hpp"
 #include "oracle.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::values_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{14, 16, 19};
@@ -167,4 +167,4 @@ TEST(Values, AreTheNumbersThatSlopeAndInterceptMake) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::values_test

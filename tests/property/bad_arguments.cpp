@@ -12,7 +12,7 @@
 #include "isoweave/pipeline.hpp"
 #include "isoweave/possible_runs.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::bad_arguments_test {
 namespace {
 
 // A source of the caller's own, of zeros.
@@ -123,4 +123,4 @@ TEST(BadArguments, ARefusalNamesTheFeatureAndWhoRefusesIt) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::bad_arguments_test

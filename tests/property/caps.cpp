@@ -4,7 +4,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::caps_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{13, 11, 9};
@@ -81,4 +81,4 @@ TEST(Caps, AreNotCountedWhereThereAreNoneOrNothingIsMeasured) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::caps_test

@@ -11,7 +11,7 @@
 #include "pipeline/checkpoint.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::checkpoints_test {
 namespace {
 
 using testing::mesh_options;
@@ -368,4 +368,4 @@ TEST(Sweep, AFileThatIsWrittenWhileItIsReadIsAnError) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::checkpoints_test

@@ -4,7 +4,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::empty_surfaces_test {
 namespace {
 
 // Samples from 0 to 7 along x.
@@ -91,4 +91,4 @@ TEST(BorderSurface, IsWarnedOf) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::empty_surfaces_test

@@ -6,7 +6,7 @@
 #include "pipeline/task.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::extractor_options_test {
 namespace {
 
 TEST(Extractors, GiveVerticesTheValuesOfAnotherVolume) {
@@ -145,4 +145,4 @@ TEST(Extractors, RefuseMoreSamplesThanTheyCanNumber) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::extractor_options_test

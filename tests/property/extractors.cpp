@@ -7,7 +7,7 @@
 
 #include "grids.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::extractors_test {
 namespace {
 
 TEST(Extractors, MakeManifoldsOfRandomSamples) {
@@ -319,4 +319,4 @@ TEST(Cubes, ArePermutedAsTheAxesAre) {
 // A volume of a linear function, whose values every interpolation keeps.
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::extractors_test

@@ -16,7 +16,7 @@
 #include "sanitized.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::head_starts_test {
 namespace {
 
 constexpr std::int64_t kSide = 40;
@@ -242,4 +242,4 @@ TEST(HeadStartRuns, AreLengths) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::head_starts_test

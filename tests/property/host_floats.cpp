@@ -14,7 +14,7 @@
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::host_floats_test {
 namespace {
 
 // Samples of both signs, some so small that they are not normal, which are 0 where those are flushed.
@@ -92,4 +92,4 @@ TEST(HostFloats, SmallNumbersTakenForZeroChangeNothing) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::host_floats_test

@@ -13,7 +13,7 @@
 #include "sanitized.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::memory_test {
 namespace {
 
 using testing::MemorySink;
@@ -307,4 +307,4 @@ TEST(Sizes, SpecksBeyondTheReachOf32BitsLieWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::memory_test

@@ -20,7 +20,7 @@
 #include "sanitized.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::mesh_head_starts_test {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -178,4 +178,4 @@ TEST(MeshHeadStarts, AreLengths) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::mesh_head_starts_test

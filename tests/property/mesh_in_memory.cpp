@@ -7,7 +7,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::mesh_in_memory_test {
 namespace {
 
 void expect_same(const MeshInMemory& found, const MemorySink& expected) {
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Sinks, InMemory,
                                             ::testing::Bool()));
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::mesh_in_memory_test

@@ -13,7 +13,7 @@
 #include "meshes.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::mesh_pieces_test {
 namespace {
 
 constexpr std::uint64_t kWhole = 1 << 30;
@@ -196,4 +196,4 @@ TEST(MeshPiecesOfSmallMeshes, OfAnySizeLockTheSameVertices) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::mesh_pieces_test

@@ -13,7 +13,7 @@
 #include "sanitized.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::numbers_of_triangles_test {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -174,4 +174,4 @@ TEST(NumbersOfTriangles, ManyFinalTrianglesComeInSeveralPieces) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::numbers_of_triangles_test

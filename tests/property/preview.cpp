@@ -15,7 +15,7 @@
 #include "meshes.hpp"
 #include "plain_rules/clusters.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::preview_test {
 namespace {
 
 struct Preview {
@@ -380,4 +380,4 @@ TEST(Preview, StopsWhenItIsAskedTo) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::preview_test

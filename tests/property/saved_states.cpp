@@ -13,7 +13,7 @@
 #include "isoweave/error.hpp"
 #include "pipeline/checkpoint.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::saved_states_test {
 namespace {
 
 using testing::mesh_options;
@@ -285,4 +285,4 @@ TEST(Checkpoints, AStateSaysHowMuchItHolds) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::saved_states_test

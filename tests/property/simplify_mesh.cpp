@@ -11,7 +11,7 @@
 #include "meshes.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::simplify_mesh_test {
 namespace {
 
 struct Result {
@@ -129,4 +129,4 @@ TEST(SimplifyMesh, AVertexThatTheMeshDoesNotHaveIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::simplify_mesh_test

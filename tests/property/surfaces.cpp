@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace isoweave::testing {
+namespace isoweave::testing::surfaces_test {
 namespace {
 
 struct Result {
@@ -441,4 +441,4 @@ TEST(Sweep, LargerVolumesGiveOneDigestToo) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::surfaces_test

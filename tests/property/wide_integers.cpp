@@ -7,7 +7,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::wide_integers_test {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kDims{20, 18, 16};
@@ -75,4 +75,4 @@ TEST(WideIntegers, IsoValuesBeyondTheTypeGiveNothingOrAll) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::wide_integers_test

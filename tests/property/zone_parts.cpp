@@ -16,7 +16,7 @@
 #include "pipeline/host_back_end.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::zone_parts_test {
 namespace {
 
 using testing::MemorySink;
@@ -244,4 +244,4 @@ TEST(ZoneParts, AWrongByteIsRefusedOrHarmless) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::zone_parts_test

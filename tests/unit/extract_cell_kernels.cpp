@@ -10,7 +10,7 @@
 #include "extract/cell_kernels.hpp"
 #include "extract/cube_rules.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::extract_cell_kernels_test {
 namespace {
 
 using Words = std::vector<std::uint64_t>;
@@ -127,4 +127,4 @@ TEST(CellKernels, EverySetCountsAndWritesTheTrianglesOfTheCrossedCells) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::extract_cell_kernels_test

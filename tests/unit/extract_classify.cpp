@@ -10,7 +10,7 @@
 #include "extract/classify.hpp"
 #include "volume/samples.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::extract_classify_test {
 namespace {
 
 template <class T>
@@ -125,4 +125,4 @@ TEST(Crossing, StaysAwayFromTheLatticePoints) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::extract_classify_test

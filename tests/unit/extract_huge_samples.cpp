@@ -11,7 +11,7 @@
 #include "isoweave/pipeline.hpp"
 #include "lattice/value_rules.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::extract_huge_samples_test {
 namespace {
 
 constexpr double kMost = std::numeric_limits<double>::max();
@@ -83,4 +83,4 @@ TEST(HugeSamples, MeansOfThemAreFinite) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::extract_huge_samples_test

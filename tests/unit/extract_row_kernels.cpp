@@ -8,7 +8,7 @@
 
 #include "extract/row_kernels.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::extract_row_kernels_test {
 namespace {
 
 using Words = std::vector<std::uint64_t>;
@@ -79,4 +79,4 @@ TEST(RowKernels, EverySetFindsTheCellsThatAreCrossed) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::extract_row_kernels_test

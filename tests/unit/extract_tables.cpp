@@ -9,7 +9,7 @@
 
 #include "extract/choose_diagonals.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::extract_tables_test {
 namespace {
 
 using table_rules::share_face;
@@ -189,4 +189,4 @@ TEST(Diagonals, AreTheShortestButForEars) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::extract_tables_test

@@ -7,7 +7,7 @@
 #include "extract/trilinear_rules.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::extract_trilinear_test {
 namespace {
 
 // The trilinear interpolant of the corners of a unit cell, written out.
@@ -195,4 +195,4 @@ TEST(Trilinear, SurfacesHaveTheTopologyOfTheRefinedField) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::extract_trilinear_test

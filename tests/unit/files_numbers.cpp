@@ -15,7 +15,7 @@
 #include "files/from_chars.hpp"
 #include "files/header_text.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::files_numbers_test {
 namespace {
 
 struct Parsed {
@@ -146,4 +146,4 @@ TEST(Crc32, OfATextByItsPartsInAnyWay) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::files_numbers_test

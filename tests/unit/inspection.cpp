@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace isoweave {
+namespace isoweave::testing::inspection_test {
 namespace {
 
 // A surface whose half-edges are linked by hand.
@@ -73,4 +73,4 @@ TEST(Inspection, FindsFacesOutsideOfAFan) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::inspection_test

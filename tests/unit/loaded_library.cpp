@@ -4,7 +4,7 @@
 
 #include "isoweave/error.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::loaded_library_test {
 namespace {
 
 const LibraryNeed kMaths{"/nowhere/libm.so.6", "libc6", "a format of this system", "sines"};
@@ -39,4 +39,4 @@ TEST(LoadedLibrary, RefusesToBeAnother) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::loaded_library_test

@@ -9,7 +9,7 @@
 #include "isoweave/measure.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::measure_check_test {
 namespace {
 
 // What holds for a closed, oriented manifold.
@@ -271,4 +271,4 @@ TEST(MeasureCheck, DigestSeesOneBitOfOneCoordinate) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::measure_check_test

@@ -4,7 +4,7 @@
 
 #include "isoweave/measure.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::measure_digest_test {
 namespace {
 
 const Point kA{0, 0, 0};
@@ -59,4 +59,4 @@ TEST(MeasureDigest, TextHasSixteenDigits) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::measure_digest_test

@@ -12,7 +12,7 @@
 #include "measure/triangle_tree.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::measure_distance_test {
 namespace {
 
 using measure::Vector;
@@ -252,4 +252,4 @@ TEST(MeasureDistance, TreeAgreesWithTryingAllTriangles) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::measure_distance_test

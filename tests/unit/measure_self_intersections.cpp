@@ -18,7 +18,7 @@
 #include "meshes.hpp"
 #include "sanitized.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::measure_self_intersections_test {
 namespace {
 
 using measure::orientation;
@@ -388,4 +388,4 @@ TEST(MeasureSelfIntersections, WrongMeshesAreErrors) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::measure_self_intersections_test

@@ -7,7 +7,7 @@
 #include "isoweave/weld.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::measure_weld_test {
 namespace {
 
 using meshes::Triangle;
@@ -84,4 +84,4 @@ TEST(Weld, AVertexThatTheMeshDoesNotHaveIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::measure_weld_test

@@ -14,7 +14,7 @@
 #include "meshes.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::mesh_offset_test {
 namespace {
 
 using Offset = std::array<double, 3>;
@@ -258,4 +258,4 @@ TEST(MeshOffset, GlbPutsItIntoANode) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::mesh_offset_test

@@ -11,7 +11,7 @@
 
 #include "meshes.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::mesh_surface_test {
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
@@ -130,4 +130,4 @@ TEST(MeshSurface, AVertexThatTheMeshDoesNotHaveIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::mesh_surface_test

@@ -7,7 +7,7 @@
 #include "parallel/parallel.hpp"
 #include "simplify/zone.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::parallel_check_test {
 namespace {
 
 class InternalChecks : public ::testing::Test {
@@ -39,4 +39,4 @@ TEST_F(InternalChecks, APieceThatBreaksItsPromisesIsNamed) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::parallel_check_test

@@ -14,7 +14,7 @@
 
 #include "parallel/parallel.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::parallel_executor_test {
 namespace {
 
 constexpr std::int64_t kCount = 10007;
@@ -126,4 +126,4 @@ TEST(Executor, RoundsToNearestInEveryThread) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::parallel_executor_test

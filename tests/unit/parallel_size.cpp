@@ -9,7 +9,7 @@
 
 #include "parallel/size.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::parallel_size_test {
 namespace {
 
 TEST(Size, CountsAndProductsThatFitAreTaken) {
@@ -25,4 +25,4 @@ TEST(Size, AProductThatNoMemoryHoldsIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::parallel_size_test

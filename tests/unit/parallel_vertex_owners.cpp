@@ -7,7 +7,7 @@
 
 #include "parallel/vertex_owners.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::parallel_vertex_owners_test {
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
@@ -89,4 +89,4 @@ TEST(VertexOwners, KnowTheLargestVertex) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::parallel_vertex_owners_test

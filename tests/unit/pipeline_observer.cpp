@@ -9,7 +9,7 @@
 
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::pipeline_observer_test {
 namespace {
 
 class Recorder final : public SweepObserver {
@@ -178,4 +178,4 @@ TEST(SweepObserver, WhatItThrowsEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::pipeline_observer_test

@@ -8,7 +8,7 @@
 #include "isoweave/error.hpp"
 #include "output/overlapped_sink.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::pipeline_overlapped_sink_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -65,4 +65,4 @@ TEST(OverlappedSink, EndsWithWhatItHasInHand) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::pipeline_overlapped_sink_test

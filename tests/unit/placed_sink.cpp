@@ -10,7 +10,7 @@
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::placed_sink_test {
 namespace {
 
 struct Placed {
@@ -102,4 +102,4 @@ TEST(PlacedSink, UnitsHaveTheirRatios) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::placed_sink_test

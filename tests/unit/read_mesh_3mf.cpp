@@ -3,7 +3,7 @@
 #include "isoweave/measure.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_3mf_test {
 namespace {
 
 using foreign::contains;
@@ -199,4 +199,4 @@ TEST(Read3mf, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_3mf_test

@@ -8,7 +8,7 @@
 #include "isoweave/error.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_damaged_test {
 namespace {
 
 struct Sample {
@@ -129,4 +129,4 @@ TEST(ReadMeshDamaged, RandomWordsInText) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_damaged_test

@@ -10,7 +10,7 @@
 #include "mesh_file_helpers.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_dialects_test {
 namespace {
 
 using mesh_files::failure;
@@ -393,4 +393,4 @@ TEST(ReadMeshDialects, OffOfMoreThanCoordinates) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_dialects_test

@@ -11,7 +11,7 @@
 #include "mesh_file_helpers.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_formats_test {
 namespace {
 
 using meshes::Triangle;
@@ -328,4 +328,4 @@ TEST(ReadMesh, ObjDataThatAreWrong) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_formats_test

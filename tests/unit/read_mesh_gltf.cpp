@@ -8,7 +8,7 @@
 #include "isoweave/measure.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_gltf_test {
 namespace {
 
 using foreign::contains;
@@ -311,4 +311,4 @@ TEST(ReadGltf, RefusesCopiesOutOfProportion) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_gltf_test

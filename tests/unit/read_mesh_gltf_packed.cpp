@@ -12,7 +12,7 @@
 #include "isoweave/error.hpp"
 #include "packed_meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_gltf_packed_test {
 namespace {
 
 using namespace packed;
@@ -164,5 +164,5 @@ TEST(ReadPackedGlb, RefusesWhatIsDamaged) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_gltf_packed_test
 #endif

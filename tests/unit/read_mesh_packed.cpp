@@ -10,7 +10,7 @@
 #include "meshes.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_packed_test {
 namespace {
 
 using foreign::contains;
@@ -95,4 +95,4 @@ TEST(ReadMeshPacked, PipesAreRead) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_packed_test

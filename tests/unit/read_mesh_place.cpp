@@ -13,7 +13,7 @@
 #include "mesh/read/mesh_place.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_place_test {
 namespace {
 
 using mesh_io::MeshPlace;
@@ -383,4 +383,4 @@ TEST(Check, CountsCornersInOnePlaceAndTrianglesWithoutArea) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_place_test

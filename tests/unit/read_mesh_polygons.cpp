@@ -11,7 +11,7 @@
 #include "mesh_file_helpers.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_polygons_test {
 namespace {
 
 using mesh_files::parse;
@@ -134,4 +134,4 @@ TEST(ReadMeshPolygons, OfVeryManyCorners) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_polygons_test

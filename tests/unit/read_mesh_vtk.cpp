@@ -6,7 +6,7 @@
 #include "meshes.hpp"
 #include "packing.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::read_mesh_vtk_test {
 namespace {
 
 using foreign::contains;
@@ -298,4 +298,4 @@ TEST(ReadLegacyVtk, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::read_mesh_vtk_test

@@ -8,7 +8,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/remote.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::remote_names_test {
 namespace {
 
 // Sets a variable of the environment, or takes it away, until the test ends.
@@ -75,4 +75,4 @@ TEST(RemoteNames, ContentRanges) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::remote_names_test

@@ -19,7 +19,7 @@
 #include "render/camera.hpp"
 #include "render_scene.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::render_test {
 namespace {
 
 using namespace render_scene;
@@ -407,4 +407,4 @@ TEST(RenderColourBar, TellsTheColoursAndTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::render_test

@@ -15,7 +15,7 @@
 #include "meshes.hpp"
 #include "render_scene.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::render_axes_test {
 namespace {
 
 using namespace render_scene;
@@ -134,4 +134,4 @@ TEST(RenderAxes, MarksStayInTheirCorner) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::render_axes_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace isoweave {
+namespace isoweave::testing::report_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -96,4 +96,4 @@ TEST(ReportJson, DistancesAreMultiplesOfTheUnit) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::report_json_test

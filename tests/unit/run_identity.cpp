@@ -11,7 +11,7 @@
 
 #include "volume/axes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::run_identity_test {
 namespace {
 
 VolumeInfo some_volume() {
@@ -79,4 +79,4 @@ TEST(RunIdentity, OneLengthIsOneLength) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::run_identity_test

@@ -7,7 +7,7 @@
 #include "sanitized.hpp"
 #include "simplify/extracted_surface.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_extracted_surface_test {
 namespace {
 
 using Corners = ExtractedSurface::Corners;
@@ -401,4 +401,4 @@ TEST(ExtractedSurface, ForgetsOnlyWhatNobodyAsksAbout) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_extracted_surface_test

@@ -11,7 +11,7 @@
 #include "measure/triangle_tree.hpp"
 #include "simplify/kernels.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_kernels_test {
 namespace {
 
 class EachSet : public ::testing::TestWithParam<std::size_t> {
@@ -255,4 +255,4 @@ TEST_P(EachSet, CountsCommonNumbers) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_kernels_test

@@ -15,7 +15,7 @@
 #include "simplify/zone.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::simplify_key_countdown_test {
 namespace {
 
 void in_threads(std::size_t threads, const std::function<void(std::size_t)>& work) {
@@ -191,4 +191,4 @@ TEST(KeyCountdown, NamesEveryVertexOnceWhenItHasItsKeys) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::simplify_key_countdown_test

@@ -6,7 +6,7 @@
 
 #include "simplify/normal_quadric.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_normal_quadric_test {
 namespace {
 
 struct Face {
@@ -99,4 +99,4 @@ TEST_F(NormalQuadrics, WithoutFacesNothingIsTakenAway) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_normal_quadric_test

@@ -11,7 +11,7 @@
 #include "plain_rules/overlay.hpp"
 #include "simplify/overlay.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_overlay_test {
 namespace {
 
 using measure::operator+;
@@ -259,4 +259,4 @@ TEST(Overlay, KnowsNothingOfFolds) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_overlay_test

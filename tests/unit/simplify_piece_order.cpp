@@ -9,7 +9,7 @@
 #include "simplify/columns.hpp"
 #include "simplify/piece_order.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::simplify_piece_order_test {
 namespace {
 
 constexpr double kFace = 4;    // voxels of 2 x 2 x 2
@@ -110,4 +110,4 @@ TEST_F(PieceOrders, OfNothing) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::simplify_piece_order_test

@@ -8,7 +8,7 @@
 #include "sanitized.hpp"
 #include "simplify/projected_surface.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_projected_surface_test {
 namespace {
 
 using Corners = ProjectedSurface::Corners;
@@ -203,4 +203,4 @@ TEST(ProjectedSurface, ANeedleHasNoNormal) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_projected_surface_test

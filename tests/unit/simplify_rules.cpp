@@ -8,7 +8,7 @@
 #include "simplify/radix_heap.hpp"
 #include "volume/axes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::simplify_rules_test {
 namespace {
 
 // weight * (distance to the plane through `point`)^2
@@ -101,4 +101,4 @@ TEST(CubeRoot, IsTheCubeRoot) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::simplify_rules_test

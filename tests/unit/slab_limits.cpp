@@ -20,7 +20,7 @@
 #include "pipeline/slab_planner.hpp"
 #include "pipeline/volume_sweep.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::slab_limits_test {
 namespace {
 
 constexpr std::uint32_t kHalf = std::uint32_t{1} << 31;
@@ -177,4 +177,4 @@ TEST(SlabLimits, SlabsOfADeviceEndWithTheVolume) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::slab_limits_test

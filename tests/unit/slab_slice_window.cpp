@@ -12,7 +12,7 @@
 #include "isoweave/error.hpp"
 #include "volume/slice_window.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::slab_slice_window_test {
 namespace {
 
 // Slice k holds the number k in every sample; may be slow, and may fail.
@@ -137,4 +137,4 @@ TEST(SliceWindow, EndsWhileItReads) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::slab_slice_window_test

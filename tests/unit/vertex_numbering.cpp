@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace isoweave {
+namespace isoweave::testing::vertex_numbering_test {
 namespace {
 
 using Dims = std::array<std::int64_t, 3>;
@@ -94,4 +94,4 @@ TEST(VertexNumbering, KnowsWhenIdsDoNotFit) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::vertex_numbering_test

@@ -1,7 +1,7 @@
 #include "header_helpers.hpp"
 #include "volume/formats/other/run_lengths.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_amira_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -106,4 +106,4 @@ TEST(Amira, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_amira_test

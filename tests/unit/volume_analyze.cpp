@@ -2,7 +2,7 @@
 
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_analyze_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -134,4 +134,4 @@ TEST(Analyze, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_analyze_test

@@ -8,7 +8,7 @@
 #include "isoweave/mesh.hpp"
 #include "isoweave/pipeline.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_crossings_test {
 namespace {
 
 template <class T>
@@ -106,4 +106,4 @@ TEST(Crossings, OneValueHasNone) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_crossings_test

@@ -2,7 +2,7 @@
 
 #include "dicom_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_dicom_test {
 namespace {
 
 using namespace dicom_files;
@@ -461,4 +461,4 @@ TEST(Dicom, SurvivesCutsAndFlips) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_dicom_test

@@ -1,7 +1,7 @@
 // DICOM as it is found: stacks of frames without groups, data sets without magic, exports with folders in folders.
 #include "dicom_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_dicom_forms_test {
 namespace {
 
 using namespace dicom_files;
@@ -313,4 +313,4 @@ TEST(DicomBits, AboveThoseThatAreStoredAreNoted) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_dicom_forms_test

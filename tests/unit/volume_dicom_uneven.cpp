@@ -5,7 +5,7 @@
 #include "dicom_helpers.hpp"
 #include "volume/even_slices.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_dicom_uneven_test {
 namespace {
 
 using namespace dicom_files;
@@ -388,4 +388,4 @@ TEST(DicomScouts, AreNotGuessedWithoutAMajority) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_dicom_uneven_test

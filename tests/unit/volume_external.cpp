@@ -3,7 +3,7 @@
 
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_external_test {
 namespace {
 
 const std::string kBytes = stored(ramp<std::uint8_t>(2 * 2 * 2));
@@ -68,4 +68,4 @@ TEST(External, PairsOfNiftiAreRefusedFromBothSides) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_external_test

@@ -1,6 +1,6 @@
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_fits_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -93,4 +93,4 @@ TEST(Fits, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_fits_test

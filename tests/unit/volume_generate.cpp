@@ -7,7 +7,7 @@
 #include "volume/noise.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_generate_test {
 namespace {
 
 GenerateOptions options_of(const std::string& kind, std::array<std::int64_t, 3> dims,
@@ -255,4 +255,4 @@ TEST(GeneratedVolumes, PartsAreThoseOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_generate_test

@@ -4,7 +4,7 @@
 #include "header_helpers.hpp"
 #include "volume/half_floats.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_half_floats_test {
 namespace {
 
 // By the definition of IEEE 754.
@@ -120,4 +120,4 @@ TEST(HalfFloats, AreTheModeTwelveOfMrc) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_half_floats_test

@@ -4,7 +4,7 @@
 #include "volume/formats/chunked/lzf.hpp"
 #include "volume/formats/hdf5/hdf5_library.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_hdf5_test {
 namespace {
 
 TEST(Hdf5, LayoutsAndFilters) {
@@ -274,4 +274,4 @@ TEST(Hdf5, ChunksThatTheSurfaceMissesAreNotRead) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_hdf5_test

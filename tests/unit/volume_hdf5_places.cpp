@@ -3,7 +3,7 @@
 
 #include "hdf5_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_hdf5_places_test {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -275,4 +275,4 @@ TEST(Hdf5Places, Dream3dSamplesAreInTheMiddleOfCells) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_hdf5_places_test

@@ -7,7 +7,7 @@
 
 #include "volume/histogram_counter.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::volume_histogram_test {
 namespace {
 
 template <class T>
@@ -187,4 +187,4 @@ TEST(Otsu, SaysNothingAboutOneValue) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::volume_histogram_test

@@ -10,7 +10,7 @@
 
 #include "../surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_in_memory_test {
 namespace {
 
 VolumeInfo info_of(std::array<std::int64_t, 3> dims, SampleType type) {
@@ -89,4 +89,4 @@ TEST(VolumeInMemory, GivesTheSameSurface) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_in_memory_test

@@ -13,7 +13,7 @@
 #include "volume/crossed_bricks.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_index_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -327,4 +327,4 @@ TEST(Index, RowsOfRawFilesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_index_test

@@ -9,7 +9,7 @@
 #include "isoweave/error.hpp"
 #include "volume/formats/dicom/jpeg.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_jpeg_test {
 namespace {
 
 using namespace dicom_files;
@@ -419,4 +419,4 @@ TEST(Jpeg, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_jpeg_test

@@ -8,7 +8,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/label_names.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::volume_label_names_test {
 namespace {
 
 std::string text_of(const std::vector<LabelName>& names) {
@@ -127,4 +127,4 @@ TEST(LabelFileNames, AreDifferentFromEachOther) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::volume_label_names_test

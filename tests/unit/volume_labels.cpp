@@ -8,7 +8,7 @@
 #include "label_maps.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_labels_test {
 namespace {
 
 std::unique_ptr<LabelMap> small_map() {
@@ -203,4 +203,4 @@ TEST(LabelMaps, AreToldByTheirValues) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_labels_test

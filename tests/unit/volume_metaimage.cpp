@@ -1,6 +1,6 @@
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_metaimage_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -235,4 +235,4 @@ TEST(MetaImage, SurvivesRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_metaimage_test

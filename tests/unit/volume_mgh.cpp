@@ -2,7 +2,7 @@
 
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_mgh_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -121,4 +121,4 @@ TEST(Mgh, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_mgh_test

@@ -3,7 +3,7 @@
 
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_mrc_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -208,4 +208,4 @@ TEST(Mrc, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_mrc_test

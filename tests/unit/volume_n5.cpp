@@ -1,7 +1,7 @@
 // N5: folders written by hand.
 #include "zarr_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_n5_test {
 namespace {
 
 using namespace zarr_files;
@@ -113,4 +113,4 @@ TEST(N5, LevelsAndTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_n5_test

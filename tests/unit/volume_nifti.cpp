@@ -2,7 +2,7 @@
 
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_nifti_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -389,4 +389,4 @@ TEST(Nifti, RefusesSpacingThatCannotBeComputedWith) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_nifti_test

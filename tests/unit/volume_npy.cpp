@@ -1,6 +1,6 @@
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_npy_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);  // f[k][j][i] of 5 x 2 x 3
@@ -129,4 +129,4 @@ TEST(Npy, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_npy_test

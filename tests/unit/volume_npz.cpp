@@ -2,7 +2,7 @@
 #include "foreign_meshes.hpp"
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_npz_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -109,4 +109,4 @@ TEST(Npz, DamageIsFound) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_npz_test

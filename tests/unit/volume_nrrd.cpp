@@ -2,7 +2,7 @@
 
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_nrrd_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -476,4 +476,4 @@ TEST(Nrrd, SurvivesRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_nrrd_test

@@ -1,7 +1,7 @@
 // What a folder of Zarr or N5 holds, which part of it is read, and where its samples lie.
 #include "zarr_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_ome_zarr_test {
 namespace {
 
 using namespace zarr_files;
@@ -215,4 +215,4 @@ TEST(ZarrFolder, AxesWithoutNames) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_ome_zarr_test

@@ -8,7 +8,7 @@
 #include "header_helpers.hpp"
 #include "volume/packed_file.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_packed_test {
 namespace {
 
 const std::vector<std::int16_t> kSamples = ramp<std::int16_t>(3 * 2 * 5);
@@ -257,4 +257,4 @@ TEST(Unread, AreToldWithTheWayRound) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_packed_test

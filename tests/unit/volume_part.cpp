@@ -9,7 +9,7 @@
 #include "isoweave/volume.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_part_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -26,7 +26,7 @@ std::unique_ptr<MemoryVolume> numbered(std::array<std::int64_t, 3> dims) {
 }
 
 template <class T = float>
-std::vector<T> read_all(SliceSource& volume, std::int64_t at_a_time) {
+std::vector<T> samples_of(SliceSource& volume, std::int64_t at_a_time) {
   const VolumeInfo& info = volume.info();
   std::vector<T> samples(static_cast<std::size_t>(info.slice_samples() * info.dims[2]));
   const auto bytes = std::as_writable_bytes(std::span(samples));
@@ -42,7 +42,7 @@ TEST(CroppedVolume, IsWhereItWas) {
   EXPECT_EQ(part->info().dims, (std::array<std::int64_t, 3>{2, 2, 3}));
   EXPECT_EQ(part->info().geometry.origin, (std::array<double, 3>{10, 20.5, 36}));
   EXPECT_EQ(part->info().geometry.spacing, (std::array<double, 3>{0.5, 2, 3}));
-  EXPECT_EQ(read_all(*part, 2), (std::vector<float>{25, 26, 29, 30, 37, 38, 41, 42, 49, 50, 53, 54}));
+  EXPECT_EQ(samples_of(*part, 2), (std::vector<float>{25, 26, 29, 30, 37, 38, 41, 42, 49, 50, 53, 54}));
 }
 
 TEST(CroppedVolume, SlicesThatAreSkippedAreSkippedInTheWhole) {
@@ -77,13 +77,13 @@ TEST(CroppedVolume, PartsOfLongRowsAreThoseOfTheWhole) {
       expected.insert(expected.end(), row + 12'345, row + 12'745);
     }
   }
-  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(open(false), region), 2), expected);
-  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(open(true), region), 3), expected);
+  EXPECT_EQ(samples_of<std::uint16_t>(*crop_volume(open(false), region), 2), expected);
+  EXPECT_EQ(samples_of<std::uint16_t>(*crop_volume(open(true), region), 3), expected);
   auto part = crop_volume(open(true), {{12'000, 0, 1}, {kLong, 3, 4}});
-  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(std::move(part), {{345, 1, 0}, {745, 3, 3}}), 1), expected);
+  EXPECT_EQ(samples_of<std::uint16_t>(*crop_volume(std::move(part), {{345, 1, 0}, {745, 3, 3}}), 1), expected);
   const auto info = open(false)->info();
   auto held = volume_in_memory(info, std::as_bytes(std::span(samples)));
-  EXPECT_EQ(read_all<std::uint16_t>(*crop_volume(std::move(held), region), 2), expected);
+  EXPECT_EQ(samples_of<std::uint16_t>(*crop_volume(std::move(held), region), 2), expected);
 }
 
 TEST(CroppedVolume, ARegionOutsideIsRefused) {
@@ -101,19 +101,19 @@ TEST(SmallerVolume, SamplesAreMeansInTheMiddleOfTheirBlocks) {
   EXPECT_EQ(smaller->info().geometry.spacing, (std::array<double, 3>{1, 4, 6}));
   EXPECT_EQ(smaller->info().geometry.origin, (std::array<double, 3>{11, 20.25, 31.5}));
   // Blocks of 2 x 2 x 2, of 2 x 1 x 2 at the upper end of the second axis, and so on.
-  EXPECT_EQ(read_all(*smaller, 1), (std::vector<float>{8.5F, 10.5F, 14.5F, 16.5F, 26.5F, 28.5F, 32.5F, 34.5F}));
+  EXPECT_EQ(samples_of(*smaller, 1), (std::vector<float>{8.5F, 10.5F, 14.5F, 16.5F, 26.5F, 28.5F, 32.5F, 34.5F}));
 }
 
 TEST(SmallerVolume, AStepOfOneChangesNothingButTheType) {
   const auto same = downsample_volume(numbered({3, 2, 2}), 1);
   EXPECT_EQ(same->info().geometry.origin, (std::array<double, 3>{10, 20, 30}));
-  EXPECT_EQ(read_all(*same, 2), read_all(*numbered({3, 2, 2}), 2));
+  EXPECT_EQ(samples_of(*same, 2), samples_of(*numbered({3, 2, 2}), 2));
 }
 
 TEST(SmallerVolume, NaNDoesNotCount) {
   auto volume = std::make_unique<MemoryVolume>(std::array<std::int64_t, 3>{4, 2, 1},
                                                std::vector<float>{1, kNaN, kNaN, kNaN, 3, 5, kNaN, kNaN});
-  const std::vector<float> means = read_all(*downsample_volume(std::move(volume), 2), 1);
+  const std::vector<float> means = samples_of(*downsample_volume(std::move(volume), 2), 1);
   EXPECT_EQ(means[0], 3);
   EXPECT_TRUE(std::isnan(means[1]));
 }
@@ -130,9 +130,9 @@ TEST(SmallerVolume, MeansAreNotRounded) {
     bool between = false;
     const auto look = [&](double mean) { between = between || mean != std::floor(mean); };
     if (wide) {
-      for (const double mean : read_all<double>(*smaller, 1)) look(mean);
+      for (const double mean : samples_of<double>(*smaller, 1)) look(mean);
     } else {
-      for (const float mean : read_all<float>(*smaller, 1)) look(mean);
+      for (const float mean : samples_of<float>(*smaller, 1)) look(mean);
     }
     EXPECT_TRUE(between);
   }
@@ -145,7 +145,7 @@ std::vector<std::uint16_t> thinned(const std::array<std::int64_t, 3>& dims, std:
   info.dims = dims;
   info.type = SampleType::kUint16;
   const auto smaller = thin_label_map(volume_in_memory(info, std::as_bytes(std::span(samples))), step);
-  return read_all<std::uint16_t>(*smaller, slices);
+  return samples_of<std::uint16_t>(*smaller, slices);
 }
 
 TEST(ThinnedLabels, AreTheMostFrequentOfEachBlock) {
@@ -191,4 +191,4 @@ TEST(CroppedVolume, GivesThePartOfTheSurface) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_part_test

@@ -1,6 +1,6 @@
 #include "png_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_png_test {
 namespace {
 
 using namespace png_files;
@@ -62,4 +62,4 @@ TEST(Png, SurvivesCutsAndFlips) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_png_test

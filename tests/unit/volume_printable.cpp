@@ -8,7 +8,7 @@
 #include "files/quoted.hpp"
 #include "isoweave/printable.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::volume_printable_test {
 namespace {
 
 TEST(Printable, KeepsTextAndReplacesWhatHidesOrDrives) {
@@ -53,4 +53,4 @@ TEST(Printable, LongTextIsCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::volume_printable_test

@@ -1,7 +1,7 @@
 #include "pvm_helpers.hpp"
 #include "volume/formats/other/dds_stream.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_pvm_test {
 namespace {
 
 using namespace pvm_files;
@@ -135,4 +135,4 @@ TEST(Pvm, SurvivesRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_pvm_test

@@ -5,7 +5,7 @@
 
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_raw_test {
 namespace {
 
 TEST(SampleTypes, NamesAndSizesBelongTogether) {
@@ -296,4 +296,4 @@ TEST(OpenVolume, AppliesOverrides) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_raw_test

@@ -7,7 +7,7 @@
 #include "volume/samples.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_real_files_test {
 namespace {
 
 const std::filesystem::path kData = ISOWEAVE_DATA_DIR;
@@ -379,4 +379,4 @@ TEST_F(RealFiles, OmeZarrExamples) {
 TEST_F(RealFiles, PvmInDds) { expect_described_sum("dti_b0_pvm", "DTI-B0.pvm"); }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_real_files_test

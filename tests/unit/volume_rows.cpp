@@ -5,7 +5,7 @@
 #include "volume/row_source.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_rows_test {
 namespace {
 
 using Open = std::function<std::unique_ptr<SliceSource>()>;
@@ -119,4 +119,4 @@ TEST(HeldBytes, AreToldByVolumesThatAreMadeOfOthers) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_rows_test

@@ -3,7 +3,7 @@
 
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_segmentation_test {
 namespace {
 
 // Two layers of 3 x 2 x 2 samples, interleaved, as Slicer keeps segments that overlap.
@@ -72,4 +72,4 @@ TEST(Segmentation, WhatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_segmentation_test

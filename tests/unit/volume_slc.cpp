@@ -1,6 +1,6 @@
 #include "header_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_slc_test {
 namespace {
 
 const std::string kHeader = "11111\n4 3 2 8\n0.5 0.75 2\n1 0 0\n";
@@ -66,4 +66,4 @@ TEST(Slc, SurvivesTruncationAndRandomChanges) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_slc_test

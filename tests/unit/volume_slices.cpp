@@ -4,7 +4,7 @@
 #include "volume/formats/images/slice_files.hpp"
 #include "volume/formats/images/slice_numbers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_slices_test {
 namespace {
 
 const std::vector<std::uint16_t> kSamples = ramp<std::uint16_t>(5 * 4 * 12);
@@ -236,4 +236,4 @@ TEST(Tiff, TilesThatTheSurfaceMissesAreNotDecoded) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_slices_test

@@ -10,7 +10,7 @@
 #include "isoweave/error.hpp"
 #include "surfaces.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_smoothed_mask_test {
 namespace {
 
 std::unique_ptr<SliceSource> generated(const std::string& kind, std::array<std::int64_t, 3> dims) {
@@ -288,4 +288,4 @@ TEST(SmoothSurface, IsTheSameForAnySlabThreadsAndSchedule) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_smoothed_mask_test

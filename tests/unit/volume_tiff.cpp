@@ -5,7 +5,7 @@
 
 #include "tiff_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_tiff_test {
 namespace {
 
 const std::vector<std::uint16_t> kSamples = ramp<std::uint16_t>(5 * 4 * 6);
@@ -487,4 +487,4 @@ TEST(Tiff, SurvivesCutsAndFlips) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_tiff_test

@@ -3,7 +3,7 @@
 #include "isoweave/pipeline.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_units_test {
 namespace {
 
 std::string found(const std::string& text) {
@@ -125,4 +125,4 @@ TEST(BoxDiagonal, OfVolumesAndMeshes) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_units_test

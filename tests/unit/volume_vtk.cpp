@@ -1,6 +1,6 @@
 #include "vti_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_vtk_test {
 namespace {
 
 using namespace vti_files;
@@ -220,4 +220,4 @@ TEST(VtkLegacy, SurvivesCutsAndFlips) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_vtk_test

@@ -1,7 +1,7 @@
 // Rectilinear grids of VTK, in XML and in legacy files: even ones as they are, uneven slices as those of DICOM.
 #include "vti_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_vtk_grids_test {
 namespace {
 
 using namespace vti_files;
@@ -163,4 +163,4 @@ TEST(VtkGrids, DamageIsSafe) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_vtk_grids_test

@@ -3,7 +3,7 @@
 
 #include "vti_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_vtk_variants_test {
 namespace {
 
 using namespace vti_files;
@@ -303,4 +303,4 @@ TEST(VtkVariants, SurviveCutsAndFlips) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_vtk_variants_test

@@ -2,7 +2,7 @@
 #include "isoweave/generate.hpp"
 #include "volume_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_write_test {
 namespace {
 
 // Slices from memory under any description.
@@ -129,4 +129,4 @@ TEST(WriteVolume, NamesTheTargetThatCannotBeCreated) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_write_test

@@ -6,7 +6,7 @@
 #include "volume/row_source.hpp"
 #include "zarr_helpers.hpp"
 
-namespace isoweave::testing {
+namespace isoweave::testing::volume_zarr_test {
 namespace {
 
 using namespace zarr_files;
@@ -395,4 +395,4 @@ TEST(Zarr, ABoxHoldsItsOwnBandAlone) {
 }
 
 }  // namespace
-}  // namespace isoweave::testing
+}  // namespace isoweave::testing::volume_zarr_test

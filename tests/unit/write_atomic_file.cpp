@@ -15,7 +15,7 @@
 #include "isoweave/output_file.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_atomic_file_test {
 namespace {
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
@@ -320,4 +320,4 @@ TEST(AtomicFile, AMeshCannotBeFinishedAfterAFailedWrite) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_atomic_file_test

@@ -12,7 +12,7 @@
 #include "mesh/write/mesh_format.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_test {
 namespace {
 
 const std::vector<Point> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -136,4 +136,4 @@ TEST(MeshFiles, SizesAreKnownBeforehandAndLimitsToo) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_test

@@ -19,7 +19,7 @@
 #include "mesh/write/mesh_format.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_formats_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -467,4 +467,4 @@ TEST(MeshStream, FailuresAreErrors) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_formats_test

@@ -5,7 +5,7 @@
 
 #include "isoweave/mesh.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_in_memory_test {
 namespace {
 
 template <class T>
@@ -95,4 +95,4 @@ TEST(MeshInMemory, OtherSinksHaveNoRoom) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_in_memory_test

@@ -11,7 +11,7 @@
 #include "isoweave/mesh.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_levels_test {
 namespace {
 
 using glb_files::append;
@@ -138,4 +138,4 @@ TEST(WriteLevels, WrongUseIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_levels_test

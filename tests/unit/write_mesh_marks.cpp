@@ -13,7 +13,7 @@
 #include "mesh/write/mesh_file_sink.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_marks_test {
 namespace {
 
 // A sheet in two pieces.
@@ -153,4 +153,4 @@ TEST(MeshMarks, OthersAreRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_marks_test

@@ -17,7 +17,7 @@
 #include <meshoptimizer.h>
 #endif
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_packed_test {
 namespace {
 
 using namespace packed;
@@ -199,4 +199,4 @@ TEST(WritePacked, ABuildWithoutTheLibrarySaysSo) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_packed_test

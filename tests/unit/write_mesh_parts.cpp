@@ -16,7 +16,7 @@
 #include "isoweave/mesh.hpp"
 #include "meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_mesh_parts_test {
 namespace {
 
 using glb_files::append;
@@ -199,4 +199,4 @@ TEST(WriteParts, WrongUseIsRefused) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_mesh_parts_test

@@ -14,7 +14,7 @@
 #include "octree_mesh.hpp"
 #include "packed_meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_objects_test {
 namespace {
 
 using namespace packed;
@@ -141,5 +141,5 @@ TEST(WriteObjects, MayBeNone) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_objects_test
 #endif

@@ -15,7 +15,7 @@
 #include "mesh/write/triangle_sorter.hpp"
 #include "mesh/write/waiting_vertices.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_octree_test {
 namespace {
 
 using Corners = std::array<NodePlace, 3>;
@@ -218,4 +218,4 @@ TEST(OctreeManifest, NodesThatAreMissingAreThereWithoutAFragment) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_octree_test

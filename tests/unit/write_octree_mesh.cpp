@@ -18,7 +18,7 @@
 #include "octree_mesh.hpp"
 #include "packed_meshes.hpp"
 
-namespace isoweave {
+namespace isoweave::testing::write_octree_mesh_test {
 namespace {
 
 using namespace packed;
@@ -230,5 +230,5 @@ TEST(WriteOctreeMesh, NothingIsLeftOfOneThatIsNotFinished) {
 }
 
 }  // namespace
-}  // namespace isoweave
+}  // namespace isoweave::testing::write_octree_mesh_test
 #endif
