@@ -52,10 +52,11 @@ class SpreadVertices {
     for (std::size_t v = 0; v < mesh.vertices.size(); v += step) points_.push_back(mesh.vertices[v]);
     for (std::size_t axis = 0; axis < 3; ++axis) find_bounds(axis);
     std::vector<std::pair<std::uint32_t, std::size_t>> order;
+    order.reserve(points_.size());
     for (const Point& p : points_) order.emplace_back(place_on_curve(p), order.size());
     std::ranges::sort(order);
-    std::vector<Point> sorted;
-    for (const auto& [place, n] : order) sorted.push_back(points_[n]);
+    std::vector<Point> sorted(points_.size());
+    std::ranges::transform(order, sorted.begin(), [&](const auto& place) { return points_[place.second]; });
     points_ = std::move(sorted);
   }
 
@@ -65,8 +66,8 @@ class SpreadVertices {
   // The ball around a point that holds a share of the points.
   SampleBall ball_around(const Point& centre, double share) const {
     SampleBall ball{centre};
-    std::vector<double> squares;
-    for (const Point& p : points_) squares.push_back(ball.squared_distance(p));
+    std::vector<double> squares(points_.size());
+    std::ranges::transform(points_, squares.begin(), [&](const Point& p) { return ball.squared_distance(p); });
     const auto found = squares.begin() + static_cast<std::ptrdiff_t>(rank(share));
     std::nth_element(squares.begin(), found, squares.end());
     ball.squared_radius = *found;
@@ -116,6 +117,8 @@ TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>&
   std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   TriangleMesh part;
+  part.vertices.reserve(vertices.size());
+  part.triangles.reserve(triangles.size());
   for (const std::uint32_t v : vertices) part.vertices.push_back(mesh.vertices[v]);
   for (const std::uint32_t t : triangles) {
     for (std::uint32_t& v : part.triangles.emplace_back(mesh.triangles[t])) {
