@@ -139,7 +139,7 @@ double most_shape_error(const TriangleMesh& mesh);
 // @throws OverMemory for a mesh of 2^32 triangles or more; CannotWrite from the sink; Interrupted
 // @cost Memory beside the mesh: the undecided zone, where triangles that share a vertex are near in the list; else a
 //   zone of the whole mesh. To a number of triangles, all of the mesh that is left is held until the number is met, and
-//   a large mesh is sampled first, for RunControl::head_start.
+//   a large mesh is sampled first, unless RunControl::head_start is given.
 // @determinism The mesh does not depend on threads, schedule, pieces or head start.
 MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const SimplifyOptions& options,
                          const RunControl& control = {});
