@@ -239,11 +239,10 @@ HeadStart head_start_of(const SliceSource& volume, const MeshOptions& options, c
     error = forecast.head_start;
     counts = counts || (control.memory > 0 && has_to_count(forecast, control));
   }
-  const double voxel = mean_voxel(info.geometry);
-  if (!counts) return {head_start_cost(error.value_or(0), voxel * voxel)};
+  if (!counts) return {head_start_cost(error.value_or(0), info)};
   // Counted is up to an error that is expected to leave fewer triangles. If it does not, the next one is larger.
-  const double beyond = error.value_or(0) > 0 ? 2 * *error : voxel / 4;
-  return HeadStart::counting(head_start_cost(beyond, voxel * voxel));
+  const double beyond = error.value_or(0) > 0 ? 2 * *error : mean_voxel(info.geometry) / 4;
+  return HeadStart::counting(head_start_cost(beyond, info));
 }
 
 // Makes a run, again if need be. The sinks have got nothing yet.

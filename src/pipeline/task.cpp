@@ -193,6 +193,11 @@ CostBits head_start_cost(double error, double a0) {
   return retire_cost(error, a0);
 }
 
+CostBits head_start_cost(double error, const VolumeInfo& volume) {
+  const double voxel = mean_voxel(volume.geometry);
+  return head_start_cost(error, voxel * voxel);
+}
+
 void require_different(std::span<MeshSink* const> sinks) {
   std::set<const MeshSink*> seen;
   for (const MeshSink* sink : sinks) {

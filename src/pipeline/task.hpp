@@ -91,6 +91,7 @@ bool can_repeat(const SliceSource& volume, const MeshOptions& options, const Run
 
 // RunControl::head_start as a cost, in units of a0. Throws std::invalid_argument for one that is negative or no number.
 CostBits head_start_cost(double error, double a0);
+CostBits head_start_cost(double error, const VolumeInfo& volume);
 
 // Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
 void require_different(std::span<MeshSink* const> sinks);

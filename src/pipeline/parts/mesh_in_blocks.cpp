@@ -21,7 +21,6 @@
 #include "pipeline/run_identity.hpp"
 #include "pipeline/run_report.hpp"
 #include "system/process_memory.hpp"
-#include "volume/axes.hpp"
 
 namespace isoweave {
 namespace {
@@ -58,8 +57,7 @@ CostBits head_start_of(const VolumeOpener& open, const MeshOptions& options, con
     uncapped.memory = 0;
     error = forecast_mesh(*volume, options, uncapped).head_start;
   }
-  const double voxel = mean_voxel(volume->info().geometry);
-  return head_start_cost(*error, voxel * voxel);
+  return head_start_cost(*error, volume->info());
 }
 
 class BlocksRun {
