@@ -85,14 +85,14 @@ Outcome parse_message(const std::string& text, int status) {
 
 }  // namespace
 
-void have_host_provide_memory() {
-  constexpr std::size_t kBytes = std::size_t{2} << 30;
+void have_host_provide_memory(std::int64_t bytes) {
   constexpr std::size_t kPage = 4096;
-  void* const memory = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const std::size_t size = static_cast<std::size_t>(bytes);
+  void* const memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) fail("mmap");
-  madvise(memory, kBytes, MADV_HUGEPAGE);
-  for (std::size_t at = 0; at < kBytes; at += kPage) static_cast<volatile char*>(memory)[at] = 1;
-  munmap(memory, kBytes);
+  madvise(memory, size, MADV_HUGEPAGE);
+  for (std::size_t at = 0; at < size; at += kPage) static_cast<volatile char*>(memory)[at] = 1;
+  munmap(memory, size);
 }
 
 Outcome run_in_child(const std::function<Json()>& work, double limit_seconds) {

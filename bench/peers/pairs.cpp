@@ -16,6 +16,10 @@ namespace {
 // Counts nearer than this to the one asked for are as good as equal.
 constexpr double kCountTolerance = 0.005;
 constexpr int kMostTries = 24;
+constexpr double kCloseTimes = 5;    // a peer that takes fewer times our time is close, and noise matters
+constexpr int kLeastOfClose = 5;     // rounds of such a pair
+constexpr double kMoreOfClose = 10;  // times as long as it takes others to have had enough
+constexpr std::int64_t kMemoryOfFirstRun = std::int64_t{2} << 30;  // no peak of the pair is known yet
 constexpr double kFinestStep = 1e-3;  // of the logarithm of a length: what changes the count by a jump is found by then
 
 // From here on, the peak is that of what follows.
@@ -68,26 +72,40 @@ struct Series {
     return all;
   }
 
+  std::int64_t peak_bytes() const {
+    std::int64_t peak = 0;
+    for (const Json& run : runs) peak = std::max(peak, run["peak_bytes"].get<std::int64_t>());
+    return peak;
+  }
+
   // The first run with the median time and the largest peak.
   Json summary(const Json& quality) const {
     if (!failure.empty()) return {{"failure", failure}};
     Json json = runs.front();
     if (!quality.is_null()) json["quality"] = quality;
     json["seconds"] = median(seconds());
-    for (const Json& run : runs) {
-      if (run["peak_bytes"] > json["peak_bytes"]) json["peak_bytes"] = run["peak_bytes"];
-    }
+    json["peak_bytes"] = peak_bytes();
     return json;
   }
 };
 
+// The larger peak of two contestants.
+std::int64_t memory_of_pair(const std::map<int, Series>& ours, const std::map<int, Series>& peer) {
+  std::int64_t peak = 0;
+  for (const auto* all : {&ours, &peer}) {
+    for (const auto& [threads, series] : *all) peak = std::max(peak, series.peak_bytes());
+  }
+  return peak == 0 ? kMemoryOfFirstRun : peak;
+}
+
 // Runs once more unless it failed before.
-void repeat(Entry& entry, int threads, const Settings& settings, const FullSurface* full, Series& series) {
+void repeat(Entry& entry, int threads, const Settings& settings, const FullSurface* full, std::int64_t memory,
+            Series& series) {
   if (!series.failure.empty()) return;
   Goal goal = entry.goal;
   goal.threads = threads;
   const FullSurface* const reference = entry.quality.is_null() ? full : nullptr;
-  have_host_provide_memory();
+  have_host_provide_memory(memory);
   Outcome outcome = run_in_child([&] { return measure(entry.runner, goal, reference); }, settings.limit_seconds);
   series.failure = std::move(outcome.failure);
   if (!series.failure.empty()) return;
@@ -164,15 +182,19 @@ std::string steer(const Runner& runner, double voxel, double limit_seconds, Goal
 
 std::vector<Json> compare(Entry& ours, Entry& peer, const Settings& settings, const FullSurface* full) {
   std::map<int, Series> our_series, peer_series;
-  const auto wants_more = [&] {
-    return !any_failed(peer_series) && total_seconds(our_series) + total_seconds(peer_series) < settings.enough_seconds;
+  const auto wants_more = [&](int rounds) {
+    if (any_failed(peer_series)) return false;
+    const double ours_took = total_seconds(our_series), peer_took = total_seconds(peer_series);
+    const bool is_close = peer_took < kCloseTimes * ours_took && rounds < kLeastOfClose;
+    return ours_took + peer_took < (is_close ? kMoreOfClose : 1) * settings.enough_seconds;
   };
-  for (int round = 0; round < settings.most_rounds && wants_more(); ++round) {
+  for (int round = 0; round < settings.most_rounds && wants_more(round); ++round) {
     for (const int threads : settings.threads) {
-      repeat(ours, threads, settings, full, our_series[threads]);
+      const std::int64_t memory = memory_of_pair(our_series, peer_series);
+      repeat(ours, threads, settings, full, memory, our_series[threads]);
       if (!peer.runner.parallel && threads != settings.threads.front()) continue;
       const int peer_threads = peer.runner.parallel ? threads : 1;
-      repeat(peer, peer_threads, settings, full, peer_series[peer_threads]);
+      repeat(peer, peer_threads, settings, full, memory, peer_series[peer_threads]);
     }
   }
   std::vector<Json> rows;

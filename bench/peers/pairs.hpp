@@ -31,7 +31,9 @@ Runner bind(const Contestant<Input>& contestant, const Input& input) {
 struct Settings {
   std::vector<int> threads{1};
   int most_rounds = 9;
-  double enough_seconds = 6;  // a pair whose runs have taken this long has no further round
+  // A pair whose runs have taken this long has no further round. One of which the peer takes about as long as isoweave
+  // has five rounds first, unless those take ten times as long as this.
+  double enough_seconds = 6;
   double limit_seconds = 900;
   std::string only;  // part of the names of the peers to compare with; empty: all
 };
