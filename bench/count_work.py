@@ -22,7 +22,7 @@ DECISIONS = r"LocalMinima::Worker::serve_all"
 
 # Steps of a run: the functions that they are, with all that these call, and those of them that are steps of their own.
 STEPS = [
-    ("pieces of the mesh", [r"MeshSurface::MeshSurface", r"MeshSurface::take", r"mean_triangle_area"], []),
+    ("pieces of the mesh", [r"MeshSurface::MeshSurface", r"MeshSurface::make", r"mean_triangle_area"], []),
     ("half-edges, first quadrics of closed fans", [r"Zone::append"], [QUADRICS]),
     ("other first quadrics", [QUADRICS], []),
     ("first keys", [KEYS], []),
