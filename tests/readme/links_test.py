@@ -3,6 +3,7 @@
 
   tests/readme/links_test.py
 """
+import collections
 import pathlib
 import re
 import unittest
@@ -27,11 +28,10 @@ def anchor(heading):
 
 def anchors(text):
     """Those of all headings; one that comes again has a number behind it."""
-    found = []
-    for heading in HEADING.findall(text):
-        name = anchor(heading)
-        again = sum(re.fullmatch(re.escape(name) + r"(-\d+)?", each) is not None for each in found)
-        found.append(f"{name}-{again}" if again else name)
+    found, seen = [], collections.Counter()
+    for name in map(anchor, HEADING.findall(text)):
+        found.append(f"{name}-{seen[name]}" if seen[name] else name)
+        seen[name] += 1
     return found
 
 
