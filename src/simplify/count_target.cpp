@@ -10,8 +10,8 @@
 namespace isoweave {
 namespace {
 
-constexpr std::int64_t kCountBlock = 8192;
-constexpr std::uint64_t kInOrder = 4000;  // the last triangles, or a small part of all, are left to one queue
+constexpr std::int64_t kCountBlock = 32768;  // triangles, at least: every block clears a histogram
+constexpr std::uint64_t kInOrder = 4000;     // the last triangles, or a small part of all, are left to one queue
 constexpr std::uint64_t kPartInOrder = 256;
 constexpr std::uint64_t kShown = 8;  // edges that the queue is shown first, for each of these triangles
 
@@ -29,14 +29,16 @@ template <class Add>
 CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add& add) {
   CostHistogram sum;
   std::mutex merging;
-  executor.for_blocks(zone.triangle_count(), 16 * kCountBlock, [&](std::int64_t begin, std::int64_t end) {
-    CostHistogram own;
-    for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
-      if (zone.alive(half_edge(t, 0))) add(t, own);
-    }
-    const std::lock_guard guard(merging);
-    sum.merge(own);
-  });
+  const std::int64_t count = zone.triangle_count();
+  executor.for_blocks(count, std::max(kCountBlock, count / executor.threads() + 1),
+                      [&](std::int64_t begin, std::int64_t end) {
+                        CostHistogram own;
+                        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t) {
+                          if (zone.alive(half_edge(t, 0))) add(t, own);
+                        }
+                        const std::lock_guard guard(merging);
+                        sum.merge(own);
+                      });
   return sum;
 }
 
@@ -101,24 +103,27 @@ HeadStart CountTarget::next_head_start() const {
 }
 
 void CountTarget::finish() {
-  simplifier_.close_gaps();
+  simplifier_.close_gaps(2);  // what is left leaves soon
   const std::uint64_t in_order = std::max(kInOrder, target_ / kPartInOrder);
+  CostHistogram edges = costs_of_edges();
   while (simplifier_.triangles() > target_ + in_order) {
     const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
-    const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each);
+    const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each, edges);
     if (limit <= simplifier_.zone().limit) break;
     raise_limit(limit);
-    simplifier_.close_gaps(2);  // what is left leaves soon
+    simplifier_.close_gaps(2);
+    edges = costs_of_edges();
   }
-  decide_last(kShown * in_order);
+  decide_last(kShown * in_order, edges);
   simplifier_.zone().retire_all();
 }
 
-// Decides the last edges in order. The queue is shown so many of them, which are likely to do, then more.
-void CountTarget::decide_last(std::uint64_t edges) {
+// Decides the last edges in order, of those with such costs. The queue is shown so many of them, which are likely to
+// do, then more.
+void CountTarget::decide_last(std::uint64_t shown, const CostHistogram& edges) {
   Zone& zone = simplifier_.zone();
-  for (; simplifier_.triangles() > target_; edges *= 8) {
-    const CostBits limit = limit_within(edges);
+  for (; simplifier_.triangles() > target_; shown *= 8) {
+    const CostBits limit = limit_within(shown, edges);
     zone.limit = limit > zone.limit ? limit : zone.options.retire;
     simplifier_.decide_in_order(target_);
     if (zone.limit == zone.options.retire) return;
@@ -135,15 +140,18 @@ CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
   return std::min(histogram.highest_with_beyond(triangles - gone), zone.options.retire);
 }
 
-// The highest limit within which so many edges lie.
-CostBits CountTarget::limit_within(std::uint64_t edges) const {
+// The highest limit within which so many edges lie, of those with such costs.
+CostBits CountTarget::limit_within(std::uint64_t edges, const CostHistogram& costs) const {
+  return std::min(costs.highest_with_below(edges), simplifier_.zone().options.retire);
+}
+
+CostHistogram CountTarget::costs_of_edges() const {
   const Zone& zone = simplifier_.zone();
-  const CostHistogram histogram = histogram_of(zone, executor_, [&](Index t, CostHistogram& own) {
+  return histogram_of(zone, executor_, [&](Index t, CostHistogram& own) {
     for (Index h = half_edge(t, 0); h <= half_edge(t, 2); ++h) {
-      if (zone.represents_edge(h)) own.add(std::min(zone.cost(h), kRetiredCost));
+      own.add(std::min(zone.cost(h), kRetiredCost), zone.represents_edge(h) ? 1 : 0);  // no jump: half of them do
     }
   });
-  return std::min(histogram.highest_with_below(edges), zone.options.retire);
 }
 
 void CountTarget::raise_limit(CostBits limit) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "parallel/parallel.hpp"
+#include "simplify/cost_histogram.hpp"
 #include "simplify/simplifier.hpp"
 
 namespace isoweave {
@@ -61,9 +62,10 @@ class CountTarget {
 
  private:
   CostBits limit_that_leaves(std::uint64_t triangles) const;
-  CostBits limit_within(std::uint64_t edges) const;
+  CostBits limit_within(std::uint64_t edges, const CostHistogram& costs) const;
+  CostHistogram costs_of_edges() const;
   void raise_limit(CostBits limit);
-  void decide_last(std::uint64_t edges);
+  void decide_last(std::uint64_t shown, const CostHistogram& edges);
   bool is_counted() const { return head_start_.met != kUnknownCost; }
 
   Simplifier& simplifier_;

@@ -16,6 +16,7 @@
 #include "isoweave/pipeline.hpp"
 #include "meshes.hpp"
 #include "pipeline/forecast/mesh_head_start.hpp"
+#include "pipeline/forecast/mesh_samples.hpp"
 #include "pipeline/mesh_surface.hpp"
 #include "sanitized.hpp"
 #include "surfaces.hpp"
@@ -108,6 +109,32 @@ TEST(MeshHeadStarts, AreFoundInSamples) {
       EXPECT_GT(left, wanted) << kind << part;
       EXPECT_LT(left, 2 * wanted) << kind << part;
     }
+  }
+}
+
+// Where many sheets run through a ball, each has few triangles, and its border is near: few left of it tell nothing.
+TEST(MeshHeadStarts, SheetsNearEachOtherDoNotMislead) {
+  const TriangleMesh mesh = full_surface_of("shells", kSanitized ? 40 : 80);
+  for (const std::uint64_t part : {10U, 20U, 50U}) {
+    if (kSanitized && part != 20) continue;
+    const std::uint64_t wanted = mesh.triangles.size() / part;
+    SimplifyOptions to_error;
+    to_error.error = Length::units(head_start_of(mesh, to_number(wanted)));
+    EXPECT_GT(to_error.error.value, 0) << part;
+    EXPECT_GT(run(mesh, to_error, {}).triangles, wanted) << part;
+  }
+}
+
+TEST(MeshHeadStarts, SamplesCountTheEdgesWhereTheyAreCut) {
+  const TriangleMesh mesh = full_surface_of("gyroid", 56);
+  ASSERT_EQ(check_mesh(mesh).open_edges, 0U);
+  const MeshSamples samples(mesh, Executor(2));
+  ASSERT_GT(samples.count(), 1U);
+  for (std::size_t n = 0; n < samples.count(); ++n) {
+    const MeshSample sample = samples.cut(n);
+    const auto open = static_cast<double>(check_mesh(sample.mesh).open_edges);
+    EXPECT_GT(open, 0) << n;
+    EXPECT_NEAR(static_cast<double>(sample.cut_edges), open, 0.1 * open) << n;
   }
 }
 

@@ -1,9 +1,10 @@
 #include "pipeline/forecast/mesh_head_start.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "output/world.hpp"
 #include "pipeline/forecast/forecast_curve.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kLargeMesh = 50'000;  // triangles: simplifying fewer takes little longer than samples of them
 constexpr double kSampleError = 3;            // of samples, in SurfaceMeasure::side
-constexpr double kLeastLeft = 120;            // triangles of a sample: of fewer, too many lie on its border
+constexpr double kLeastLeft = 90;             // triangles of a sheet in a sample: of fewer, too many lie at its border
 constexpr double kSampleMargin = 1.1;         // samples mislead more than the tiles of a volume
 
 SimplifyTask task_of_samples(const SimplifyOptions& options, const SurfaceMeasure& measure, double error) {
@@ -33,21 +34,25 @@ SimplifyTask task_of_samples(const SimplifyOptions& options, const SurfaceMeasur
 struct SampleCounts {
   std::uint64_t all = 0, left = 0;
   CostHistogram removed;
+  std::uint64_t triangles = 0, cut_edges = 0;  // of the whole sample
 };
 
-SampleCounts simplify_sample(const TriangleMesh& sample, const SampleBall& ball, const SimplifyTask& task,
+SampleCounts simplify_sample(const MeshSample& sample, const SampleBall& ball, const SimplifyTask& task,
                              const RunControl& control) {
   SampleCounts counts;
-  if (sample.triangles.empty()) return counts;
+  const TriangleMesh& mesh = sample.mesh;
+  if (mesh.triangles.empty()) return counts;
+  counts.triangles = mesh.triangles.size();
+  counts.cut_edges = sample.cut_edges;
   const auto in_middle = [&](const Point& p) { return ball.has_in_middle(p); };
-  for (const auto& t : sample.triangles) counts.all += in_middle(sample.vertices[t[0]]) ? 1U : 0U;
+  for (const auto& t : mesh.triangles) counts.all += in_middle(mesh.vertices[t[0]]) ? 1U : 0U;
   const World world;
   const Executor alone(1);
   CountWhere left(in_middle);
   MeshSink* const sinks[] = {&left};
   HostBackEnd back_end(task, world, sinks, alone, control, control.stop.get());
   back_end.count_removed();
-  MeshSurface pieces(sample, alone, {.triangles = sample.triangles.size(), .exactly = true});
+  MeshSurface pieces(mesh, alone, {.triangles = mesh.triangles.size(), .exactly = true});
   MeshReport report;
   Loop loop(pieces, {}, &back_end, report);
   while (!loop.complete()) loop.step();
@@ -55,6 +60,32 @@ SampleCounts simplify_sample(const TriangleMesh& sample, const SampleBall& ball,
   counts.left = left.total;
   counts.removed = back_end.removed_by_key();
   return counts;
+}
+
+std::vector<SampleCounts> simplify_samples(const MeshSamples& samples, const SimplifyTask& task,
+                                           const Executor& executor, const RunControl& control) {
+  RunControl alone;
+  alone.threads = 1;
+  alone.measure = false;
+  alone.stop = control.stop;
+  std::vector<SampleCounts> counts(samples.count());
+  executor.for_each(static_cast<std::int64_t>(counts.size()), 1, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
+    counts[n] = simplify_sample(samples.cut(n), samples.ball(n), task, alone);
+  });
+  return counts;
+}
+
+// About the triangles of each sheet of the surface that runs through a sample, in the mean. A disc of n equilateral
+// triangles is cut at some sqrt(7.8 n) edges, as they zigzag around it.
+double triangles_of_sheet(std::span<const SampleCounts> samples) {
+  double triangles = 0, cut_edges = 0;
+  for (const SampleCounts& sample : samples) {
+    triangles += static_cast<double>(sample.triangles);
+    cut_edges += static_cast<double>(sample.cut_edges);
+  }
+  const double per_edge = triangles / std::max(cut_edges, 1.0);
+  return std::max(std::min(triangles / static_cast<double>(samples.size()), 7.8 * per_edge * per_edge), 1.0);
 }
 
 }  // namespace
@@ -65,21 +96,12 @@ double mesh_head_start(const TriangleMesh& mesh, const SimplifyOptions& options,
   const double most = std::min(kSampleError * measure.side, error_of(options, measure.side));
   const SimplifyTask task = task_of_samples(options, measure, most);
   if (!task.needed) return 0;
-  RunControl alone;
-  alone.threads = 1;
-  alone.measure = false;
-  alone.stop = control.stop;
-  const MeshSamples samples(mesh, executor);
-  std::array<SampleCounts, MeshSamples::kCount> counts;
-  executor.for_each(MeshSamples::kCount, 1, [&](std::int64_t i) {
-    const auto n = static_cast<std::size_t>(i);
-    counts[n] = simplify_sample(samples.cut(n), samples.ball(n), task, alone);
-  });
+  const std::vector<SampleCounts> samples = simplify_samples(MeshSamples(mesh, executor), task, executor, control);
   ForecastCurve curve(measure.side, most);
-  for (const SampleCounts& each : counts) curve.add(each.all, each.left, each.removed);
+  for (const SampleCounts& sample : samples) curve.add(sample.all, sample.left, sample.removed);
   const auto all = static_cast<double>(mesh.triangles.size());
   const double wanted = kSampleMargin * static_cast<double>(options.triangles);
-  return curve.head_start(std::max(wanted, all * kLeastLeft / samples.triangles()), all);
+  return curve.head_start(std::max(wanted, all * kLeastLeft / triangles_of_sheet(samples)), all);
 }
 
 }  // namespace isoweave

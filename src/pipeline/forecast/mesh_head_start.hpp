@@ -10,8 +10,8 @@
 namespace isoweave {
 
 // An error that is expected to leave clearly more triangles than the number of the options; 0: none is known, as of a
-// small mesh. Takes the time of simplifying a twentieth of a large mesh. `measure` is that of the mesh, whose triangles
-// have been checked. Of the control `stop` counts.
+// small mesh. Takes a tenth of the time of simplifying a small mesh, a twentieth of that of a large one. `measure` is
+// that of the mesh, whose triangles have been checked. Of the control `stop` counts.
 double mesh_head_start(const TriangleMesh& mesh, const SimplifyOptions& options, const SurfaceMeasure& measure,
                        const Executor& executor, const RunControl& control);
 

@@ -9,17 +9,26 @@
 namespace isoweave {
 namespace {
 
-constexpr double kSampledTriangles = 0.03;                          // of the triangles, in all samples
+constexpr double kSampledTriangles = 0.02;                          // of the triangles, in all samples
+constexpr double kMostOfMesh = 0.05;                                // where samples would be too small
 constexpr double kLeastTriangles = 1'200, kMostTriangles = 50'000;  // of one sample
-constexpr double kTooMany = 4;                                      // times as many triangles as a sample should have
-constexpr std::size_t kMeasured = 1 << 15;  // vertices whose distances tell how large a sample is
+constexpr double kLeastSamples = 6;
+constexpr double kTooMany = 4;                                   // times as many triangles as a sample should have
+constexpr double kPointsInBall = 48;                             // vertices that tell how large a ball is
+constexpr double kLeastPoints = 1 << 10, kMostPoints = 1 << 14;  // such vertices in all
 constexpr std::int64_t kMeshBlock = 1 << 14;
+
+// The samples that a mesh of so many triangles has.
+std::size_t sample_count(double triangles) {
+  const double most = static_cast<double>(MeshSamples::kMost);
+  return static_cast<std::size_t>(std::clamp(kMostOfMesh * triangles / kLeastTriangles, kLeastSamples, most));
+}
 
 // The balls of all samples by columns, for lanes of vectors.
 class BallColumns {
  public:
-  explicit BallColumns(const std::array<SampleBall, MeshSamples::kCount>& balls) {
-    for (std::size_t n = 0; n < MeshSamples::kCount; ++n) {
+  explicit BallColumns(const std::array<SampleBall, MeshSamples::kMost>& balls) {
+    for (std::size_t n = 0; n < MeshSamples::kMost; ++n) {
       x_[n] = balls[n].centre[0];
       y_[n] = balls[n].centre[1];
       z_[n] = balls[n].centre[2];
@@ -30,7 +39,7 @@ class BallColumns {
   // A bit for each ball that a point is in.
   unsigned mask_of(const Point& p) const {
     unsigned mask = 0;
-    for (unsigned n = 0; n < MeshSamples::kCount; ++n) {
+    for (unsigned n = 0; n < MeshSamples::kMost; ++n) {
       const float x = p[0] - x_[n], y = p[1] - y_[n], z = p[2] - z_[n];
       mask |= (x * x + y * y + z * z < squared_radius_[n] ? 1U : 0U) << n;
     }
@@ -40,15 +49,15 @@ class BallColumns {
  private:
   static constexpr double kLargest = std::numeric_limits<float>::max();
 
-  std::array<float, MeshSamples::kCount> x_{}, y_{}, z_{}, squared_radius_{};
+  std::array<float, MeshSamples::kMost> x_{}, y_{}, z_{}, squared_radius_{};
 };
 
 // Some of the vertices, evenly spread over the list of them, in the order of a curve that leaves no cube before it has
 // been in all of it (G. M. Morton 1966): vertices far from each other in the order lie in different parts of the mesh.
 class SpreadVertices {
  public:
-  explicit SpreadVertices(const TriangleMesh& mesh) {
-    const std::size_t step = std::max<std::size_t>(mesh.vertices.size() / kMeasured, 1);
+  SpreadVertices(const TriangleMesh& mesh, std::size_t points) {
+    const std::size_t step = std::max<std::size_t>(mesh.vertices.size() / points, 1);
     for (std::size_t v = 0; v < mesh.vertices.size(); v += step) points_.push_back(mesh.vertices[v]);
     for (std::size_t axis = 0; axis < 3; ++axis) find_bounds(axis);
     std::vector<std::pair<std::uint32_t, std::size_t>> order;
@@ -110,20 +119,19 @@ class SpreadVertices {
 
 // Some triangles of a mesh, and their vertices, as a mesh.
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
-  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint64_t> corners;  // the vertex of each, and its place among them
+  corners.reserve(3 * triangles.size());
   for (const std::uint32_t t : triangles) {
-    vertices.insert(vertices.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+    for (const std::uint32_t v : mesh.triangles[t]) corners.push_back(std::uint64_t{v} << 32 | corners.size());
   }
-  std::ranges::sort(vertices);
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::ranges::sort(corners);
   TriangleMesh part;
-  part.vertices.reserve(vertices.size());
-  part.triangles.reserve(triangles.size());
-  for (const std::uint32_t v : vertices) part.vertices.push_back(mesh.vertices[v]);
-  for (const std::uint32_t t : triangles) {
-    for (std::uint32_t& v : part.triangles.emplace_back(mesh.triangles[t])) {
-      v = static_cast<std::uint32_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
-    }
+  part.triangles.resize(triangles.size());
+  std::uint64_t before = ~std::uint64_t{0};
+  for (const std::uint64_t corner : corners) {
+    const std::uint64_t v = corner >> 32, place = corner & 0xffffffffU;
+    if (v != std::exchange(before, v)) part.vertices.push_back(mesh.vertices[v]);
+    part.triangles[place / 3][place % 3] = static_cast<std::uint32_t>(part.vertices.size() - 1);
   }
   return part;
 }
@@ -132,26 +140,34 @@ TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>&
 
 MeshSamples::MeshSamples(const TriangleMesh& mesh, const Executor& executor)
     : mesh_(mesh),
-      triangles_(std::clamp(kSampledTriangles * static_cast<double>(mesh.triangles.size()) / kCount, kLeastTriangles,
-                            kMostTriangles)) {
+      count_(sample_count(static_cast<double>(mesh.triangles.size()))),
+      triangles_(
+          std::clamp(kSampledTriangles * static_cast<double>(mesh.triangles.size()) / static_cast<double>(count_),
+                     kLeastTriangles, kMostTriangles)) {
   find_balls(executor);
   mark_vertices(executor);
   list_triangles(executor);
 }
 
-TriangleMesh MeshSamples::cut(std::size_t n) const {
+MeshSample MeshSamples::cut(std::size_t n) const {
+  MeshSample sample;
   std::vector<std::uint32_t> kept;
-  for (const std::uint32_t t : inner_) {
-    if ((mask_of(t) >> n & 1) != 0) kept.push_back(t);
+  for (const std::uint32_t t : listed_) {
+    const auto [a, b, c] = masks_of(t);
+    const unsigned corners = (a >> n & 1) + (b >> n & 1) + (c >> n & 1);
+    if (corners == 3) kept.push_back(t);
+    if (corners == 2) ++sample.cut_edges;  // the one between these corners
   }
-  return static_cast<double>(kept.size()) > kTooMany * triangles_ ? TriangleMesh{} : part_of(mesh_, kept);
+  if (static_cast<double>(kept.size()) <= kTooMany * triangles_) sample.mesh = part_of(mesh_, kept);
+  return sample;
 }
 
 void MeshSamples::find_balls(const Executor& executor) {
-  const SpreadVertices vertices(mesh_);
   const double share = triangles_ / static_cast<double>(mesh_.triangles.size());
-  executor.for_each(kCount, 1, [&](std::int64_t n) {
-    const double place = (static_cast<double>(n) + 0.5) / kCount;
+  const double points = std::clamp(kPointsInBall / share, kLeastPoints, kMostPoints);
+  const SpreadVertices vertices(mesh_, static_cast<std::size_t>(points));
+  executor.for_each(static_cast<std::int64_t>(count_), 1, [&](std::int64_t n) {
+    const double place = (static_cast<double>(n) + 0.5) / static_cast<double>(count_);
     balls_[static_cast<std::size_t>(n)] = vertices.ball_around(vertices.at(place), share);
   });
 }
@@ -169,15 +185,16 @@ void MeshSamples::list_triangles(const Executor& executor) {
       executor, static_cast<std::int64_t>(mesh_.triangles.size()), kMeshBlock,
       [&](std::int64_t begin, std::int64_t end, std::vector<std::uint32_t>& list) {
         for (auto t = static_cast<std::uint32_t>(begin); t < static_cast<std::uint32_t>(end); ++t) {
-          if (mask_of(t) != 0) list.push_back(t);
+          const auto [a, b, c] = masks_of(t);
+          if (((a & b) | (b & c) | (c & a)) != 0) list.push_back(t);
         }
       },
-      inner_);
+      listed_);
 }
 
-unsigned MeshSamples::mask_of(std::uint32_t triangle) const {
+std::array<unsigned, 3> MeshSamples::masks_of(std::uint32_t triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];
-  return unsigned{masks_[a]} & masks_[b] & masks_[c];
+  return {masks_[a], masks_[b], masks_[c]};
 }
 
 }  // namespace isoweave

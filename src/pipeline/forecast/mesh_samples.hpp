@@ -28,34 +28,40 @@ struct SampleBall {
   bool has_in_middle(const Point& p) const { return 4 * squared_distance(p) < squared_radius; }
 };
 
-// The samples, around vertices in different parts of the mesh.
+struct MeshSample {
+  TriangleMesh mesh;            // without values; nothing where far more triangles are in the ball than should be
+  std::uint64_t cut_edges = 0;  // edges beyond which the surface goes on outside of the sample, about
+};
+
+// The samples, around vertices in different parts of the mesh: few of a small mesh.
 class MeshSamples {
  public:
-  static constexpr std::size_t kCount = 16;
+  static constexpr std::size_t kMost = 16;
 
   // The mesh has triangles, and must outlive the samples.
   MeshSamples(const TriangleMesh& mesh, const Executor& executor);
 
+  std::size_t count() const { return count_; }
   double triangles() const { return triangles_; }  // of one sample, about
   const SampleBall& ball(std::size_t n) const { return balls_[n]; }
 
-  // Sample n as a mesh without values. Nothing where far more triangles are as near as those that it should have.
-  TriangleMesh cut(std::size_t n) const;
+  MeshSample cut(std::size_t n) const;
 
  private:
   using Mask = std::uint16_t;  // a bit for each sample
-  static_assert(kCount <= 16);
+  static_assert(kMost <= 16);
 
   void find_balls(const Executor& executor);
   void mark_vertices(const Executor& executor);
   void list_triangles(const Executor& executor);
-  unsigned mask_of(std::uint32_t triangle) const;
+  std::array<unsigned, 3> masks_of(std::uint32_t triangle) const;
 
   const TriangleMesh& mesh_;
+  const std::size_t count_;
   const double triangles_;
-  std::array<SampleBall, kCount> balls_;
-  std::vector<Mask> masks_;           // per vertex: the balls that it is in
-  std::vector<std::uint32_t> inner_;  // triangles that are in a ball
+  std::array<SampleBall, kMost> balls_;  // count_ of them
+  std::vector<Mask> masks_;              // per vertex: the balls that it is in
+  std::vector<std::uint32_t> listed_;    // triangles two corners of which, or all, are in one ball
 };
 
 }  // namespace isoweave
