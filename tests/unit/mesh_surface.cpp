@@ -111,7 +111,7 @@ TEST(MeshSurface, MoreCanBeWanted) {
   MeshSurface surface(mesh, executor, {.triangles = 50});
   SurfacePiece piece;
   MeshReport report;
-  surface.read({.triangles = 300}, report);
+  surface.read({.triangles = 600}, report);
   surface.make(piece, report);
   EXPECT_EQ(piece.triangles.size(), 300u);
   surface.read({.triangles = 10}, report);
