@@ -105,21 +105,30 @@ HeadStart CountTarget::next_head_start() const {
 void CountTarget::finish() {
   simplifier_.close_gaps(2);  // what is left leaves soon
   const std::uint64_t in_order = std::max(kInOrder, target_ / kPartInOrder);
-  CostHistogram edges = costs_of_edges();
-  while (simplifier_.triangles() > target_ + in_order) {
-    const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
-    const CostBits limit = limit_within((simplifier_.triangles() - target_) / removed_each, edges);
-    if (limit <= simplifier_.zone().limit) break;
-    raise_limit(limit);
-    simplifier_.close_gaps(2);
-    edges = costs_of_edges();
+  while (simplifier_.triangles() > target_) {
+    const CostHistogram edges = costs_of_edges();
+    if (decide_at_once(in_order, edges)) continue;
+    decide_last(kShown * in_order, edges);
+    break;
   }
-  decide_last(kShown * in_order, edges);
   simplifier_.zone().retire_all();
 }
 
-// Decides the last edges in order, of those with such costs. The queue is shown so many of them, which are likely to
-// do, then more.
+// Decides those of the edges, which have such costs, that can be decided at once, while more than so many triangles are
+// beyond the number. Returns whether there were any.
+bool CountTarget::decide_at_once(std::uint64_t in_order, const CostHistogram& edges) {
+  const std::uint64_t beyond = simplifier_.triangles() - target_;
+  if (beyond <= in_order) return false;
+  const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
+  const CostBits limit = limit_within(beyond / removed_each, edges);
+  if (limit <= simplifier_.zone().limit) return false;
+  raise_limit(limit);
+  simplifier_.close_gaps(2);
+  return true;
+}
+
+// Decides the last edges, which have such costs, in order. The queue is shown so many of them, which are likely to do,
+// then more.
 void CountTarget::decide_last(std::uint64_t shown, const CostHistogram& edges) {
   Zone& zone = simplifier_.zone();
   for (; simplifier_.triangles() > target_; shown *= 8) {
@@ -140,7 +149,7 @@ CostBits CountTarget::limit_that_leaves(std::uint64_t triangles) const {
   return std::min(histogram.highest_with_beyond(triangles - gone), zone.options.retire);
 }
 
-// The highest limit within which so many edges lie, of those with such costs.
+// The highest limit within which so many edges lie, where all edges have such costs.
 CostBits CountTarget::limit_within(std::uint64_t edges, const CostHistogram& costs) const {
   return std::min(costs.highest_with_below(edges), simplifier_.zone().options.retire);
 }

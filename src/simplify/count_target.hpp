@@ -65,6 +65,7 @@ class CountTarget {
   CostBits limit_within(std::uint64_t edges, const CostHistogram& costs) const;
   CostHistogram costs_of_edges() const;
   void raise_limit(CostBits limit);
+  bool decide_at_once(std::uint64_t in_order, const CostHistogram& edges);
   void decide_last(std::uint64_t shown, const CostHistogram& edges);
   bool is_counted() const { return head_start_.met != kUnknownCost; }
 

@@ -10,7 +10,7 @@ namespace isoweave {
 namespace {
 
 constexpr double kSampledTriangles = 0.02;                          // of the triangles, in all samples
-constexpr double kMostOfMesh = 0.05;                                // where samples would be too small
+constexpr double kMostOfMesh = 0.05;                                // the same of a small mesh: it has fewer samples
 constexpr double kLeastTriangles = 1'200, kMostTriangles = 50'000;  // of one sample
 constexpr double kLeastSamples = 6;
 constexpr double kTooMany = 4;                                   // times as many triangles as a sample should have

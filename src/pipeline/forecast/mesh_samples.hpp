@@ -42,7 +42,6 @@ class MeshSamples {
   MeshSamples(const TriangleMesh& mesh, const Executor& executor);
 
   std::size_t count() const { return count_; }
-  double triangles() const { return triangles_; }  // of one sample, about
   const SampleBall& ball(std::size_t n) const { return balls_[n]; }
 
   MeshSample cut(std::size_t n) const;
@@ -58,7 +57,7 @@ class MeshSamples {
 
   const TriangleMesh& mesh_;
   const std::size_t count_;
-  const double triangles_;
+  const double triangles_;               // of one sample, about
   std::array<SampleBall, kMost> balls_;  // count_ of them
   std::vector<Mask> masks_;              // per vertex: the balls that it is in
   std::vector<std::uint32_t> listed_;    // triangles two corners of which, or all, are in one ball
