@@ -65,7 +65,7 @@ void warn_of_empty_label(const VolumeInfo& map, Label label, MeshReport& report)
 
 LabelsSweep::LabelsSweep(SliceSource& part, const std::array<std::int64_t, 3>& first, const Task& task,
                          std::span<const LabelSink> labels, const RunControl& control)
-    : numbers_(part, first),
+    : numbers_(part),
       first_(first),
       task_(task),
       volume_(task.volume),

@@ -34,6 +34,7 @@ class IndexedSource final : public RowSource {
   bool skips() const override { return volume_.skips(); }
   std::span<const std::byte> held() const override { return volume_.held(); }
   std::uint64_t held_bytes() const override;
+  Region in_file(const Region& samples) const override { return samples_in_file(volume_, samples); }
   std::optional<SampleBytes> constant() const override { return constant_sample(volume_); }
   const SampleRange* range(std::int64_t k) const override;
   std::optional<std::uint32_t> crc(std::int64_t k) const override;

@@ -30,8 +30,7 @@ VolumeInfo info_of(const VolumeInfo& volume) {
 // Makes labels of the samples of one slice.
 class Converter {
  public:
-  // first: the place of the slice's first sample in the whole map.
-  Converter(const VolumeInfo& volume, const std::array<std::int64_t, 3>& first) : volume_(volume), first_(first) {}
+  Converter(const SliceSource& map, std::int64_t slice) : map_(map), volume_(map.info()), slice_(slice) {}
 
   template <class T>
   void convert(const T* samples, std::int64_t* labels) const {
@@ -63,35 +62,32 @@ class Converter {
 
   [[noreturn]] void refuse(const std::string& expected, const std::string& found, std::int64_t n) const {
     const std::int64_t nx = volume_.dims[0];
-    bad_input(volume_.path, expected,
-              found + " in sample " + std::to_string(first_[0] + n % nx) + "," + std::to_string(first_[1] + n / nx) +
-                  "," + std::to_string(first_[2]));
+    bad_input(volume_.path, expected, found + " in " + sample_in_file(map_, {n % nx, n / nx, slice_}));
   }
 
+  const SliceSource& map_;
   const VolumeInfo& volume_;
-  std::array<std::int64_t, 3> first_;
+  std::int64_t slice_;
 };
 
 }  // namespace
 
-LabelNumbers::LabelNumbers(SliceSource& volume, const std::array<std::int64_t, 3>& first)
-    : volume_(volume), first_(first), info_(info_of(volume.info())) {
-  if (!is_plain()) slice_.resize(volume.info().slice_bytes());
+LabelNumbers::LabelNumbers(SliceSource& map) : map_(map), info_(info_of(map.info())) {
+  if (!is_plain()) slice_.resize(map.info().slice_bytes());
 }
 
 std::span<const std::byte> LabelNumbers::held() const {
-  if (is_plain()) return volume_.held();
+  if (is_plain()) return map_.held();
   return {};
 }
 
 void LabelNumbers::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) {
-  if (is_plain()) return volume_.read(first, count, out);
+  if (is_plain()) return map_.read(first, count, out);
   auto* labels = reinterpret_cast<std::int64_t*>(out.data());
   for (std::int64_t k = first; k < first + count; ++k, labels += info_.slice_samples()) {
-    volume_.read(k, 1, slice_);
-    visit_sample_type(volume_.info().type, [&]<class T>() {
-      Converter(volume_.info(), {first_[0], first_[1], first_[2] + k})
-          .convert(reinterpret_cast<const T*>(slice_.data()), labels);
+    map_.read(k, 1, slice_);
+    visit_sample_type(map_.info().type, [&]<class T>() {
+      Converter(map_, k).convert(reinterpret_cast<const T*>(slice_.data()), labels);
     });
   }
 }

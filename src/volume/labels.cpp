@@ -48,6 +48,7 @@ class LabelVolume final : public RowSource {
     const std::uint64_t held = rows_ != nullptr ? held_by_rows(*map_) : held_by_rows(numbers_);
     return held + to_size(info_.slice_samples(), sample());
   }
+  Region in_file(const Region& samples) const override { return samples_in_file(*map_, samples); }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     const auto slice = to_size(info_.slice_samples());
@@ -107,7 +108,7 @@ class ExtentFinder {
 
   // Adds the samples of a part of the map, which begins at a place of the whole.
   void add(SliceSource& part, const std::array<std::int64_t, 3>& first, const std::atomic<bool>* stop) {
-    LabelNumbers numbers(part, first);
+    LabelNumbers numbers(part);
     const VolumeInfo& info = numbers.info();
     std::vector<std::byte> slice(info.slice_bytes());
     for (std::int64_t k = 0; k < info.dims[2]; ++k) {

@@ -17,23 +17,22 @@ namespace isoweave {
 // cannot tell from its neighbours, is BadInput with its place.
 class LabelNumbers final : public BufferedSource {
  public:
-  // volume: the map, or the part of it that begins at `first`. It must outlive the source. Throws BadInput where slope
-  // or intercept are not whole numbers.
-  explicit LabelNumbers(SliceSource& volume, const std::array<std::int64_t, 3>& first = {0, 0, 0});
+  // The map must outlive the source. Throws BadInput where slope or intercept are not whole numbers.
+  explicit LabelNumbers(SliceSource& map);
 
   const VolumeInfo& info() const override { return info_; }
-  bool skips() const override { return volume_.skips(); }
+  bool skips() const override { return map_.skips(); }
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
   std::span<const std::byte> held() const override;
   std::uint64_t held_bytes() const override {
-    return held_by_slices(volume_) + (is_plain() ? 0 : volume_.info().slice_bytes());
+    return held_by_slices(map_) + (is_plain() ? 0 : map_.info().slice_bytes());
   }
+  Region in_file(const Region& samples) const override { return samples_in_file(map_, samples); }
 
  private:
-  bool is_plain() const { return info_.type == volume_.info().type; }
+  bool is_plain() const { return info_.type == map_.info().type; }
 
-  SliceSource& volume_;
-  const std::array<std::int64_t, 3> first_;
+  SliceSource& map_;
   VolumeInfo info_;
   std::vector<std::byte> slice_;  // as stored, where it is to become integers
 };

@@ -75,21 +75,14 @@ class CroppedVolume final : public RowSource {
   bool reads_parts_of_rows() const override { return parts_ != nullptr && !narrowed_; }
   bool reads_boxes() const override { return parts_ != nullptr; }
 
-  bool narrow(const Region& box) override {
-    if (!narrowed_) return false;
-    Region inner = box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      inner.first[axis] += region_.first[axis];
-      inner.end[axis] += region_.first[axis];
-    }
-    return parts_->narrow(inner);
-  }
+  bool narrow(const Region& box) override { return narrowed_ && parts_->narrow(in_whole(box)); }
 
   void read_part_of_row(std::int64_t k, std::int64_t j, std::int64_t i, std::span<std::byte> out) override {
     parts_->read_part_of_row(region_.first[2] + k, region_.first[1] + j, region_.first[0] + i, out);
   }
 
   std::uint64_t held_bytes() const override { return held_by_rows(*whole_); }
+  Region in_file(const Region& samples) const override { return samples_in_file(*whole_, in_whole(samples)); }
   std::optional<SampleBytes> constant() const override { return constant_sample(*whole_); }
 
  private:
@@ -98,6 +91,14 @@ class CroppedVolume final : public RowSource {
   std::size_t sample() const { return sample_bytes(info_.type); }
   std::size_t row() const { return to_size(info_.dims[0], sample()); }
   std::size_t whole_row() const { return to_size(whole_->info().dims[0], sample()); }
+  Region in_whole(Region box) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.first[axis] += region_.first[axis];
+      box.end[axis] += region_.first[axis];
+    }
+    return box;
+  }
+
   bool reads_parts() const {
     return narrowed_ || (parts_ != nullptr && whole_row() >= parts_->long_row() && row() <= whole_row() / 2);
   }
@@ -159,6 +160,9 @@ class SmallerVolume final : public BufferedSource {
   std::uint64_t held_bytes() const override {
     return held_by_slices(*whole_) + slice_.size() + (sums_.size() + small_sums_.size()) * sizeof(double) +
            counts_.size() * sizeof(std::uint64_t);
+  }
+  Region in_file(const Region& samples) const override {
+    return samples_in_file(*whole_, blocks_in_whole(samples, whole_->info(), step_));
   }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {

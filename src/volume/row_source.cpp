@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "isoweave/error.hpp"
 
@@ -35,6 +36,24 @@ std::uint64_t held_by_rows(const SliceSource& volume) {
 std::uint64_t held_by_slices(const SliceSource& volume) {
   const auto* buffered = dynamic_cast<const BufferedSource*>(&volume);
   return buffered != nullptr ? buffered->held_bytes() : 0;
+}
+
+Region samples_in_file(const SliceSource& volume, const Region& samples) {
+  const auto* buffered = dynamic_cast<const BufferedSource*>(&volume);
+  return buffered != nullptr ? buffered->in_file(samples) : samples;
+}
+
+std::string sample_in_file(const SliceSource& volume, const std::array<std::int64_t, 3>& sample) {
+  const Region samples = samples_in_file(volume, {sample, {sample[0] + 1, sample[1] + 1, sample[2] + 1}});
+  bool is_one = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) is_one = is_one && samples.end[axis] - samples.first[axis] == 1;
+  std::string text = is_one ? "sample " : "samples ";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis > 0) text += ",";
+    text += std::to_string(samples.first[axis]);
+    if (!is_one) text += ":" + std::to_string(samples.end[axis]);
+  }
+  return text;
 }
 
 void require_skipping(const SliceSource& volume) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "isoweave/volume.hpp"
@@ -23,6 +24,10 @@ class BufferedSource : public SliceSource {
   // The most bytes that reading holds beside the memory it is given: a band of slices, a strip, a decoded slice. A
   // source of another source adds what that one holds.
   virtual std::uint64_t held_bytes() const { return 0; }
+
+  // The samples of the file that a box of samples was made of, for messages: in a part they lie elsewhere, and a volume
+  // made smaller has a block of them for each of its own.
+  virtual Region in_file(const Region& samples) const { return samples; }
 };
 
 class RowSource : public BufferedSource {
@@ -74,6 +79,12 @@ std::uint64_t held_by_rows(const SliceSource& volume);
 
 // The bytes that a source holds (BufferedSource::held_bytes).
 std::uint64_t held_by_slices(const SliceSource& volume);
+
+// The samples of the file (BufferedSource::in_file).
+Region samples_in_file(const SliceSource& volume, const Region& samples);
+
+// The name of a sample by its place in the file: "sample 3,0,1", or "samples 2:4,0:2,0:2" of a volume made smaller.
+std::string sample_in_file(const SliceSource& volume, const std::array<std::int64_t, 3>& sample);
 
 // Refuses a volume that has to be read from its beginning, for blocks. Throws BadInput.
 void require_skipping(const SliceSource& volume);

@@ -1,5 +1,6 @@
 #include "volume/smaller.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -23,6 +24,14 @@ VolumeInfo smaller_info(const VolumeInfo& volume, std::int64_t step) {
     smaller.geometry.spacing[axis] *= static_cast<double>(step);
   }
   return smaller;
+}
+
+Region blocks_in_whole(Region samples, const VolumeInfo& whole, std::int64_t step) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    samples.first[axis] *= step;
+    samples.end[axis] = std::min(samples.end[axis] * step, whole.dims[axis]);
+  }
+  return samples;
 }
 
 }  // namespace isoweave

@@ -15,4 +15,7 @@ void move_origin(Geometry& geometry, const std::array<double, 3>& at);
 // cut off. Throws std::invalid_argument for a step below 1.
 VolumeInfo smaller_info(const VolumeInfo& volume, std::int64_t step);
 
+// The samples of the whole in the blocks of a box of samples of the smaller volume.
+Region blocks_in_whole(Region samples, const VolumeInfo& whole, std::int64_t step);
+
 }  // namespace isoweave

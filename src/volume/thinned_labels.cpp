@@ -49,6 +49,9 @@ class ThinnedLabels final : public BufferedSource {
   const VolumeInfo& info() const override { return info_; }
   bool skips() const override { return whole_->skips(); }
   std::uint64_t held_bytes() const override { return held_by_slices(*whole_) + slices_.size(); }
+  Region in_file(const Region& samples) const override {
+    return samples_in_file(*whole_, blocks_in_whole(samples, whole_->info(), step_));
+  }
 
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override {
     check_slice_range(info_, 0, first, count, out.size());

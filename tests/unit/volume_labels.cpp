@@ -141,6 +141,60 @@ TEST(LabelTypes, WholeNumbersInFloatsAreLabels) {
             "map: expected labels of at most 2^53 in a map of floats, found 9007199254740994 in sample 0,0,0");
 }
 
+std::string refusal_in(SliceSource& map) {
+  try {
+    find_labels(map);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+using Samples = std::array<float, std::size_t{8} * 6 * 5>;
+
+constexpr Samples one_half() {
+  Samples samples{};
+  samples[(4 * 6 + 3) * 8 + 5] = 0.5F;
+  return samples;
+}
+
+constexpr Samples all_halves() {
+  Samples samples{};
+  samples.fill(0.5F);
+  return samples;
+}
+
+// A map of 8 x 6 x 5 samples, of which sample 5,3,4 is a half, and the others are zeros or halves, too.
+std::unique_ptr<SliceSource> map_with_a_half(bool others = false) {
+  static constexpr Samples one = one_half(), all = all_halves();
+  VolumeInfo info;
+  info.path = "map";
+  info.type = SampleType::kFloat32;
+  info.dims = {8, 6, 5};
+  return volume_in_memory(info, std::as_bytes(std::span(others ? all : one)));
+}
+
+TEST(LabelTypes, PlacesAreThoseInTheFile) {
+  const std::string expected = "map: expected whole numbers as labels, found 0.5 in ";
+  EXPECT_EQ(refusal_in(*map_with_a_half()), expected + "sample 5,3,4");
+  const auto part = [] { return crop_volume(map_with_a_half(), {{2, 1, 3}, {8, 6, 5}}); };
+  EXPECT_EQ(refusal_in(*part()), expected + "sample 5,3,4");
+  EXPECT_EQ(refusal_in(*crop_volume(part(), {{1, 2, 0}, {5, 4, 2}})), expected + "sample 5,3,4");
+  // The most frequent of a block, which is cut off at the ends of the part.
+  const auto smaller = [](const Region& box) { return thin_label_map(crop_volume(map_with_a_half(true), box), 4); };
+  EXPECT_EQ(refusal_in(*smaller({{1, 3, 4}, {6, 6, 5}})), expected + "samples 1:5,3:6,4:5");
+  EXPECT_EQ(refusal_in(*smaller({{5, 3, 4}, {6, 4, 5}})), expected + "sample 5,3,4");
+}
+
+TEST(LabelTypes, PlacesInBlocksAreThoseInTheFile) {
+  try {
+    find_labels_in_blocks([] { return crop_volume(map_with_a_half(), {{2, 1, 3}, {8, 6, 5}}); }, 2);
+    FAIL() << "expected BadInput";
+  } catch (const BadInput& error) {
+    EXPECT_STREQ(error.what(), "map: expected whole numbers as labels, found 0.5 in sample 5,3,4");
+  }
+}
+
 TEST(LabelTypes, ScalingsByWholeNumbersAreApplied) {
   EXPECT_EQ(texts(labels_in(std::vector<std::uint8_t>{0, 1, 200}, SampleType::kUint8, 2, -1)), "-1*1 1*1 399*1 ");
   EXPECT_EQ(texts(labels_in(std::vector<float>{0, 1.5F}, SampleType::kFloat32, 2, 0)), "3*1 ");

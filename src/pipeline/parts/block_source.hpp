@@ -19,6 +19,7 @@ class BlockSource final : public RowSource {
   void read(std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
   void read_rows(std::int64_t k, std::int64_t first, std::int64_t count, std::span<std::byte> out) override;
   std::uint64_t held_bytes() const override { return held_by_slices(*part_); }
+  Region in_file(const Region& samples) const override { return samples_in_file(*part_, samples); }
   const SampleRange* range(std::int64_t k) const override { return &ranges_[static_cast<std::size_t>(k)]; }
 
  private:
