@@ -35,7 +35,7 @@ bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const 
 
 // Whether some point of a face of which nothing is known is beyond the distance: a few are looked at, by which most
 // faces that are refused are found out. They are farther beyond than rounding goes, so a look at the whole face would
-// say the same.
+// say the same. None of them is on the ring around the stars, which lies on faces that are within the distance.
 bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place,
                        const FaceBounds& bounds) {
   const auto is_beyond = [&](const Vec3& p) {
@@ -49,7 +49,7 @@ bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const
     const Vec3& a = zone.vertices[from].position;
     const Vec3& b = zone.vertices[to].position;
     beyond = (std::exchange(is_first, false) && is_beyond(place)) || is_beyond((1.0 / 3) * (place + a + b)) ||
-             is_beyond(0.5 * (place + a)) || is_beyond(0.5 * (a + b));
+             is_beyond(0.5 * (place + a));
     return !beyond;
   });
   return beyond;
