@@ -1,6 +1,7 @@
 // The beginning of the tests of pages: a folder of their own, the program, a browser.
 //   node NAME.test.mjs ISOWEAVE FOLDER PACKAGES
-// Pages and pictures are left in FOLDER. Ends with 77 where there is no Chromium.
+// Pages are left in FOLDER, with ISOWEAVE_SCREENSHOTS=1 pictures of them, too: these take minutes, and only people look at
+// them. Ends with 77 where there is no Chromium.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -20,6 +21,9 @@ mkdirSync(folder, { recursive: true });
 export let browser;
 before(async () => { browser = await Browser.start(); });
 after(() => browser?.close());
+
+// Options of tests that only take pictures.
+export const forPeople = { skip: process.env.ISOWEAVE_SCREENSHOTS === undefined && 'ISOWEAVE_SCREENSHOTS is not set' };
 
 export const inFolder = (name) => join(folder, name);
 export const run = (...words) => execFileSync(isoweave, words, { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] }).toString();

@@ -1,7 +1,7 @@
 // Loads the page of several iso-values, as page.test.mjs does the page of one.
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { inFolder, json, packages, run, withPage } from './begin.mjs';
+import { forPeople, inFolder, json, packages, run, withPage } from './begin.mjs';
 import {
   audit, choose, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kDesktop, kOtherDigits, kPhone,
   kSmall, openAll, picture, reach, settled, slide, visibleText,
@@ -146,7 +146,7 @@ describe('the page of several iso-values', () => {
     test(`fits ${width} pixels`, () => withPage('isos.html', { ...kPhone, width }, (page) => expectFits(page, width, 'isos')));
   }
 
-  test('screenshots', async () => {
+  test('screenshots', forPeople, async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('isos.html', { ...screen, dark }, (page) =>

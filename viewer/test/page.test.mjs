@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
-import { inFolder, json, packages, run, withPage } from './begin.mjs';
+import { forPeople, inFolder, json, packages, run, withPage } from './begin.mjs';
 import { numberIn } from './numbers.mjs';
 import {
   audit, expectFits, expectKeysOfControls, expectNumbersOf, expectOnFirstScreen, kContrasts, kDesktop, kOtherDigits, kPhone,
@@ -132,6 +132,7 @@ describe('looks', () => {
       for (const dark of [false, true]) {
         test(`${name} on a ${device}, ${dark ? 'dark' : 'light'}, violates no rule of accessibility`, () =>
           withPage(name, { ...screen, dark }, async (page) => {
+            assert.equal(await pressed(page, 'theme'), String(dark));
             await audit(page, packages);
             await openAll(page);
             await page.evaluate(`['error', 'compare', 'section', 'measure'].map((id) => document.getElementById(id))
@@ -182,11 +183,10 @@ describe('looks', () => {
       'views', 'background', 'opacity', 'reset', 'picture', 'full', 'view', 'summary', 'summary']);
   }));
 
-  test('screenshots', async () => {
+  test('screenshots', forPeople, async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('mesh.html', { ...screen, dark }, async (page) => {
-          assert.equal(await pressed(page, 'theme'), String(dark));
           const name = (more) => inFolder(`${device}-${dark ? 'dark' : 'light'}${more}.png`);
           await page.screenshot(name(''));
           for (const id of ['error', 'wireframe', 'section', 'compare']) await page.click(`#${id}`);

@@ -1,7 +1,7 @@
 // Loads the page of info --isos.
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { inFolder, packages, run, withPage } from './begin.mjs';
+import { forPeople, inFolder, packages, run, withPage } from './begin.mjs';
 import { numberIn } from './numbers.mjs';
 import {
   audit, expectFits, expectNumbersOf, kContrasts, kDesktop, kPhone, kSmall, openAll, pressed, settled, visibleText,
@@ -133,7 +133,7 @@ describe('the page of info --isos', () => {
     assert.deepEqual(reached, ['a', 'theme', 'iso', 'log', 'summary']);
   }));
 
-  test('screenshots', async () => {
+  test('screenshots', forPeople, async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         await withPage('range.html', { ...screen, dark }, (page) =>

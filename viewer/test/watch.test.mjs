@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
-import { browser, inFolder, isoweave, packages } from './begin.mjs';
+import { browser, forPeople, inFolder, isoweave, packages } from './begin.mjs';
 import { Browser } from './browser.mjs';
 import { numberIn } from './numbers.mjs';
 import {
@@ -253,6 +253,7 @@ describe('looks', () => {
         withWatched(kSlow, { ...screen, dark }, async (page) => {
           await until(page, kComplete);
           await settled(page);
+          assert.equal(await pressed(page, 'theme'), String(dark));
           await expectOnFirstScreen(page);
           await expectKeysOfControls(page);
           const [width, height] = await reach(page);
@@ -273,13 +274,12 @@ describe('looks', () => {
     }));
   }
 
-  test('screenshots', async () => {
+  test('screenshots', forPeople, async () => {
     for (const [device, screen] of [['desktop', kDesktop], ['phone', { ...kPhone, scale: 1.25 }]]) {
       for (const dark of [false, true]) {
         const name = (more) => inFolder(`watch-${device}-${dark ? 'dark' : 'light'}${more}.png`);
         // Runs of their own: a page that is photographed does not ask for news.
         await withWatched(kOpen, { ...screen, dark }, async (page) => {
-          assert.equal(await pressed(page, 'theme'), String(dark));
           await until(page, `window.isoweave.ready.then(({ view }) => view.final.triangles > 20000)`);
           await page.screenshot(name(''));
         }, { more: ['--open'] });
