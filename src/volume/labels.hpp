@@ -1,7 +1,6 @@
 // Label maps: their values as whole numbers, and as masks.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -91,6 +91,7 @@ class CroppedVolume final : public RowSource {
   std::size_t sample() const { return sample_bytes(info_.type); }
   std::size_t row() const { return to_size(info_.dims[0], sample()); }
   std::size_t whole_row() const { return to_size(whole_->info().dims[0], sample()); }
+
   Region in_whole(Region box) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.first[axis] += region_.first[axis];
