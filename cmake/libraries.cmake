@@ -28,10 +28,47 @@ function(isoweave_split_sources core formats)
   set(${formats} ${in_formats} PARENT_SCOPE)
 endfunction()
 
+# isoweave_count_for_fuzzers(SOURCE...): what fuzzers go by is counted where files are read; in the loops of a run it would
+# take as long as the run.
+function(isoweave_count_for_fuzzers)
+  if(NOT ISOWEAVE_FUZZ)
+    return()
+  endif()
+  list(FILTER ARGN INCLUDE REGEX "/(src|unity/isoweave_(core|formats))/(capi|files|volume|mesh|output|pipeline)/")
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -fsanitize=fuzzer-no-link)
+endfunction()
+
+# isoweave_plain_first(OUT SOURCE...): sources with options of their own come last. Of an inline function that several
+# sources compile, a program gets the copy that its linker meets first. That copy is to run on every processor, to be
+# watched by the sanitizer of the build, and to count nothing for fuzzers.
+function(isoweave_plain_first out)
+  set(plain)
+  set(others)
+  foreach(source ${ARGN})
+    get_source_file_property(options ${source} COMPILE_OPTIONS)
+    if(options)
+      list(APPEND others ${source})
+    else()
+      list(APPEND plain ${source})
+    endif()
+  endforeach()
+  set(${out} ${plain} ${others} PARENT_SCOPE)
+endfunction()
+
+# isoweave_link_library_first(PROGRAM): for programs of tests, which compile inline functions of the library as well. The
+# library comes first, and whole, as nothing asks for parts of it there: tests check what is shipped, as it was optimised.
+function(isoweave_link_library_first program)
+  if(CMAKE_EXECUTABLE_FORMAT STREQUAL ELF)
+    target_link_options(${program} PRIVATE LINKER:--whole-archive $<TARGET_FILE:isoweave_inside> LINKER:--no-whole-archive)
+  endif()
+endfunction()
+
 # isoweave_objects(NAME SOURCE...): what is compiled. Only what public headers declare is to be seen from outside of a
 # shared library: those have a pragma for it.
 function(isoweave_objects name)
-  add_library(${name} OBJECT ${ARGN})
+  isoweave_count_for_fuzzers(${ARGN})
+  isoweave_plain_first(sources ${ARGN})
+  add_library(${name} OBJECT ${sources})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PRIVATE isoweave_options)
