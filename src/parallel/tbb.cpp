@@ -10,8 +10,7 @@
 #include "parallel/arena.hpp"
 
 #ifdef ISOWEAVE_TSAN
-extern "C" void __tsan_acquire(void* address);
-extern "C" void __tsan_release(void* address);
+#include <sanitizer/tsan_interface.h>
 #endif
 
 namespace isoweave {
