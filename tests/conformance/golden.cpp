@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "extract/cell_kernels.hpp"
 #include "extract/row_kernels.hpp"
@@ -14,6 +15,7 @@
 #include "isoweave/measure.hpp"
 #include "isoweave/pipeline.hpp"
 #include "parallel/instruction_sets.hpp"
+#include "parallel/parallel.hpp"
 #include "sanitized.hpp"
 #include "simplify/kernels.hpp"
 
@@ -141,7 +143,7 @@ std::vector<std::string> digests_of(const Row& row, std::size_t levels, const Ma
   std::vector<std::string> digests(levels);
   std::ranges::transform(sinks, digests.begin(),
                          [](const MeshInMemory& sink) { return digest_text(check_mesh(sink.copy()).digest); });
-  meshes[row.name] = sinks.back().copy();
+  meshes.at(row.name) = sinks.back().copy();
   return digests;
 }
 
@@ -174,12 +176,23 @@ std::vector<std::string> run_row(const Row& row, Meshes& meshes) {
       [&](auto sinks) { mesh_volume(*generate_volume(volume), sinks, options, one_thread()); }, meshes);
 }
 
-// All rows as they are now, by the instructions up to the n-th set.
+// All rows as they are now, by the instructions up to the n-th set. Rows run side by side, but those first whose meshes
+// other rows simplify.
 std::vector<Row> run_rows(const std::vector<Row>& rows, std::size_t set) {
   newest_instructions = set;
   Meshes meshes;
+  std::set<std::string> inputs;
+  for (const Row& row : rows) {
+    meshes[row.name];
+    if (row.words.at(0) == "simplify") inputs.insert(row.words.at(1));
+  }
   std::vector<Row> now = rows;
-  for (Row& row : now) row.digests = run_row(row, meshes);
+  for (const bool are_inputs : {true, false}) {
+    Executor().for_each(static_cast<std::int64_t>(now.size()), 1, [&](std::int64_t n) {
+      Row& row = now[static_cast<std::size_t>(n)];
+      if (inputs.contains(row.name) == are_inputs) row.digests = run_row(row, meshes);
+    });
+  }
   newest_instructions = kAllInstructions;
   return now;
 }
