@@ -50,6 +50,10 @@ std::vector<OutputOptions> level_outputs(const OutputOptions& output, const Stop
   return outputs;
 }
 
+void try_levels(const std::vector<OutputOptions>& outputs) {
+  const LevelSinks discarded(outputs, [&](std::size_t level) { return mesh_file_options(outputs[level], {}); });
+}
+
 LevelSinks::LevelSinks(const std::vector<OutputOptions>& outputs,
                        const std::function<MeshFileOptions(std::size_t)>& options) {
   if (outputs.front().one_file) {

@@ -24,6 +24,10 @@ std::vector<Length> finer_levels(const StopOptions& stop, const LengthBasis& bas
 // levels.
 std::vector<OutputOptions> level_outputs(const OutputOptions& output, const StopOptions& stop);
 
+// Opens the files of all levels and discards them: an error that would keep them from being written is found now,
+// before anything is read or computed in vain.
+void try_levels(const std::vector<OutputOptions>& outputs);
+
 // The files of all levels, open.
 class LevelSinks {
  public:

@@ -58,13 +58,17 @@ std::string histogram_text(const OneWayDistance& way, double max, std::string_vi
   return text;
 }
 
-// Writes the distances from A's vertices to B, as colours of A.
-void write_distances(const CompareArguments& arguments, TriangleMesh& a, const TriangleMesh& b, int threads) {
+MeshFileOptions distances_file() {
   MeshFileOptions options;
   options.values = true;
   options.comments = {"isoweave " ISOWEAVE_VERSION, "quality: distance to the other mesh"};
+  return options;
+}
+
+// Writes the distances from A's vertices to B, as colours of A.
+void write_distances(const CompareArguments& arguments, TriangleMesh& a, const TriangleMesh& b, int threads) {
   a.values = vertex_distances(a, b, threads);
-  write_mesh(arguments.distances, a, options);
+  write_mesh(arguments.distances, a, distances_file());
 }
 
 TriangleMesh read_surface(const std::string& path, const ReadMeshOptions& options) {
@@ -102,6 +106,8 @@ void run_compare(const CompareArguments& arguments) {
   check_different({arguments.b, arguments.distances});
   check_absent(arguments.no_clobber, {arguments.distances});
   exit_on_signal();
+  // The file is discarded: an error that would keep it from being written is found now.
+  if (!arguments.distances.empty()) open_mesh_file(arguments.distances, distances_file());
   TriangleMesh a = read_surface(arguments.a, arguments.reading);
   TriangleMesh b = read_surface(arguments.b, arguments.reading);
   const std::vector<std::string> notes = match(b, a, arguments);

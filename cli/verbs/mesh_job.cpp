@@ -156,6 +156,7 @@ class MeshJob {
     }
     Evidence evidence(arguments_.run, arguments_.page);
     if (has_several_isos(arguments_)) return mesh_isos(evidence);
+    if (!arguments_.dry_run) try_levels(outputs_);
     if (arguments_.iso == "auto") find_iso();
     if (arguments_.preview.given()) return preview(evidence);
     find_target();
@@ -233,8 +234,6 @@ class MeshJob {
   }
 
   void find_iso() {
-    // Opens the file and discards it: an error that would stop the run after the first pass is found now.
-    open_output(outputs_.back(), mesh_file_options(arguments_.output, {}));
     require_memory_to_read(*volume_, options_, control_);
     const AutomaticIso found = automatic_iso(arguments_.input, *control_.stop);
     options_.iso = found.iso;

@@ -189,6 +189,8 @@ void run_simplify(SimplifyArguments arguments) {
   check_placing(arguments.output, outputs.size() > 1);
 
   exit_on_signal();
+  Evidence evidence(run, arguments.page);
+  try_levels(outputs);
   InputMesh input = read_input_mesh(arguments.input, arguments.reading, arguments.weld);
   TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> warnings = input_warnings(arguments, mesh);
@@ -201,7 +203,6 @@ void run_simplify(SimplifyArguments arguments) {
     options.error = Length::units(most_shape_error(mesh));
   options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
   control.stop = borrow(stop_on_signal());
-  Evidence evidence(run, arguments.page);
   const LevelSinks sinks(outputs,
                          [&](std::size_t level) { return file_options(arguments, mesh, level, options.triangles); });
   ProgressPrinter printer(mode);

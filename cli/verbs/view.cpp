@@ -86,6 +86,7 @@ void run_view(ViewArguments arguments) {
   const std::string mesh_path = reported ? mesh_of(report, arguments.input) : arguments.input;
   check_different(
       {arguments.input, mesh_path == arguments.input ? "" : mesh_path, arguments.before, arguments.page.path});
+  OutputFile file(arguments.page.path);
   PageContents contents{read_named_mesh(mesh_path, arguments.reading)};
   if (!arguments.quiet) print_mesh_warnings(mesh_path, contents.mesh);
   if (report.contains("levels")) {
@@ -106,7 +107,6 @@ void run_view(ViewArguments arguments) {
   if (!reported && !contents.mesh.space.empty()) report["space"] = contents.mesh.space;
   report["output"] = mesh_path;
   control.stop = borrow(stop_on_signal());
-  OutputFile file(arguments.page.path);
   write_page(file, arguments.page, report, std::move(contents), control);
   if (arguments.open) return open_page(arguments.page.path);
   if (!arguments.quiet) print_note(arguments.page.path + ": open it in a browser, which --open does");

@@ -220,6 +220,28 @@ TEST(CliCannotWrite, FolderMissingOrNameUnknown) {
   expect_failure(folder, {"generate", "sphere", "-o", "s.jpg", "--size", "8"}, 4, "s.jpg");
 }
 
+// In a pass over the whole volume, the surface is counted or its components are chosen, before the mesh is made.
+TEST(CliCannotWrite, MeshProblemsAreFoundBeforeAnyPass) {
+  const files::Folder folder;
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--largest"}, {"--ratio", "0.1"}, {"--memory", "1G"}, {"--lods", "1vox,2vox"}}) {
+    std::vector<std::string> arguments = {"mesh", kEndless, "-o", "missing/out.ply", "--iso", "127"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure(folder, arguments, 4, "missing/out");
+  }
+}
+
+TEST(CliCannotWrite, ProblemsAreFoundBeforeMeshesAreRead) {
+  const files::Folder folder;
+  expect_failure(folder, {"simplify", "nothing.ply", "-o", "missing/a.ply", "--error", "1"}, 4, "missing/a.ply");
+  expect_failure(folder, {"simplify", "nothing.ply", "-o", "a.ply", "--error", "1", "--report", "missing/r.json"}, 4,
+                 "missing/r.json");
+  expect_failure(folder, {"compare", "nothing.ply", "nothing.ply", "--distances", "missing/a.ply"}, 4, "missing/a.ply");
+  expect_failure(folder, {"compare", "nothing.ply", "nothing.ply", "--distances", "a.xyz"}, 4, "a.xyz");
+  expect_failure(folder, {"render", "nothing.ply", "-o", "missing/a.png"}, 4, "missing/a.png");
+  expect_failure(folder, {"view", "nothing.ply", "-o", "missing/a.html"}, 4, "missing/a.html");
+}
+
 TEST(CliCannotWrite, ReportProblemsAreFoundBeforeTheRun) {
   const files::Folder folder;
   for (const std::string report : {"missing/r.json", "."}) {
