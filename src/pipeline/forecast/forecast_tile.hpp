@@ -11,6 +11,7 @@
 
 #include "extract/cube_rules.hpp"
 #include "isoweave/volume.hpp"
+#include "parallel/array.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
@@ -73,7 +74,7 @@ class Tile final : public SliceSource {
   VolumeInfo info_;
   Rectangle part_;
   std::int64_t whole_row_;  // samples
-  std::vector<std::byte> samples_;
+  Array<std::byte> samples_;
 };
 
 // A band: some rows of slices.
