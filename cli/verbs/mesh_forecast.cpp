@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "isoweave/error.hpp"
 #include "options/input_volume.hpp"
 #include "report/print.hpp"
 #include "report/report.hpp"
@@ -48,6 +49,20 @@ MeshOptions stand_in_options(const MeshOptions& options, const VolumeInfo& info)
 
 std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& arguments, const MeshFileOptions& file) {
   return output_bytes(arguments.output, forecast.vertices, forecast.triangles, file);
+}
+
+bool holds_any_surface(const MeshArguments& arguments, const MeshFileOptions& file, const VolumeInfo& volume) {
+  constexpr double kPerCell = 20;  // triangles, and vertices: more than any extractor makes
+  double most = kPerCell * static_cast<double>(stop_levels(arguments.stop).size());
+  for (const std::int64_t samples : volume.dims) most *= static_cast<double>(samples + 1);  // closed at both ends
+  constexpr double kCountable = 1e15;
+  if (most > kCountable) return false;
+  try {
+    output_bytes(arguments.output, static_cast<std::uint64_t>(most), static_cast<std::uint64_t>(most), file);
+  } catch (const CannotWrite&) {
+    return false;
+  }
+  return true;
 }
 
 std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads,

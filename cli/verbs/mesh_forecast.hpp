@@ -18,6 +18,9 @@ std::uint64_t output_bytes(const Forecast& forecast, const MeshArguments& argume
 std::string forecast_text(const Forecast& forecast, std::uint64_t asked, std::uint64_t bytes, int threads,
                           bool takes_cap = true);
 
+// Whether the output can hold all triangles that the volume may have, so that their number needs no forecast.
+bool holds_any_surface(const MeshArguments& arguments, const MeshFileOptions& file, const VolumeInfo& volume);
+
 struct CheckedForecast {
   Forecast run;
   std::uint64_t files = 0;  // bytes that writing holds

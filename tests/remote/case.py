@@ -74,7 +74,7 @@ class RemoteTest(unittest.TestCase):
             return process, json.load(file)["digest"]
 
     def sweep(self, volume):
-        """Reads the volume once. In slabs mesh reads one as small as this twice, the first time for its forecast."""
+        """Reads the volume once. In slabs a run with a report reads one as small as this twice, first for its forecast."""
         self.digest(volume, "--blocks", "64")
 
     def digest(self, volume, *more):

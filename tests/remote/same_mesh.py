@@ -76,6 +76,13 @@ class SameMesh(RemoteTest):
                 self.assertEqual(len(asked), len(set(asked)))
                 self.assertEqual(len(asked), len(list(volumes.grid())))
 
+    def test_a_run_in_slabs_that_tells_no_forecast_asks_for_each_chunk_once(self):
+        run = self.run_isoweave("mesh", f"{self.server.url}/zarr2", "--iso", volumes.ISO, "-o", "mesh.ply")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        asked = self.server.asked(r"^/zarr2/\d\.\d\.\d$")
+        self.assertEqual(sorted(asked), sorted(set(asked)))
+        self.assertEqual(len(asked), len(list(volumes.grid())))
+
     def test_a_shard_is_read_in_parts_and_its_index_once(self):
         self.sweep(f"{self.server.url}/shards")
         parts = [(r.path, r.range) for r in self.server.requests if r.method == "GET" and "/c/" in r.path]
