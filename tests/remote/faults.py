@@ -54,8 +54,9 @@ class Faults(RemoteTest):
             with self.subTest(ending):
                 self.server.stalled.clear()
                 self.server.faults = [Fault(ending, "stall")]
-                process = subprocess.Popen([ISOWEAVE, "mesh", f"{self.server.url}/zarr2", "--iso", "100", "-o", "c.ply"],
-                                           cwd=self.folder, env=self.environment, stderr=subprocess.PIPE, text=True)
+                process = subprocess.Popen([ISOWEAVE, "mesh", f"{self.server.url}/zarr2", "--iso", "100", "-o", "c.ply",
+                                            "--quiet"], cwd=self.folder, env=self.environment, stderr=subprocess.PIPE,
+                                           text=True)
                 self.assertTrue(self.server.stalled.wait(60))
                 process.send_signal(signal.SIGINT)
                 # A request may wait for 30 seconds, three times.
