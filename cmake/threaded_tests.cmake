@@ -1,7 +1,7 @@
 # Which tests ThreadSanitizer runs is said where they are. A source of tests that speaks of threads has a line
 #   // Threads: FILTER        googletest's filter for those that it runs: threads work together, on little data; or several
 #   // Threads: none, REASON
-# Such tests have the label `threads` in every build; the build for ThreadSanitizer has no other sources.
+# Such tests have a label that ends in `threads` in every build; the build for ThreadSanitizer has no other sources.
 
 # isoweave_threaded_tests(FILTER THREADED SOURCE...): the filter of all of them, and the sources that have some.
 function(isoweave_threaded_tests filter threaded)
