@@ -127,10 +127,9 @@ class SweepWatch final : public Watch {
 
   void deliver(const std::atomic<bool>& stop) const override {
     const Clock::time_point end = Clock::now() + kGrace;
-    if (!feed_.asked_within(kPresence)) return;
-    // A page that has everything asks no more.
+    // A page that has everything asks no more, nor does one that was closed. One that draws slowly goes on asking.
     const auto all_have_it = [&] { return feed_.is_delivered() && !feed_.asked_within(kQuiet) && server_.is_idle(); };
-    while (!stop && Clock::now() < end && !all_have_it()) {
+    while (!stop && Clock::now() < end && feed_.asked_within(kPresence) && !all_have_it()) {
       std::this_thread::sleep_for(10ms);
     }
   }
@@ -140,7 +139,7 @@ class SweepWatch final : public Watch {
   static constexpr int kPauses = 9;                 // so many times as long as a frame took: a tenth of the run
   static constexpr Clock::duration kPresence = 5s;  // browsers let pages in the background ask once a second
   static constexpr Clock::duration kQuiet = 400ms;
-  static constexpr Clock::duration kGrace = 5s;
+  static constexpr Clock::duration kGrace = 30s;
 
   // Shows the surface as coarse as last time, or one step finer: cells twice as wide leave a quarter of the triangles.
   void show(const SlabRecord& slab, const std::function<void(const Visitor&)>& visit_undecided) {

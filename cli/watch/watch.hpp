@@ -41,7 +41,8 @@ class Watch : public SweepObserver {
   // Tells that the run is complete. Serving continues until the end of this object.
   virtual void complete(const MeshReport& report) = 0;
 
-  // Returns when all watching pages have the result, when no page watches, after five seconds, or once `stop` is set.
+  // Returns when all watching pages have the result, when none has asked for five seconds, after half a minute, or once
+  // `stop` is set.
   virtual void deliver(const std::atomic<bool>& stop) const = 0;
 };
 

@@ -15,6 +15,7 @@
 #include <iomanip>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -207,6 +208,22 @@ TEST(CliWatch, ThePageIsToldTheMesh) {
       farthest = std::max(farthest, std::abs(steps[i] * 161.0 / 65535 - 1 - corners[i]));
   }
   EXPECT_LT(farthest, 0.51 * 161 / 65535);
+}
+
+TEST(CliWatch, PagesThatDrawSlowlyGetTheResult) {
+  const files::Folder folder;
+  Running program(folder.path(), {"mesh", "generate:gyroid:96x96x80:uint8", "--iso", "127.5", "--error", "0", "-o",
+                                  "out.ply", "--watch"});
+  Page page(address_of(program));
+  std::optional<Clock::time_point> complete;
+  for (News news = page.ask_news(); !page.has_all(news); news = page.ask_news()) {
+    if (!complete && news.json.contains("result")) complete = Clock::now();
+    ASSERT_FALSE(program.has_ended()) << program.err();
+    std::this_thread::sleep_for(2s);
+  }
+  ASSERT_TRUE(complete);
+  EXPECT_GT(Clock::now() - *complete, 6s);  // longer than anybody may be silent
+  EXPECT_EQ(program.wait().code, 0);
 }
 
 TEST(CliWatch, WhoWatchesChangesNothing) {
