@@ -13,9 +13,11 @@ export function findChromium() {
   return process.env.CHROMIUM ?? names.flatMap((name) => kFolders.map((folder) => join(folder, name))).find(existsSync);
 }
 
+// Processors draw here: WebGL by SwiftShader, and the page itself, which is put together faster without it.
 const kFlags = [
   '--headless=new', '--remote-debugging-pipe', '--no-first-run', '--hide-scrollbars', '--force-color-profile=srgb',
-  '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
+  '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-rasterization',
+  '--disable-gpu-compositing', '--disable-background-networking',
   '--disable-component-update', '--disable-extensions', '--disable-dev-shm-usage', '--mute-audio',
 ];
 
