@@ -4,6 +4,10 @@
 #include <cfenv>
 #include <cfloat>
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 #ifdef __FAST_MATH__
 #error "isoweave: results depend on IEEE 754; expected a compiler without -ffast-math"
 #endif
@@ -26,5 +30,17 @@ class StandardFloats {
  private:
   std::fenv_t found_{};
 };
+
+// Whether the calling thread is known to compute as StandardFloats has it. On x86 to look is fast, and to set is slow;
+// elsewhere nothing is known.
+inline bool has_standard_floats() {
+#ifdef __SSE2__
+  constexpr unsigned kFlags = 0x3f;  // of what has happened, which no result depends on
+  constexpr unsigned kDefault = 0x1f80;
+  return (_mm_getcsr() & ~kFlags) == kDefault && std::fegetround() == FE_TONEAREST;
+#else
+  return false;
+#endif
+}
 
 }  // namespace isoweave

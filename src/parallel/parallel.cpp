@@ -1,6 +1,7 @@
 #include "parallel/parallel.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -21,7 +22,8 @@ int checked_threads(int threads) {
 }  // namespace
 
 void BlockLoop::run(std::int64_t block) const {
-  const StandardFloats floats;  // of this thread
+  std::optional<StandardFloats> floats;  // of this thread
+  if (!has_standard_floats()) floats.emplace();
   call_(body_, block * grain_, std::min(count_, (block + 1) * grain_));
 }
 

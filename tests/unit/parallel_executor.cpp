@@ -12,6 +12,10 @@
 #include <thread>
 #include <vector>
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 #include "parallel/parallel.hpp"
 
 namespace isoweave::testing::parallel_executor_test {
@@ -123,6 +127,28 @@ TEST(Executor, RoundsToNearestInEveryThread) {
   EXPECT_EQ(std::fegetround(), FE_UPWARD);
   std::fesetround(FE_TONEAREST);
   EXPECT_EQ(others, 0);
+}
+
+TEST(Executor, KeepsSmallNumbersInEveryThread) {
+#ifdef __SSE2__
+  constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x40;
+  const unsigned usual = _mm_getcsr();
+  for (const unsigned host : {kFlushToZero, kDenormalsAreZero}) {
+    for (const int threads : {1, 2, 5}) {
+      _mm_setcsr(usual | host);
+      std::atomic<int> kept = 0;
+      Executor(threads).for_each(64, 1, [&](std::int64_t) {
+        if ((_mm_getcsr() & (kFlushToZero | kDenormalsAreZero)) == 0) ++kept;
+      });
+      const unsigned after = _mm_getcsr();
+      _mm_setcsr(usual);
+      EXPECT_EQ(kept, 64) << threads;
+      EXPECT_EQ(after & host, host) << "the caller's is back";
+    }
+  }
+#else
+  GTEST_SKIP() << "only tried on x86";
+#endif
 }
 
 }  // namespace
