@@ -2,9 +2,12 @@
 // name.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstring>
 
 #include "extract/row_kernels.hpp"
+#include "parallel/prefetch.hpp"
 
 namespace isoweave {
 
@@ -48,6 +51,9 @@ class RowKernelsInLanes {
     return {compare<T, true>, compare<T, false>};
   }
 
+  // Samples that are fetched ahead are a page away, where processors do not look by themselves.
+  static constexpr std::size_t kAhead = 4096;  // bytes
+
   // The first and the last word look at 64 samples, too. Some of these samples belong to the words beside them.
   template <class T, bool kAbove>
   static void compare(const T* row, std::int64_t n, T threshold, std::span<std::uint64_t> words) {
@@ -56,6 +62,7 @@ class RowKernelsInLanes {
     for (std::uint64_t& word : words) {
       const std::int64_t first = start < 0 ? 0 : start;
       const std::int64_t from = first < n - 64 ? first : n - 64;
+      prefetch(reinterpret_cast<const std::array<T, 64>*>(reinterpret_cast<const std::byte*>(row + from) + kAhead));
       const std::uint64_t bits = Lanes::template compare<T, kAbove>(row + from, threshold);
       const std::int64_t beyond = start - from;
       word = beyond < 0 ? bits << 1 : beyond < 64 ? bits >> beyond : 0;
