@@ -226,6 +226,16 @@ TEST(CliWatch, PagesThatDrawSlowlyGetTheResult) {
   EXPECT_EQ(program.wait().code, 0);
 }
 
+TEST(CliWatch, PagesThatWereClosedAreWaitedForForFiveSeconds) {
+  const files::Folder folder;
+  Running program(folder.path(), {"mesh", "generate:gyroid:96x96x80:uint8", "--iso", "127.5", "--error", "0", "-o",
+                                  "out.ply", "--watch"});
+  Page(address_of(program)).ask_news();  // for a part of the surface at most
+  const Clock::time_point asked = Clock::now();
+  EXPECT_EQ(program.wait().code, 0);
+  EXPECT_LT(Clock::now() - asked, 20s);
+}
+
 TEST(CliWatch, WhoWatchesChangesNothing) {
   const files::Folder alone;
   ASSERT_EQ(run(alone.path(), mesh({"--quiet"})).code, 0);
