@@ -48,25 +48,31 @@ inline std::array<std::uint32_t, 8> first_numbers(const CellRow& row, std::size_
   return first;
 }
 
-// Calls visit(bit of the row, case, numbers) for the crossed cells of a row, one after the other. Numbers are those of
-// the crossings at the cell's bit of all rows, then those at the next bit; that of an absent crossing means nothing.
+// Calls visit(bit of the row, case, numbers) for the crossed cells of word w of a row, one after the other. Numbers are
+// those of the crossings at the cell's bit of all rows, then those at the next bit; that of an absent crossing means
+// nothing.
+template <class Visit>
+inline void for_cell_numbers(const CellRow& row, std::size_t w, const Visit& visit) {
+  std::array<std::uint32_t, 16> numbers;
+  std::array<std::uint32_t, 8> next = first_numbers(row, w);
+  for (const unsigned half : {0U, 1U}) {
+    std::array<std::uint32_t, 8> crossings;
+    for (std::size_t r = 0; r < 8; ++r) crossings[r] = static_cast<std::uint32_t>(row.crossings[r][w] >> 32 * half);
+    for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
+      std::copy(next.begin(), next.end(), numbers.begin());
+      for (std::size_t r = 0; r < 8; ++r) next[r] += crossings[r] >> bit & 1;
+      if (half == 1 && bit == 31 && w + 1 < row.words) next = first_numbers(row, w + 1);
+      std::copy(next.begin(), next.end(), numbers.begin() + 8);
+      visit(64 * w + 32 * half + static_cast<std::size_t>(bit), cell, numbers);
+    });
+  }
+}
+
+// The same for all words of the row.
 template <class Visit>
 inline void for_cell_numbers(const CellRow& row, const Visit& visit) {
-  std::array<std::uint32_t, 16> numbers;
   for (std::size_t w = 0; w < row.words; ++w) {
-    if (row.crossed[w] == 0) continue;
-    std::array<std::uint32_t, 8> next = first_numbers(row, w);
-    for (const unsigned half : {0U, 1U}) {
-      std::array<std::uint32_t, 8> crossings;
-      for (std::size_t r = 0; r < 8; ++r) crossings[r] = static_cast<std::uint32_t>(row.crossings[r][w] >> 32 * half);
-      for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
-        std::copy(next.begin(), next.end(), numbers.begin());
-        for (std::size_t r = 0; r < 8; ++r) next[r] += crossings[r] >> bit & 1;
-        if (half == 1 && bit == 31 && w + 1 < row.words) next = first_numbers(row, w + 1);
-        std::copy(next.begin(), next.end(), numbers.begin() + 8);
-        visit(64 * w + 32 * half + static_cast<std::size_t>(bit), cell, numbers);
-      });
-    }
+    if (row.crossed[w] != 0) for_cell_numbers(row, w, visit);
   }
 }
 

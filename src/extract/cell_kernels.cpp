@@ -14,9 +14,12 @@ namespace {
 
 std::uint32_t count_triangles(const CellRow& row) { return count_triangles_of_cells(row); }
 
-void write_triangles(const CellRow& row, std::span<std::array<std::uint32_t, 3>> triangles) {
+void write_triangles(const CellRow& row, std::size_t w, std::span<std::array<std::uint32_t, 3>> triangles,
+                     std::span<std::uint8_t, 64> cases) {
   std::array<std::uint32_t, 3>* out = triangles.data();
-  for_cell_numbers(row, [&](std::size_t, std::uint32_t cell, const std::array<std::uint32_t, 16>& numbers) {
+  auto next_case = cases.begin();
+  for_cell_numbers(row, w, [&](std::size_t, std::uint32_t cell, const std::array<std::uint32_t, 16>& numbers) {
+    *next_case++ = static_cast<std::uint8_t>(cell);
     const std::uint8_t* place = kCornerPlaces[cell].data();
     for (std::size_t t = 0; t < kCaseTable[cell].triangles; ++t, ++out) {
       for (std::uint32_t& corner : *out) corner = numbers[*place++];

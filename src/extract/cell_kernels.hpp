@@ -51,8 +51,10 @@ struct CellKernels {
   // Counts the triangles in the crossed cells. Reads `crossed` and `inside` only.
   std::uint32_t (*count_triangles)(const CellRow& row);
 
-  // Writes the triangles, cell by cell, to a span of exactly as many, and nothing behind it.
-  void (*write_triangles)(const CellRow& row, std::span<std::array<std::uint32_t, 3>> out);
+  // Writes the triangles of the crossed cells of word w, cell by cell, and the case of each of these cells. `out` has
+  // room for the triangles from there to the end of the row; what lies behind those of the word may be overwritten.
+  void (*write_triangles)(const CellRow& row, std::size_t w, std::span<std::array<std::uint32_t, 3>> out,
+                          std::span<std::uint8_t, 64> cases);
 };
 
 // The best kernels for this processor.

@@ -35,36 +35,36 @@ __m256i numbers_at(__m128i places, __m256i here, __m256i next) {
   return _mm256_castps_si256(_mm256_blendv_ps(first, second, is_second));
 }
 
-void write_triangles(const CellRow& row, std::span<std::array<std::uint32_t, 3>> triangles) {
+void write_triangles(const CellRow& row, std::size_t w, std::span<std::array<std::uint32_t, 3>> triangles,
+                     std::span<std::uint8_t, 64> cases) {
   constexpr std::ptrdiff_t kWritten = 16;  // corners at a time, of which the next cell's write over those in excess
   std::uint32_t* out = triangles.data()->data();
   const std::uint32_t* const end = out + 3 * triangles.size();
-  for (std::size_t w = 0; w < row.words; ++w) {
-    if (row.crossed[w] == 0) continue;
-    __m256i next = bases_of(row, w);
-    for (const unsigned half : {0U, 1U}) {
-      const __m256i crossings = crossings_of(row, w, half);
-      for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
-        const __m256i here = next;
-        const __m256i own = _mm256_srl_epi32(crossings, _mm_cvtsi32_si128(bit));
-        next = _mm256_add_epi32(here, _mm256_and_si256(own, _mm256_set1_epi32(1)));
-        if (half == 1 && bit == 31 && w + 1 < row.words) next = bases_of(row, w + 1);
-        const __m128i places = _mm_loadu_si128(reinterpret_cast<const __m128i*>(kCornerPlaces[cell].data()));
-        const __m256i low = numbers_at(places, here, next);
-        const __m256i high = numbers_at(_mm_srli_si128(places, 8), here, next);
-        const std::size_t corners = 3U * kCaseTable[cell].triangles;
-        if (end - out >= kWritten) {
-          _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), low);
-          _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8), high);
-        } else {
-          alignas(32) std::array<std::uint32_t, kWritten> last;
-          _mm256_store_si256(reinterpret_cast<__m256i*>(last.data()), low);
-          _mm256_store_si256(reinterpret_cast<__m256i*>(last.data() + 8), high);
-          std::memcpy(out, last.data(), corners * sizeof(std::uint32_t));
-        }
-        out += corners;
-      });
-    }
+  std::uint8_t* next_case = cases.data();
+  __m256i next = bases_of(row, w);
+  for (const unsigned half : {0U, 1U}) {
+    const __m256i crossings = crossings_of(row, w, half);
+    for_cells(row, w, half, [&](int bit, std::uint32_t cell) {
+      *next_case++ = static_cast<std::uint8_t>(cell);
+      const __m256i here = next;
+      const __m256i own = _mm256_srl_epi32(crossings, _mm_cvtsi32_si128(bit));
+      next = _mm256_add_epi32(here, _mm256_and_si256(own, _mm256_set1_epi32(1)));
+      if (half == 1 && bit == 31 && w + 1 < row.words) next = bases_of(row, w + 1);
+      const __m128i places = _mm_loadu_si128(reinterpret_cast<const __m128i*>(kCornerPlaces[cell].data()));
+      const __m256i low = numbers_at(places, here, next);
+      const __m256i high = numbers_at(_mm_srli_si128(places, 8), here, next);
+      const std::size_t corners = 3U * kCaseTable[cell].triangles;
+      if (end - out >= kWritten) {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), low);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8), high);
+      } else {
+        alignas(32) std::array<std::uint32_t, kWritten> last;
+        _mm256_store_si256(reinterpret_cast<__m256i*>(last.data()), low);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(last.data() + 8), high);
+        std::memcpy(out, last.data(), corners * sizeof(std::uint32_t));
+      }
+      out += corners;
+    });
   }
 }
 

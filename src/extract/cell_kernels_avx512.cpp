@@ -58,30 +58,29 @@ __m512i bases_of(const CellRow& row, std::size_t w, __m512i crossings) {
   return _mm512_add_epi64(first, before);
 }
 
-void write_triangles(const CellRow& row, std::span<std::array<std::uint32_t, 3>> triangles) {
+void write_triangles(const CellRow& row, std::size_t w, std::span<std::array<std::uint32_t, 3>> triangles,
+                     std::span<std::uint8_t, 64> cases_crossed) {
   std::array<std::uint32_t, 3>* out = triangles.data();
-  for (std::size_t w = 0; w < row.words; ++w) {
-    std::uint64_t crossed = row.crossed[w];
-    if (crossed == 0) continue;
-    alignas(64) std::array<std::uint8_t, 64> cases;
-    _mm512_store_si512(cases.data(), cases_of(row, w));
-    const __m512i crossings = crossings_of(row, w);
-    __m512i next = bases_of(row, w, crossings);
-    for (; crossed != 0; crossed &= crossed - 1) {
-      const int bit = std::countr_zero(crossed);
-      const std::uint8_t cell = cases[static_cast<std::size_t>(bit)];
-      const __m512i own = _mm512_and_si512(_mm512_srl_epi64(crossings, _mm_cvtsi32_si128(bit)), _mm512_set1_epi64(1));
-      const __m512i here = next;
-      next = _mm512_add_epi64(here, own);
-      if (bit == 63 && w + 1 < row.words) next = bases_of(row, w + 1, crossings_of(row, w + 1));
-      const __m512i numbers =
-          _mm512_inserti32x8(_mm512_castsi256_si512(_mm512_cvtepi64_epi32(here)), _mm512_cvtepi64_epi32(next), 1);
-      const __m512i places =
-          _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(kCornerPlaces[cell].data())));
-      const auto corners = static_cast<__mmask16>((1U << 3 * kTriangles[cell]) - 1);
-      _mm512_mask_storeu_epi32(out, corners, _mm512_permutexvar_epi32(places, numbers));
-      out += kTriangles[cell];
-    }
+  std::uint8_t* next_case = cases_crossed.data();
+  alignas(64) std::array<std::uint8_t, 64> cases;
+  _mm512_store_si512(cases.data(), cases_of(row, w));
+  const __m512i crossings = crossings_of(row, w);
+  __m512i next = bases_of(row, w, crossings);
+  for (std::uint64_t crossed = row.crossed[w]; crossed != 0; crossed &= crossed - 1) {
+    const int bit = std::countr_zero(crossed);
+    const std::uint8_t cell = cases[static_cast<std::size_t>(bit)];
+    *next_case++ = cell;
+    const __m512i own = _mm512_and_si512(_mm512_srl_epi64(crossings, _mm_cvtsi32_si128(bit)), _mm512_set1_epi64(1));
+    const __m512i here = next;
+    next = _mm512_add_epi64(here, own);
+    if (bit == 63 && w + 1 < row.words) next = bases_of(row, w + 1, crossings_of(row, w + 1));
+    const __m512i numbers =
+        _mm512_inserti32x8(_mm512_castsi256_si512(_mm512_cvtepi64_epi32(here)), _mm512_cvtepi64_epi32(next), 1);
+    const __m512i places =
+        _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(kCornerPlaces[cell].data())));
+    const auto corners = static_cast<__mmask16>((1U << 3 * kTriangles[cell]) - 1);
+    _mm512_mask_storeu_epi32(out, corners, _mm512_permutexvar_epi32(places, numbers));
+    out += kTriangles[cell];
   }
 }
 

@@ -22,16 +22,16 @@ inline constexpr std::size_t kMostCorners = 7;
 // A polygon of a case that has more than three corners.
 struct ChoicePolygon {
   std::uint8_t size = 0;
-  std::uint8_t ear = 0;                                // of five corners: the one between two on parallel edges
   std::uint8_t first = 0;                              // triangle of the case
   std::array<std::uint8_t, kMostCorners> at{};         // of each corner: its place among the corners of its triangles
   std::array<std::uint8_t, kMostCorners> diagonals{};  // of each corner: a bit for each one that it may be joined to
 };
 
-// The polygons of all cases, and where those of a case begin. One more follows the last case.
+// The polygons of all cases, and where those of a case begin. One more follows the last polygon, and the last case.
 struct ChoicePolygons {
   static constexpr std::size_t kCount = 214;
-  std::array<ChoicePolygon, kCount> polygons{};
+  static constexpr std::size_t kMostOfCase = 2;
+  std::array<ChoicePolygon, kCount + 1> polygons{};
   std::array<std::uint16_t, 257> first{};
 };
 
@@ -47,15 +47,17 @@ constexpr int ear_of(const Polygon& polygon) {
   return -1;
 }
 
+// The corners of a polygon go around it. Those of five begin with the ear.
 constexpr ChoicePolygon choice_polygon(const Polygon& polygon, const CellCase& shape, std::size_t first) {
   ChoicePolygon out;
   out.size = static_cast<std::uint8_t>(polygon.size);
   out.first = static_cast<std::uint8_t>(first);
-  out.ear = static_cast<std::uint8_t>(polygon.size == 5 ? ear_of(polygon) : 0);
+  const std::size_t begin = polygon.size == 5 ? static_cast<std::size_t>(ear_of(polygon)) : 0;
+  const auto edge = [&](std::size_t corner) { return polygon.edges[(begin + corner) % out.size]; };
   for (std::size_t a = 0; a < out.size; ++a) {
-    while (shape.edges[3 * first + out.at[a]] != polygon.edges[a]) ++out.at[a];
+    while (shape.edges[3 * first + out.at[a]] != edge(a)) ++out.at[a];
     for (std::size_t b = 0; b < out.size; ++b) {
-      if (!share_face(polygon.edges[a], polygon.edges[b])) out.diagonals[a] |= static_cast<std::uint8_t>(1U << b);
+      if (!share_face(edge(a), edge(b))) out.diagonals[a] |= static_cast<std::uint8_t>(1U << b);
     }
   }
   return out;
@@ -103,24 +105,29 @@ ISOWEAVE_HD inline void choose_diagonals_of(const ChoicePolygon& polygon, const 
   });
 }
 
+// One of two numbers, without a branch: which one it is cannot be predicted.
+ISOWEAVE_HD inline std::uint32_t either(bool first, std::uint32_t a, std::uint32_t b) {
+  return b ^ ((a ^ b) & (0U - std::uint32_t{first}));
+}
+
 // Four corners have two diagonals, both of which are allowed. The table has the one from corner 1 to 3.
 template <class Vertex, class Place>
 ISOWEAVE_HD inline void choose_diagonal(const ChoicePolygon& polygon, const Vertex& vertex, const Place& place) {
   const std::uint32_t a = vertex(polygon.at[0]), b = vertex(polygon.at[1]);
   const std::uint32_t c = vertex(polygon.at[2]), d = vertex(polygon.at[3]);
-  if (!(squared_distance(place(a), place(c)) < squared_distance(place(b), place(d)))) return;
+  const bool from_a = squared_distance(place(a), place(c)) < squared_distance(place(b), place(d));
   const std::uint32_t corners[6] = {a, c, d, a, b, c};
-  for (std::size_t n = 0; n < 6; ++n) vertex(n) = corners[n];
+  for (std::size_t n = 0; n < 6; ++n) vertex(n) = either(from_a, corners[n], vertex(n));
 }
 
 // Five corners lose their ear, and the four others get the shorter diagonal.
 template <class Vertex, class Place>
 ISOWEAVE_HD inline void cut_ear(const ChoicePolygon& polygon, const Vertex& vertex, const Place& place) {
   std::uint32_t around[5];  // from the ear on
-  for (std::size_t n = 0; n < 5; ++n) around[n] = vertex(polygon.at[(polygon.ear + n) % 5]);
+  for (std::size_t n = 0; n < 5; ++n) around[n] = vertex(polygon.at[n]);
   const auto [a, b, c, d, e] = around;
   const bool from_b = !(squared_distance(place(c), place(e)) < squared_distance(place(b), place(d)));
-  const std::uint32_t corners[9] = {a, b, e, b, c, from_b ? d : e, from_b ? b : c, d, e};
+  const std::uint32_t corners[9] = {a, b, e, b, c, either(from_b, d, e), either(from_b, b, c), d, e};
   for (std::size_t n = 0; n < 9; ++n) vertex(n) = corners[n];
 }
 

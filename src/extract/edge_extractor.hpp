@@ -20,6 +20,7 @@
 #include "extract/row_counts.hpp"
 #include "extract/sample_view.hpp"
 #include "extract/surface_piece.hpp"
+#include "extract/vertex_places.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "parallel/parallel.hpp"
 
@@ -112,8 +113,8 @@ class EdgeExtractor : public Extractor {
   // The place in the piece of a vertex that is new in it.
   std::size_t index_of(std::uint32_t number) const { return number - front_size_; }
 
-  const Vec3& place_of(std::uint32_t number, const SurfacePiece& piece) const {
-    return number < front_size_ ? front_places_[number] : piece.positions[number - front_size_];
+  VertexPlaces places(const SurfacePiece& piece) const {
+    return {std::span(front_places_).first(front_size_), piece.positions.data()};
   }
 
  private:

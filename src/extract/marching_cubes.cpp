@@ -1,7 +1,8 @@
 #include "extract/marching_cubes.hpp"
 
-#include "extract/cell_cases.hpp"
-#include "extract/choose_diagonals.hpp"
+#include <bit>
+
+#include "extract/polygon_lists.hpp"
 
 namespace isoweave {
 
@@ -18,31 +19,21 @@ void MarchingCubes::count_cells(const SliceWindow&, const Row& at, RowCounts& co
 
 void MarchingCubes::write_cells(const SliceWindow&, const Row& at, SurfacePiece& piece) const {
   const auto [first, count] = triangles_of(at.number);
-  const CellRow cells = cell_row(at);
-  cell_kernels_.write_triangles(cells, {piece.triangles.data() + first, count});
-  shorten_diagonals(cells, first, piece);
-}
-
-// Gives the polygons of a row of cells, whose triangles begin with the `first`, their shortest diagonals.
-void MarchingCubes::shorten_diagonals(const CellRow& cells, std::uint32_t first, SurfacePiece& piece) const {
-  std::uint32_t* corners = piece.triangles[first].data();
-  const auto shorten = [&](int, std::uint32_t cell) {
-    shorten_diagonals_of(cell, corners, piece);
-    corners += 3 * kCaseTable[cell].triangles;
-  };
-  for (std::size_t w = 0; w < cells.words; ++w) {
-    if (cells.crossed[w] == 0) continue;
-    for (const unsigned half : {0U, 1U}) for_cells(cells, w, half, shorten);
+  const CellRow row = cell_row(at);
+  std::span<std::array<std::uint32_t, 3>> left(piece.triangles.data() + first, count);
+  PolygonLists polygons(places(piece));
+  for (std::size_t w = 0; w < row.words; ++w) {
+    if (row.crossed[w] == 0) continue;
+    std::array<std::uint8_t, 64> cases;
+    cell_kernels_.write_triangles(row, w, left, cases);
+    const auto cells = static_cast<std::size_t>(std::popcount(row.crossed[w]));
+    for (const std::uint8_t cell : std::span(cases).first(cells)) {
+      polygons.add(cell, left.data()->data());
+      left = left.subspan(kCaseTable[cell].triangles);
+    }
+    polygons.make_room();
   }
-}
-
-void MarchingCubes::shorten_diagonals_of(std::uint32_t cell, std::uint32_t* corners, const SurfacePiece& piece) const {
-  const auto place = [&](std::uint32_t number) -> const Vec3& { return place_of(number, piece); };
-  for (std::size_t n = kChoicePolygons.first[cell]; n < kChoicePolygons.first[cell + 1]; ++n) {
-    const ChoicePolygon& polygon = kChoicePolygons.polygons[n];
-    const auto corner = [&](std::size_t at) -> std::uint32_t& { return corners[3U * polygon.first + at]; };
-    choose_diagonals(polygon, corner, place);
-  }
+  polygons.choose();
 }
 
 CellRow MarchingCubes::cell_row(const Row& at) const {

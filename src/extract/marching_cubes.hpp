@@ -24,12 +24,7 @@ class MarchingCubes : public EdgeExtractor<CubeEdges> {
   // A row of cells and the rows around it. Its numbers are valid once vertices have been emitted.
   CellRow cell_row(const Row& at) const;
 
-  // Gives the polygons of a cell, whose triangles have such corners, their shortest diagonals.
-  void shorten_diagonals_of(std::uint32_t cell, std::uint32_t* corners, const SurfacePiece& piece) const;
-
  private:
-  void shorten_diagonals(const CellRow& cells, std::uint32_t first, SurfacePiece& piece) const;
-
   const CellKernels& cell_kernels_ = cell_kernels();
 };
 

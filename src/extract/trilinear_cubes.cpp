@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "extract/cell_cases.hpp"
-#include "extract/choose_diagonals.hpp"
+#include "extract/polygon_lists.hpp"
 #include "extract/trilinear_rules.hpp"
 #include "volume/samples.hpp"
 
@@ -175,19 +175,25 @@ class TrilinearCubes::RowWriter {
         samples_(window, cubes.options().rule.iso),
         low_{-1, static_cast<std::int64_t>(at.row) - 1, cubes.slab().next_layer() + static_cast<std::int64_t>(at.n)},
         rows_(samples_, cubes.options().rule, low_[1], low_[2]),
+        places_(cubes.places(piece)),
+        polygons_(places_),
         vertex_(cubes.first_inside(at)),
         triangle_(piece.triangles.data() + cubes.triangles_of(at.number).first) {}
 
   void write(std::size_t bit, std::uint32_t cell, const Numbers& numbers) {
     low_[0] = static_cast<std::int64_t>(bit) - 1;
     if (differing_cases()[cell]) return write_choice(cell, numbers);
-    Triangle* const first = triangle_;
+    std::uint32_t* const corners = triangle_->data();
     const std::uint8_t* place = kCornerPlaces[cell].data();
     for (std::size_t t = 0; t < kCaseTable[cell].triangles; ++t, ++triangle_) {
       for (std::uint32_t& corner : *triangle_) corner = numbers[*place++];
     }
-    cubes_.shorten_diagonals_of(cell, first->data(), piece_);
+    polygons_.add(cell, corners);
+    polygons_.make_room();
   }
+
+  // Chooses the diagonals that are left.
+  void finish() { polygons_.choose(); }
 
  private:
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) { *triangle_++ = {a, b, c}; }
@@ -211,7 +217,7 @@ class TrilinearCubes::RowWriter {
     Ring ring;
     for (std::size_t n = 0; n < static_cast<std::size_t>(loop.size); ++n) {
       const std::uint32_t number = numbers[corner_place(static_cast<std::size_t>(loop.edges[n]))];
-      ring.add(number, cubes_.place_of(number, piece_));
+      ring.add(number, places_(number));
     }
     return ring;
   }
@@ -252,7 +258,7 @@ class TrilinearCubes::RowWriter {
     std::uint32_t slot = kWaistSlot;
     for (const Vec3& at : waist_of(values_)) {
       const std::uint32_t number = add_vertex(clamped(at), slot++);
-      waist.add(number, cubes_.place_of(number, piece_));
+      waist.add(number, places_(number));
     }
     const Ring first = ring_of(topology.loop[topology.tunnel[0]], numbers);
     const Ring second = ring_of(topology.loop[topology.tunnel[1]], numbers);
@@ -325,6 +331,8 @@ class TrilinearCubes::RowWriter {
   std::array<std::int64_t, 3> low_;  // sample at which the cell begins
   CornerRows<T> rows_;
   CornerValues values_{};
+  VertexPlaces places_;
+  PolygonLists polygons_;
   std::uint32_t vertex_;  // the next one inside a cell
   Triangle* triangle_;    // the next one
 };
@@ -335,6 +343,7 @@ void TrilinearCubes::write_row(const SliceWindow& window, const Row& at, Surface
   for_cell_numbers(cell_row(at), [&](std::size_t bit, std::uint32_t cell, const Numbers& numbers) {
     writer.write(bit, cell, numbers);
   });
+  writer.finish();
 }
 
 }  // namespace isoweave

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "extract/choose_diagonals.hpp"
+#include "extract/polygon_lists.hpp"
 
 namespace isoweave::testing::extract_tables_test {
 namespace {
@@ -185,6 +185,59 @@ TEST(Diagonals, AreTheShortestButForEars) {
       EXPECT_NEAR(sum_of_diagonals(corners, places), expected, 1e-12) << "case " << inside;
     });
     EXPECT_EQ(next, kChoicePolygons.first[static_cast<std::size_t>(inside) + 1]);
+  }
+}
+
+// Random cells one after the other, and the corners of their triangles: numbers of vertices at random places.
+struct RandomCells {
+  static constexpr std::size_t kVertices = 500;
+
+  std::vector<std::uint8_t> cells;
+  std::vector<std::uint32_t> corners;
+  std::vector<Vec3> places{kVertices};
+
+  RandomCells(std::size_t count, std::mt19937& random) {
+    std::uniform_real_distribution<double> coordinate(0, 1);
+    for (Vec3& place : places) place = {coordinate(random), coordinate(random), coordinate(random)};
+    for (; count > 0; --count) {
+      cells.push_back(static_cast<std::uint8_t>(1 + random() % 254));
+      const CellCase& shape = kCaseTable[cells.back()];
+      const auto first = static_cast<std::uint32_t>(random() % (kVertices - kCellEdges));
+      for (std::size_t c = 0; c < 3U * shape.triangles; ++c) corners.push_back(first + shape.edges[c]);
+    }
+  }
+
+  // The corners after the polygons have got their diagonals one after the other.
+  std::vector<std::uint32_t> one_after_the_other() const {
+    std::vector<std::uint32_t> out = corners;
+    std::size_t at = 0;
+    for (const std::uint8_t cell : cells) {
+      for (std::size_t n = kChoicePolygons.first[cell]; n < kChoicePolygons.first[cell + 1U]; ++n) {
+        const ChoicePolygon& polygon = kChoicePolygons.polygons[n];
+        const auto corner = [&](std::size_t c) -> std::uint32_t& { return out[at + 3U * polygon.first + c]; };
+        choose_diagonals(polygon, corner, [&](std::uint32_t v) -> const Vec3& { return places[v]; });
+      }
+      at += 3U * kCaseTable[cell].triangles;
+    }
+    return out;
+  }
+};
+
+TEST(PolygonLists, GiveTheDiagonalsThatPolygonsGetOneAfterTheOther) {
+  constexpr std::size_t kInherited = 100;
+  std::mt19937 random(22);
+  for (const std::size_t words : {1U, 3U, 20U}) {
+    RandomCells row(64 * words, random);
+    const std::vector<std::uint32_t> expected = row.one_after_the_other();
+    PolygonLists polygons(VertexPlaces({row.places.data(), kInherited}, row.places.data() + kInherited));
+    std::uint32_t* corners = row.corners.data();
+    for (std::size_t n = 0; n < row.cells.size(); ++n) {
+      polygons.add(row.cells[n], corners);
+      corners += 3U * kCaseTable[row.cells[n]].triangles;
+      if (n % 64 == 63) polygons.make_room();
+    }
+    polygons.choose();
+    EXPECT_EQ(row.corners, expected) << words << " words";
   }
 }
 
