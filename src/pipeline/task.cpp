@@ -177,8 +177,9 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
   }
-  // An edge whose key is not known yet has cost 0. It must stay live, also when nothing is simplified.
-  return error > 0 ? to_cost(error * error / a0) : kUnknownCost;
+  // An edge whose key is not known yet has cost 0. It must stay live, also when nothing is simplified. The cost of a
+  // huge error overflows: no error lets an edge live that is never to be decided.
+  return error > 0 ? std::min(to_cost(error * error / a0), kRetiredCost - 1) : kUnknownCost;
 }
 
 bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {

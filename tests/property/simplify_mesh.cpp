@@ -84,6 +84,20 @@ TEST(SimplifyMesh, EndsOfNonManifoldAndMisorientedEdgesStay) {
   EXPECT_GT(simplify(meshes::moebius_strip()).report.locked_vertices, 0u);
 }
 
+// The cost of such an error is beyond float32.
+TEST(SimplifyMesh, HugeErrorsLeaveWhatLargeOnesLeave) {
+  for (const Schedule schedule : {Schedule::kQueue, Schedule::kLocal, Schedule::kRounds}) {
+    const auto left = [&](double error) {
+      MemorySink sink;
+      RunControl control;
+      control.schedule = schedule;
+      return simplify_mesh(waves(), sink, {.error = Length::voxels(error)}, control).digest;
+    };
+    const std::uint64_t expected = left(1e15);
+    for (const double error : {1e19, 1e30, 1e300}) EXPECT_EQ(left(error), expected) << error;
+  }
+}
+
 TEST(SimplifyMesh, TrianglesThatRepeatAVertexAreLeftOut) {
   TriangleMesh mesh = meshes::grid(6);
   mesh.triangles.insert(mesh.triangles.begin() + 3, {4, 4, 5});
