@@ -1,6 +1,7 @@
 #include "options/stop.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "options/values.hpp"
 #include "report/print.hpp"
@@ -16,6 +18,14 @@ namespace isoweave::cli {
 namespace {
 
 constexpr std::string_view kInfinite = "inf";  // an error without a bound
+
+// The bounds that were asked for beside a number of triangles: any of them may have stopped a run before.
+std::string bounds_given(const StopOptions& stop) {
+  std::vector<std::string> bounds;
+  if (!stop.error.empty() && stop.error != kInfinite) bounds.push_back("--error " + stop.error);
+  if (!stop.max_distance.empty()) bounds.push_back("--max-distance " + stop.max_distance);
+  return fmt::format("{}", fmt::join(bounds, " or "));
+}
 
 }  // namespace
 
@@ -96,14 +106,17 @@ void print_target(const StopOptions& stop, const MeshReport& report, std::uint64
       fmt::format("error reached: {} (of the last collapses; most of the surface moved far less)", text(report.error)));
   if (report.triangles <= asked) return;
   const bool all_tetrahedra = report.open_edges == 0 && report.triangles <= 4 * report.components;
-  if (!stop.error.empty() && !all_tetrahedra) {
-    print_note(fmt::format("stopped by --error {} at {} of {} triangles", stop.error, grouped(report.triangles),
-                           grouped(asked)));
+  const std::string bounds = bounds_given(stop);
+  if (!bounds.empty() && !all_tetrahedra) {
+    print_note(fmt::format("stopped by {} at {} of {} triangles", bounds, grouped(report.triangles), grouped(asked)));
   }
-  print_note(
-      fmt::format("to leave fewer: --largest, --min-component N or --specks drop where small components keep "
-                  "them, or an --error above {}",
-                  allowed.in_voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value)));
+  std::vector<std::string> ways{"--largest, --min-component N or --specks drop where small components keep them"};
+  if (std::isfinite(allowed.value)) {
+    const std::string error = allowed.in_voxels ? fmt::format("{:.4g}vox", allowed.value) : text(allowed.value);
+    ways.push_back("an --error above " + error);
+  }
+  if (!stop.max_distance.empty()) ways.push_back("a --max-distance above " + stop.max_distance);
+  print_note(fmt::format("to leave fewer: {}", fmt::join(ways, ", or ")));
 }
 
 std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {

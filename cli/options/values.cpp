@@ -58,7 +58,10 @@ std::int64_t parse_count(std::string_view option, std::string_view text) {
   const std::optional<double> part = to_finite(digits);
   const bool whole = part && factor > 1 && *part * factor >= 1 && *part * factor < kMost &&
                      std::floor(*part * factor) == *part * factor;
-  if (!whole) wrong_value(option, "a whole number of at least 1, such as 5000 or 50k", text);
+  if (!whole) {
+    const bool is_digits = to_number<std::int64_t>(text).has_value();
+    wrong_value(option, fmt::format("a whole number of at least 1{}", is_digits ? "" : ", such as 5000 or 50k"), text);
+  }
   return static_cast<std::int64_t>(*part * factor);
 }
 

@@ -26,6 +26,7 @@ void require_viewer(std::string_view wanted) {
 void add_page_options(CLI::App& verb, PageOptions& page) {
   verb.add_option("--html", page.path, "Write a page that shows mesh and report in a browser to this file");
   add_page_triangles(verb, page);
+  verb.get_option("--page-triangles")->needs("--html");
 }
 
 void add_page_triangles(CLI::App& verb, PageOptions& page) {

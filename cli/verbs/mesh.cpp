@@ -48,6 +48,9 @@ void run_mesh(MeshArguments arguments) {
     if (!arguments.output.given()) arguments.output.path = usual_output(arguments.input.path, "", ".ply");
     if (arguments.slab.empty()) arguments.slab = "auto";
     if (rank_link() != nullptr) return run_mesh_in_ranks(std::move(arguments), *rank_link());
+    if (!arguments.every.empty() && arguments.checkpoint.empty()) {
+      throw std::invalid_argument("--every: expected --checkpoint as well, as it says how often that saves");
+    }
     if (arguments.every.empty()) arguments.every = "5min";
     // Labels are neither resampled nor averaged, as a value between two labels is no label.
     arguments.input.holds_labels = !arguments.labels.empty();

@@ -121,7 +121,8 @@ MeshReport simplify_named(const SimplifyArguments& arguments, const TriangleMesh
 // Warnings about parts of the input that the output will not have.
 std::vector<std::string> input_warnings(const SimplifyArguments& arguments, const TriangleMesh& mesh) {
   std::vector<std::string> warnings = mesh_warnings(arguments.input, mesh);
-  if (!mesh.values.empty() && !keeps_values(arguments)) {
+  // A preview says so itself.
+  if (!mesh.values.empty() && !keeps_values(arguments) && !arguments.preview.given()) {
     warnings.push_back(arguments.input + ": the values at its vertices are not kept, which needs .ply or .vtp");
   }
   return warnings;

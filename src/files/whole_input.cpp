@@ -22,8 +22,6 @@ namespace isoweave {
 namespace {
 
 constexpr std::size_t kBlockBytes = 1 << 20;
-constexpr const char* kStandardInput = "/dev/stdin";
-
 using system::Descriptor;
 
 [[noreturn]] void cannot_keep(const std::string& folder, const std::string& path) {

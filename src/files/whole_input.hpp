@@ -8,6 +8,8 @@
 
 namespace isoweave {
 
+inline constexpr const char* kStandardInput = "/dev/stdin";
+
 // Opens a regular file, or everything that comes out of a pipe or socket. A pipe can be read once, so opening it again
 // while its content is still held gives the same content. Throws what open_file throws; CannotWrite when there is no
 // room.

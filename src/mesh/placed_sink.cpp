@@ -85,6 +85,8 @@ void PlacedSink::finish() {
     Point& moved = points.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       moved[axis] = static_cast<float>(place[axis] + shift[axis] - offset[axis]);
+      if (!std::isfinite(moved[axis]))
+        throw std::invalid_argument("scale: expected one with which 32 bits hold all coordinates");
     }
   }
   for (std::size_t first = 0; first < points.size(); first += kAtOnce) {

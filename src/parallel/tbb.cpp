@@ -4,8 +4,12 @@
 // without instrumentation, with ISOWEAVE_TSAN set, and tells the two edges that for_blocks promises: what the caller
 // did comes before every body, and every body before the return.
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <optional>
 
 #include "parallel/arena.hpp"
 
@@ -27,7 +31,11 @@ void tsan_release(void*) {}
 // Made once: making one costs as much as a small loop, and a slab runs dozens of loops.
 class TbbArena final : public Arena {
  public:
-  explicit TbbArena(int threads) : tasks_(threads) {}
+  explicit TbbArena(int threads) : tasks_(threads) {
+    if (threads > tbb::info::default_concurrency()) {
+      more_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    }
+  }
 
   void run(const BlockLoop& loop) override {
     char started = 0;
@@ -47,7 +55,9 @@ class TbbArena final : public Arena {
   }
 
  private:
-  tbb::task_arena tasks_;
+  // Without it oneTBB starts no more threads than there are processors, and says so on the standard error.
+  std::optional<tbb::global_control> more_;
+  tbb::task_arena tasks_;  // gets its slots when it runs first
 };
 
 }  // namespace

@@ -21,13 +21,21 @@ std::string short_number(double number) {
   return {digits.begin(), end.ptr};
 }
 
+// The bounds within which a run to a number of triangles was to stay.
+std::string bounds_text(const SimplifyTask& task, double most_error) {
+  const auto length = [&](double number) { return short_number(number) + (task.unit.empty() ? "" : " ") + task.unit; };
+  std::string text = std::isfinite(most_error) ? " within an error of " + length(most_error) : "";
+  const double most_distance = task.zone.most_distance;
+  if (most_distance > 0)
+    text += (text.empty() ? " within a distance of " : " and a distance of ") + length(most_distance);
+  return text;
+}
+
 // The reason why more triangles are left than the number at which the run was to stop.
-std::string why_more_are_left(const MeshReport& report, std::uint64_t asked, double most_error, std::string_view unit) {
-  const std::string length = short_number(most_error) + (unit.empty() ? "" : " ") + std::string(unit);
-  const std::string within = std::isfinite(most_error) ? " within an error of " + length : "";
-  std::string held = "no other collapse" + within + " keeps the topology and the sides of faces";
+std::string why_more_are_left(const MeshReport& report, const SimplifyTask& task, double most_error) {
+  std::string held = "no other collapse" + bounds_text(task, most_error) + " keeps the topology and the sides of faces";
   const std::uint64_t least = kLeastTriangles * report.components;
-  if (report.open_edges > 0 || least <= asked) return held;
+  if (report.open_edges > 0 || least <= task.triangles) return held;
   const std::string kept = "each of " + std::to_string(report.components) + " components keeps " +
                            std::to_string(kLeastTriangles) + " at least, " + std::to_string(least) + " in all";
   return report.triangles > least ? kept + "; " + held : kept;
@@ -71,7 +79,7 @@ void report_target(const DecisionCounts& counts, const SimplifyTask& task, MeshR
   if (report.triangles <= task.triangles) return;
   report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " +
                             std::to_string(task.triangles) +
-                            " were asked for: " + why_more_are_left(report, task.triangles, most_error, task.unit));
+                            " were asked for: " + why_more_are_left(report, task, most_error));
 }
 
 void warn_of_space(const Task& task, MeshReport& report) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -125,13 +126,19 @@ void apply_unit(VolumeInfo& volume, const std::string& text) {
 
 }  // namespace
 
+void require_usable_steps(const std::array<double, 3>& spacing) {
+  for (const double step : spacing) {
+    if (is_usable_step(step)) continue;
+    std::ostringstream text;
+    text << "spacing: expected lengths from 1e-30 to 1e30, found " << step;
+    throw std::invalid_argument(text.str());
+  }
+}
+
 void apply_overrides(VolumeInfo& volume, const OpenOptions& options) {
   Geometry& geometry = volume.geometry;
   if (options.spacing) {
-    for (const double step : *options.spacing) {
-      if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
-      if (!is_usable_step(step)) throw std::invalid_argument("spacing must lie between 1e-30 and 1e30");
-    }
+    require_usable_steps(*options.spacing);
     geometry.spacing = *options.spacing;
   }
   if (options.origin) {

@@ -27,6 +27,10 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
 // A unit vector orthogonal to `a` and `b`: the missing third axis of a plane image.
 Vector3 normal_of(const Vector3& a, const Vector3& b);
 
+// Throws std::invalid_argument unless all steps that a caller names are usable: neither too short nor too long for
+// areas and volumes to be computed.
+void require_usable_steps(const std::array<double, 3>& spacing);
+
 // Throws std::invalid_argument, naming the path, unless steps are usable, the other numbers are finite, and samples
 // have a slope. A volume opened from a file is usable; a caller's own source may not be.
 void require_usable(const VolumeInfo& volume);

@@ -10,6 +10,7 @@
 #include "isoweave/error.hpp"
 #include "isoweave/printable.hpp"
 #include "parallel/size.hpp"
+#include "volume/axes.hpp"
 #include "volume/fields.hpp"
 #include "volume/row_source.hpp"
 #include "volume/samples.hpp"
@@ -167,9 +168,7 @@ std::unique_ptr<SliceSource> generate_volume(const GenerateOptions& options) {
   } catch (const BadInput& error) {
     throw std::invalid_argument(error.what());
   }
-  for (const double step : options.spacing) {
-    if (!std::isfinite(step) || !(step > 0)) throw std::invalid_argument("spacing must be positive and finite");
-  }
+  require_usable_steps(options.spacing);
   info.geometry.spacing = options.spacing;
   return std::make_unique<GeneratedSource>(std::move(info), kind, options.seed);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "files/crc32.hpp"
+#include "files/whole_input.hpp"
 #include "isoweave/index.hpp"
 #include "system/file_facts.hpp"
 
@@ -133,7 +134,8 @@ std::string volume_identity(const VolumeInfo& volume) {
 std::vector<std::string> index_places(const VolumeInfo& volume) {
   std::error_code error;
   const fs::path path = fs::path(volume.path + "/").parent_path();
-  const bool is_there = fs::exists(path, error);
+  // What standard input is now it is not in the next run, though the system has a name for it.
+  const bool is_there = path != kStandardInput && fs::exists(path, error);
   if (!is_there && volume.data_files.empty()) return {};
   std::vector<std::string> places;
   if (is_there) places.push_back((path.parent_path() / (index_name(volume) + kEnding)).string());

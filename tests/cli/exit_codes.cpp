@@ -131,5 +131,25 @@ TEST(CliUsage, AnEmptyValueIsRefused) {
   expect_code(folder, {"info", kSmall, "--series", ""}, 2, "--series: expected a value, found ''");
 }
 
+TEST(CliUsage, AnOptionThatSaysNothingAloneIsRefused) {
+  const files::Folder folder;
+  const auto with = [&](const std::string& option, const std::string& value) {
+    return Words{"mesh", kSmall, "--iso", "0", "-o", "new.ply", option, value};
+  };
+  expect_code(folder, with("--every", "3layers"), 2, "--every: expected --checkpoint as well");
+  expect_code(folder, with("--page-triangles", "3000"), 2, "--page-triangles requires --html");
+}
+
+TEST(CliUsage, NumbersThatDoNotDoAreNamed) {
+  const files::Folder folder;
+  const auto with = [&](const std::string& option, const std::string& value) {
+    return Words{"mesh", kSmall, "--iso", "0", "-o", "new.ply", option, value};
+  };
+  expect_code(folder, with("--spacing", "0,1,1"), 2, "spacing: expected lengths from 1e-30 to 1e30, found 0");
+  expect_code(folder, with("--spacing", "1,1,1e31"), 2, "found 1e+31");
+  expect_code(folder, with("--scale", "1e40"), 2, "scale: expected one with which 32 bits hold all coordinates");
+  expect_code(folder, with("--threads", "0"), 2, "--threads: expected a whole number of at least 1, found '0'");
+}
+
 }  // namespace
 }  // namespace isoweave::testing::cli_exit_codes_test

@@ -110,6 +110,10 @@ TEST_F(IndexVerb, PartsAndLabelsRefuseIt) {
   expect_failed(run(folder_.path(), {"mesh", kVolume, "-o", "m.ply", "--labels", "1", "--index", kIndex}), 2,
                 "--index");
   expect_failed(run(folder_.path(), {"index", "generate:sphere:20x20x20"}), 3, "expected a volume in files");
+  program::Setup redirected;
+  redirected.in_path = folder_ / kVolume;
+  expect_failed(run(folder_.path(), {"index", "-", "--raw", "400x400x60:uint8"}, redirected), 3,
+                "expected a volume in files");
   EXPECT_FALSE(report({"--roi", ":,:,:20"}).contains("index"));
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "program.hpp"
@@ -116,6 +117,20 @@ TEST(CliTriangles, SayWhatStoppedThem) {
   EXPECT_NE(stopped.find("stopped by --error 0.05vox at "), std::string::npos) << stopped;
   EXPECT_NE(stopped.find(" of 500 triangles\n"), std::string::npos) << stopped;
   EXPECT_EQ(err({}).find("stopped by"), std::string::npos);
+  const std::string distance = err({"--error", "inf", "--max-distance", "0.05vox"});
+  EXPECT_NE(distance.find("no other collapse within a distance of 0.05 keeps"), std::string::npos) << distance;
+  EXPECT_NE(distance.find("stopped by --max-distance 0.05vox at "), std::string::npos) << distance;
+  EXPECT_NE(distance.find("or a --max-distance above 0.05vox\n"), std::string::npos) << distance;
+  EXPECT_EQ(distance.find("--error"), std::string::npos) << distance;
+}
+
+TEST(CliThreads, MoreThanThereAreProcessorsSayNothing) {
+  const files::Folder folder;
+  const std::string threads = std::to_string(std::thread::hardware_concurrency() + 3);
+  const program::Result result = run(folder.path(), {"mesh", "generate:gyroid:48x48x48", "--iso", "0", "-o", "a.ply",
+                                                     "--threads", threads, "--quiet"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.err, "");
 }
 
 std::string nrrd(const std::string& type, const std::string& sizes, const std::string& samples) {

@@ -320,7 +320,8 @@ TEST(ReadMesh, ObjDataThatAreWrong) {
   EXPECT_TRUE(failure("a.obj", points + "f 1 2 99999999999999999999\n").starts_with("line 4: expected the number"));
   EXPECT_TRUE(failure("a.obj", points + "f 1/1/1/1 2 3\n").starts_with("line 4: expected a corner"));
   EXPECT_EQ(failure("a.obj", "v 0 0 inf\n"), "line 1: expected a finite number, found 'inf'");
-  EXPECT_EQ(failure("a.obj", "v 0 0 1e39\n"), "line 1: expected a finite number, found '1e39'");
+  EXPECT_EQ(failure("a.obj", "v 0 0 1e39\n"),
+            "line 1: expected a number that 32 bits hold, up to 3.4e38, found '1e39'");
   EXPECT_EQ(failure("a.obj", "v 0 0\nv 0 0 0\n"), "line 1: expected a number, found the end of the line");
   EXPECT_TRUE(failure("a.obj", std::string("v 0 0 0\n\0\1\2", 11)).starts_with("line 2: expected an OBJ"));
   EXPECT_TRUE(failure("a.obj", std::string(3 << 20, 'v')).find("longer than") != std::string::npos);

@@ -62,6 +62,7 @@ std::string_view MeshWords::next() {
 double MeshWords::coordinate(std::string_view word) const {
   const std::optional<double> value = parse_wide_number(word);
   if (value && std::abs(*value) <= double{std::numeric_limits<float>::max()}) return *value;
+  if (value && std::isfinite(*value)) fail("expected a number that 32 bits hold, up to 3.4e38", word);
   fail(value || is_number(word) ? "expected a finite number" : expected_number(word), word);
 }
 
