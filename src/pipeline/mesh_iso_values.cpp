@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/header_text.hpp"
 #include "isoweave/pipeline.hpp"
 #include "parallel/float_environment.hpp"
 #include "pipeline/run_report.hpp"
@@ -24,7 +25,7 @@ void check_values(std::span<const IsoSink> surfaces) {
   if (surfaces.empty()) throw std::invalid_argument("iso-values: expected one or more, found none");
   for (const IsoSink& surface : surfaces) {
     if (std::ranges::count(surfaces, surface.iso, &IsoSink::iso) <= 1) continue;
-    throw std::invalid_argument("iso-values: expected each once, found " + std::to_string(surface.iso) + " twice");
+    throw std::invalid_argument("iso-values: expected each once, found " + number_text(surface.iso) + " twice");
   }
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cluster/clusters.hpp"
+#include "files/header_text.hpp"
 #include "isoweave/measure.hpp"
 #include "output/world.hpp"
 #include "parallel/float_environment.hpp"
@@ -38,8 +39,8 @@ double cell_side(const Length& asked, double longest, double voxel) {
   const double side = asked.value == 0 ? usual : asked.value * (asked.in_voxels ? voxel : 1);
   const double least = longest / kMost;
   if (side >= least && side > 0 && std::isfinite(side)) return side;
-  throw std::invalid_argument("preview: expected a cell of at least " + std::to_string(least) + ", found " +
-                              std::to_string(side));
+  throw std::invalid_argument("preview: expected a cell of at least " + rounded_text(least) + ", found " +
+                              rounded_text(side));
 }
 
 CellGrid grid_of(const VolumeInfo& volume, const Length& cell) {
@@ -124,7 +125,7 @@ void deliver(Clusters& clusters, const CellGrid& grid, const World& world, const
 // The reason why a preview has no triangles though the surface has some.
 std::string all_collapsed(const MeshReport& report) {
   return "nothing is left: no triangle of the surface has corners in three cells of " +
-         std::to_string(report.preview->cell);
+         rounded_text(report.preview->cell);
 }
 
 void finish(MeshSink& sink, MeshReport& report) {

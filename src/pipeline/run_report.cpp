@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string>
 
+#include "files/header_text.hpp"
 #include "isoweave/error.hpp"
 #include "output/world.hpp"
 
@@ -15,15 +15,9 @@ namespace {
 
 constexpr std::uint64_t kLeastTriangles = 4;  // of a closed component
 
-std::string short_number(double number) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.begin(), digits.end(), number, std::chars_format::general, 4);
-  return {digits.begin(), end.ptr};
-}
-
 // The bounds within which a run to a number of triangles was to stay.
 std::string bounds_text(const SimplifyTask& task, double most_error) {
-  const auto length = [&](double number) { return short_number(number) + (task.unit.empty() ? "" : " ") + task.unit; };
+  const auto length = [&](double number) { return rounded_text(number) + (task.unit.empty() ? "" : " ") + task.unit; };
   std::string text = std::isfinite(most_error) ? " within an error of " + length(most_error) : "";
   const double most_distance = task.zone.most_distance;
   if (most_distance > 0)
@@ -41,13 +35,8 @@ std::string why_more_are_left(const MeshReport& report, const SimplifyTask& task
   return report.triangles > least ? kept + "; " + held : kept;
 }
 
-std::string plain_number(double number) {
-  std::array<char, 32> digits{};
-  return {digits.begin(), std::to_chars(digits.begin(), digits.end(), number).ptr};
-}
-
 std::string range_text(const MeshReport& report) {
-  return "the samples go from " + plain_number(report.min) + " to " + plain_number(report.max);
+  return "the samples go from " + number_text(report.min) + " to " + number_text(report.max);
 }
 
 // The reason why a mesh has no triangles.
@@ -57,7 +46,7 @@ std::string why_empty(const Task& task, const MeshReport& report) {
            std::to_string(task.surface.components->rule.min_triangles) + " triangles";
   }
   if (report.specks > 0) return "nothing is left: each component has shrunk to a speck within the error";
-  const std::string iso = ", iso is " + plain_number(task.surface.iso);
+  const std::string iso = ", iso is " + number_text(task.surface.iso);
   if (report.min > report.max) return "the surface is empty: no samples are numbers" + iso;
   return "the surface is empty: " + range_text(report) + iso;
 }
@@ -142,7 +131,7 @@ void warn_of_border(const Task& task, MeshReport& report) {
   const bool all_inside = surface.inside_above ? report.min >= surface.iso : report.max <= surface.iso;
   if (!surface.closed || !known || !all_inside || report.triangles == 0) return;
   report.warnings.push_back(task.volume.path + ": the surface is nothing but the border of the volume: " +
-                            range_text(report) + " and are all inside, iso is " + plain_number(surface.iso));
+                            range_text(report) + " and are all inside, iso is " + number_text(surface.iso));
 }
 
 void add_extracted(const SlabCounts& slab, MeshReport& report) {

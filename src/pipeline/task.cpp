@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "extract/make_extractor.hpp"
+#include "files/header_text.hpp"
 #include "isoweave/error.hpp"
 #include "lattice/vertex_numbering.hpp"
 #include "volume/axes.hpp"
@@ -31,7 +32,7 @@ constexpr double kFarError = 64;  // of a distance: hardly an edge that costs mo
 double most_distance(const Length& length, double side) {
   const double distance = length_in(length, side);
   if (distance >= 0 && std::isfinite(distance)) return distance;
-  throw std::invalid_argument("max distance: expected a length of 0 or more, found " + std::to_string(distance));
+  throw std::invalid_argument("max distance: expected a length of 0 or more, found " + rounded_text(distance));
 }
 
 std::vector<double> level_errors(const SimplifyOptions& options, double error, double side) {
@@ -42,8 +43,8 @@ std::vector<double> level_errors(const SimplifyOptions& options, double error, d
   for (const Length& level : options.levels) {
     const double length = length_in(level, side);
     if (!(length >= 0 && length < error && (errors.empty() || length > errors.back()))) {
-      throw std::invalid_argument("levels: expected ascending errors of 0 or more and below " + std::to_string(error) +
-                                  ", found " + std::to_string(length));
+      throw std::invalid_argument("levels: expected ascending errors of 0 or more and below " + rounded_text(error) +
+                                  ", found " + rounded_text(length));
     }
     errors.push_back(length);
   }
@@ -175,7 +176,7 @@ double error_of(const SimplifyOptions& options, double side) {
 CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
   if (std::isinf(error) && error > 0 && triangles > 0) return kRetiredCost - 1;
   if (!(error >= 0) || std::isinf(error)) {
-    throw std::invalid_argument("error: expected a length of 0 or more, found " + std::to_string(error));
+    throw std::invalid_argument("error: expected a length of 0 or more, found " + rounded_text(error));
   }
   // An edge whose key is not known yet has cost 0. It must stay live, also when nothing is simplified. The cost of a
   // huge error overflows: no error lets an edge live that is never to be decided.
@@ -189,7 +190,7 @@ bool can_repeat(const SliceSource& volume, const MeshOptions& options, const Run
 
 CostBits head_start_cost(double error, double a0) {
   if (!(error >= 0) || std::isinf(error)) {
-    throw std::invalid_argument("head start: expected a length of 0 or more, found " + std::to_string(error));
+    throw std::invalid_argument("head start: expected a length of 0 or more, found " + rounded_text(error));
   }
   return retire_cost(error, a0);
 }

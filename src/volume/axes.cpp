@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -129,9 +128,7 @@ void apply_unit(VolumeInfo& volume, const std::string& text) {
 void require_usable_steps(const std::array<double, 3>& spacing) {
   for (const double step : spacing) {
     if (is_usable_step(step)) continue;
-    std::ostringstream text;
-    text << "spacing: expected lengths from 1e-30 to 1e30, found " << step;
-    throw std::invalid_argument(text.str());
+    throw std::invalid_argument("spacing: expected lengths from 1e-30 to 1e30, found " + rounded_text(step));
   }
 }
 
