@@ -133,7 +133,7 @@ OpenedVolume open_dicom(const FilePtr& file, const OpenOptions& options) {
   const std::string& path = file->path();
   if (is_dicomdir(path)) {
     check_external(options, path, "the files of an export");
-    return open_dicom_series(slices_of_export(path), options);
+    return open_dicom_series(slices_of_export(path, options), options);
   }
   // Without others beside it, a file is all of its series.
   if (!options.external) return open_dicom_series({path, SliceKind::kDicom, {path}, {}}, options);
@@ -179,10 +179,7 @@ OpenedVolume open_folder(const std::string& path, const OpenOptions& options) {
     refuse_series(path, options.series);
     return open_zarr(path, options);
   }
-  const SliceFiles slices = find_slices(path);
-  for (const std::string& file : slices.files) {
-    if (!options.external && is_folder(path)) check_within(file, path);
-  }
+  const SliceFiles slices = find_slices(path, options);
   if (slices.kind == SliceKind::kDicom) return open_dicom_series(slices, options);
   refuse_series(path, options.series);
   return open_slice_series(slices, options);
@@ -198,7 +195,7 @@ OpenedVolume open_single(const FilePtr& stored, const OpenOptions& options) {
 
 OpenedVolume open_any(const std::string& path, const OpenOptions& options) {
   const bool several = is_folder(path) || is_pattern(path);
-  if (several && options.raw) return open_raw_slices(path, *options.raw);
+  if (several && options.raw) return open_raw_slices(path, options);
   if (several) return open_folder(path, options);
   const FilePtr input = open_input_file(path);
   OpenedVolume volume = open_single(input, options);

@@ -67,5 +67,51 @@ TEST(External, PairsOfNiftiAreRefusedFromBothSides) {
   EXPECT_THROW(open_volume(folder / "a.img", options), BadInput);
 }
 
+OpenOptions strangers(int slices) {
+  OpenOptions options;
+  options.raw = RawLayout{{2, 2, slices}, SampleType::kUint8};
+  options.external = false;
+  return options;
+}
+
+void expect_link_refused(const std::string& path, const std::string& file, const std::string& inside) {
+  OpenOptions options = strangers(2);
+  EXPECT_EQ(refusal(path, options), file + ": expected a file inside '" + inside +
+                                        "', as --no-external asks, found a link that leads out of it");
+  options.external = true;
+  EXPECT_EQ(read_all(*open_volume(path, options)).size(), 8U) << path;
+}
+
+TEST(External, LinksOutOfRawSlicesAreRefusedInFoldersAndPatterns) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "a/below");
+  folder.put("a/z1.raw", kBytes.substr(0, 4));
+  folder.put("secret.raw", kBytes.substr(4));
+  std::filesystem::create_symlink("../secret.raw", folder / "a/z2.raw");
+  expect_link_refused(folder / "a", folder / "a/z2.raw", folder / "a");
+  expect_link_refused(folder / "a/z*.raw", folder / "a/z2.raw", folder / "a");
+  expect_link_refused(folder / "[a]/z?.raw", folder / "a/z2.raw", folder / "a");
+  // A link inside the folder is followed.
+  std::filesystem::rename(folder / "secret.raw", folder / "a/below/z3");
+  std::filesystem::remove(folder / "a/z2.raw");
+  std::filesystem::create_symlink("below/z3", folder / "a/z2.raw");
+  for (const std::string path : {"a", "a/z*.raw"}) {
+    EXPECT_EQ(read_all(*open_volume(folder / path, strangers(2))).size(), 8U) << path;
+  }
+  // A link to a folder that the pattern names by itself is the user's own.
+  std::filesystem::create_directory_symlink(folder / "a", folder / "own");
+  EXPECT_EQ(read_all(*open_volume(folder / "own/z*.raw", strangers(2))).size(), 8U);
+}
+
+TEST(External, FoldersThatAPatternMatchesAreNoWayOut) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "b/one");
+  std::filesystem::create_directories(folder / "away");
+  folder.put("b/one/z.raw", kBytes.substr(0, 4));
+  folder.put("away/z.raw", kBytes.substr(4));
+  std::filesystem::create_directory_symlink("../away", folder / "b/two");
+  expect_link_refused(folder / "b/*/z.raw", folder / "b/two/z.raw", folder / "b");
+}
+
 }  // namespace
 }  // namespace isoweave::testing::volume_external_test

@@ -108,6 +108,25 @@ TEST(SliceSeries, IsReadFromAFolderOrAPattern) {
   EXPECT_TRUE(contains(refusal(folder / "y*.tif"), "expected files that match the pattern, found none"));
 }
 
+TEST(SliceSeries, LinksOutOfTheFolderAreRefusedWhereTheyAreNotTrusted) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "a");
+  write_stack(folder / "a/z0.tif", {}, slice(0));
+  write_stack(folder / "secret.tif", {}, slice(1));
+  std::filesystem::create_symlink("../secret.tif", folder / "a/z1.tif");
+  OpenOptions options;
+  options.external = false;
+  for (const std::string path : {"a", "a/z*.tif"}) {
+    EXPECT_EQ(open_volume(folder / path)->info().dims[2], 2);
+    EXPECT_TRUE(contains(refusal(folder / path, options), "a/z1.tif: expected a file inside '" + folder / "a")) << path;
+  }
+  // A file is not opened to see what it is.
+  std::filesystem::remove(folder / "a/z1.tif");
+  folder.put("secret", "text");
+  std::filesystem::create_symlink("../secret", folder / "a/z1.tif");
+  EXPECT_TRUE(contains(refusal(folder / "a", options), "a link that leads out of it"));
+}
+
 TEST(SliceSeries, SkipsSlices) {
   const TempFolder folder;
   put_series(folder);

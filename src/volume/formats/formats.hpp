@@ -15,8 +15,9 @@ namespace isoweave {
 OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout);
 // Whether a file has just the size of the layout.
 bool fits_raw(const InputFile& file, const RawLayout& layout);
-// A file of samples without a header for each slice: those that a pattern names, or that are in a folder.
-OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout);
+// A file of samples without a header for each slice, by the layout `options.raw`: those that a pattern names, or that
+// are in a folder.
+OpenedVolume open_raw_slices(const std::string& path, const OpenOptions& options);
 
 // Whether `head`, the first bytes of a file, are a NIfTI header.
 bool is_nifti(std::string_view head);

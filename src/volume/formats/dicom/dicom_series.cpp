@@ -98,7 +98,7 @@ OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options
   const Places places = places_of(self);
   std::size_t files = 0;
   std::size_t others = 0;
-  for (const std::string& name : dicom_files_beside(path)) {
+  for (const std::string& name : dicom_files_beside(path, options)) {
     const std::vector<DicomSlice> slices = read_dicom_header(name);
     if (slices.empty() || slices.front().series != uid) continue;
     if (self.size() > 1 && !is_same_file(name, path) && is_other_volume(slices, places)) {

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
 #include "files/quoted.hpp"
@@ -129,8 +130,15 @@ Entries entries_of(const std::string& folder) {
   return entries;
 }
 
+// Throws BadInput for a link out of the folder, where links may lead nowhere else. To be called before a file is opened
+// and before a folder is listed.
+void check_links(const std::vector<std::string>& names, const std::string& folder, const OpenOptions& options) {
+  if (options.external) return;
+  for (const std::string& name : names) check_within(name, folder);
+}
+
 // The files of all folders below one, each folder once, whatever links lead to it.
-std::vector<std::string> files_below(const std::string& top) {
+std::vector<std::string> files_below(const std::string& top, const OpenOptions& options) {
   constexpr std::size_t kDeepest = 16;
   constexpr std::size_t kMostFiles = 1 << 17;
   std::vector<std::string> files;
@@ -139,6 +147,7 @@ std::vector<std::string> files_below(const std::string& top) {
   std::vector<std::string> level = entries_of(top).folders;
   for (std::size_t depth = 1; !level.empty(); ++depth) {
     if (depth > kDeepest) bad_input(top, "folders no deeper than " + std::to_string(kDeepest), in_quotes(level[0]));
+    check_links(level, top, options);
     std::vector<std::string> next;
     for (const std::string& folder : level) {
       std::error_code error;
@@ -152,7 +161,30 @@ std::vector<std::string> files_below(const std::string& top) {
     }
     level = std::move(next);
   }
+  check_links(files, top, options);
   return files;
+}
+
+std::vector<std::string> files_of_folder(const std::string& folder, const OpenOptions& options) {
+  std::vector<std::string> files = entries_of(folder).files;
+  check_links(files, folder, options);
+  return files;
+}
+
+// The folder that all files of a pattern lie below.
+std::string folder_of_pattern(const std::string& pattern) {
+  return folder_of(pattern.substr(0, pattern.find_first_of("*?[\\")));
+}
+
+std::vector<std::string> files_of_pattern(const std::string& pattern, const OpenOptions& options) {
+  std::optional<std::vector<std::string>> files = system::names_like(pattern);
+  if (!files) bad_input(pattern, "cannot be expanded: a folder cannot be listed");
+  if (files->empty()) bad_input(pattern, "files that match the pattern", "none");
+  std::sort(files->begin(), files->end(), natural_less);
+  // The folder of a file may be a link itself, where it matched the pattern.
+  check_links(*files, folder_of_pattern(pattern), options);
+  for (const std::string& file : *files) check_links({file}, folder_of(file), options);
+  return std::move(*files);
 }
 
 }  // namespace
@@ -191,22 +223,16 @@ bool is_pattern(const std::string& path) {
   return path.find_first_of("*?[") != std::string::npos && !fs::exists(path, error);
 }
 
-std::vector<std::string> files_of_folder(const std::string& folder) { return entries_of(folder).files; }
-
-std::vector<std::string> files_of_pattern(const std::string& pattern) {
-  std::optional<std::vector<std::string>> files = system::names_like(pattern);
-  if (!files) bad_input(pattern, "cannot be expanded: a folder cannot be listed");
-  if (files->empty()) bad_input(pattern, "files that match the pattern", "none");
-  std::sort(files->begin(), files->end(), natural_less);
-  return std::move(*files);
+std::vector<std::string> files_of(const std::string& path, const OpenOptions& options) {
+  return is_pattern(path) ? files_of_pattern(path, options) : files_of_folder(path, options);
 }
 
 namespace {
 
-SliceFiles slices_of_pattern(const std::string& pattern) {
+SliceFiles slices_of_pattern(const std::string& pattern, const OpenOptions& options) {
   SliceFiles slices;
   slices.path = pattern;
-  for (const std::string& file : files_of_pattern(pattern)) {
+  for (const std::string& file : files_of_pattern(pattern, options)) {
     const SliceKind kind = kind_of(file, false);
     if (kind == SliceKind::kOther) {
       bad_input(file, "a slice in TIFF, PNG or DICOM", what_else(open_file(file)->head(kWhatElseBytes), file));
@@ -226,16 +252,16 @@ void take_slices(SliceFiles& slices, std::vector<std::string>& others, const std
 
 }  // namespace
 
-SliceFiles find_slices(const std::string& path) {
-  if (is_pattern(path)) return slices_of_pattern(path);
+SliceFiles find_slices(const std::string& path, const OpenOptions& options) {
+  if (is_pattern(path)) return slices_of_pattern(path, options);
   SliceFiles slices;
   slices.path = path;
   std::vector<std::string> others;
-  const std::vector<std::string> files = files_of_folder(path);
+  const std::vector<std::string> files = files_of_folder(path, options);
   const bool is_export = std::any_of(files.begin(), files.end(), is_dicomdir_name);
   take_slices(slices, others, files, is_export);
   const bool is_dicom = slices.files.empty() || slices.kind == SliceKind::kDicom;
-  if (is_dicom) take_slices(slices, others, files_below(path), true);
+  if (is_dicom) take_slices(slices, others, files_below(path, options), true);
   if (slices.files.empty()) bad_input(path, "slices in TIFF, PNG or DICOM", "a directory without any");
   const auto usual = std::stable_partition(others.begin(), others.end(),
                                            [&](const std::string& file) { return !is_usual(file, is_export); });
@@ -244,15 +270,15 @@ SliceFiles find_slices(const std::string& path) {
   return slices;
 }
 
-SliceFiles slices_of_export(const std::string& dicomdir) {
-  SliceFiles slices = find_slices(folder_of(dicomdir));
+SliceFiles slices_of_export(const std::string& dicomdir, const OpenOptions& options) {
+  SliceFiles slices = find_slices(folder_of(dicomdir), options);
   slices.path = dicomdir;
   return slices;
 }
 
-std::vector<std::string> dicom_files_beside(const std::string& path) {
+std::vector<std::string> dicom_files_beside(const std::string& path, const OpenOptions& options) {
   std::vector<std::string> files;
-  for (const std::string& name : files_of_folder(folder_of(path))) {
+  for (const std::string& name : files_of_folder(folder_of(path), options)) {
     std::error_code error;
     const bool empty = fs::file_size(name, error) == 0;
     if (!empty && is_dicom(open_file(name)->head(kDicomHeadBytes))) files.push_back(name);

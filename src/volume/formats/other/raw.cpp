@@ -149,10 +149,11 @@ OpenedVolume open_raw(const FilePtr& file, const RawLayout& layout) {
   return volume;
 }
 
-OpenedVolume open_raw_slices(const std::string& path, const RawLayout& layout) {
+OpenedVolume open_raw_slices(const std::string& path, const OpenOptions& options) {
+  const RawLayout layout = options.raw.value();
   OpenedVolume volume;
   volume.info = raw_info(path, layout);
-  const std::vector<std::string> files = is_pattern(path) ? files_of_pattern(path) : files_of_folder(path);
+  const std::vector<std::string> files = files_of(path, options);
   const auto count = static_cast<std::int64_t>(files.size());
   if (count != layout.dims[2]) {
     const char* const files_of_layout = layout.dims[2] == 1 ? " file" : " files";
