@@ -23,10 +23,11 @@ struct OpenedVolume {
   bool swap_bytes = false;    // the stored byte order is not the machine's
   std::string unit_conflict;  // units of the axes that cannot be made one: without --spacing no volume
   FilePtr input;  // what the user named, open as long as the volume: what came out of a pipe is kept with it
-  std::uint64_t held_bytes = 0;           // by `samples`, at most: what must be decoded as a whole
-  std::shared_ptr<Gaps> gaps{};           // of `samples`, where they are chunks
-  BandStream* bands = nullptr;            // in `samples`, where they can hold a box alone
-  std::optional<SampleBytes> constant{};  // as stored: every sample is this one, and none is read
+  std::uint64_t held_bytes = 0;                   // by `samples`, at most: what must be decoded as a whole
+  std::shared_ptr<Gaps> gaps{};                   // of `samples`, where they are chunks
+  BandStream* bands = nullptr;                    // in `samples`, where they can hold a box alone
+  std::optional<SampleBytes> constant{};          // as stored: every sample is this one, and none is read
+  std::optional<std::int64_t> place_in_series{};  // of a file of one slice, which says its place among the others
 };
 
 class StreamSource final : public RowSource {

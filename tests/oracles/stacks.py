@@ -66,6 +66,17 @@ def check_tiff(oracle, folder):
         with oracle.file(path):
             check_choices(oracle, path, data, axes)
             check_spacing(oracle, path, SPACING, "nm")
+    # Pages in an order of their own, which TiffData says.
+    path = os.path.join(folder, "turned.ome.tif")
+    planes = "".join(f'<TiffData IFD="{SIZES["T"] - 1 - time}" FirstT="{time}"/>' for time in range(SIZES["T"]))
+    text = (f'<OME><Image><Pixels DimensionOrder="XYZCT" SizeX="{SIZES["X"]}" SizeY="{SIZES["Y"]}" SizeZ="1" SizeC="1" '
+            f'SizeT="{SIZES["T"]}" Type="uint16">{planes}</Pixels></Image></OME>')
+    with tifffile.TiffWriter(path) as writer:
+        for time, page in enumerate(stack("TYX")):
+            writer.write(page, contiguous=False, metadata=None, description=text if time == 0 else None)
+    with oracle.file(path):
+        for time, page in enumerate(tifffile.imread(path)):
+            check_volume(oracle, path, page[np.newaxis], "--time", time)
     for axes, metadata in (("TCZYX", {"axes": "TCZYX"}), ("TCZYX", {}), ("ZCTYX", {"axes": "ZCTYX"})):
         data = stack(axes)
         path = os.path.join(folder, f"{axes}{len(metadata)}.tif")

@@ -239,6 +239,177 @@ TEST(SliceSeries, ReadsAnOmeSeriesOfOneChannel) {
   EXPECT_TRUE(contains(refusal(folder / ""), "one channel and one frame"));
 }
 
+// Of `count` planes along z, with what stands in Pixels.
+std::string ome(std::size_t count, const std::string& inside, const std::string& uuid = "") {
+  return "<?xml version=\"1.0\"?><!-- <Pixels> of a comment --><OME" + (uuid.empty() ? "" : " UUID=\"" + uuid + "\"") +
+         "><Image Name=\"a > b\"><Pixels DimensionOrder=\"XYZCT\" SizeZ=\"" + std::to_string(count) +
+         "\" SizeC=\"1\" SizeT=\"1\">" + inside + "</Pixels></Image></OME>";
+}
+
+std::string tiff_data(std::size_t page, std::size_t plane, const std::string& more = "") {
+  return "<TiffData IFD=\"" + std::to_string(page) + "\" FirstZ=\"" + std::to_string(plane) + "\" " + more;
+}
+
+std::string in_file(const std::string& name, const std::string& uuid = "") {
+  return "><UUID FileName=\"" + name + "\">" + uuid + "</UUID></TiffData>";
+}
+
+std::string put_stack(const TempFolder& folder, const std::string& description, const std::string& name = "a.tif") {
+  TiffPage page;
+  page.description = description;
+  return write_stack(folder / name, page, slice(0) + slice(1) + slice(2) + slice(3));
+}
+
+// The first samples of slices tell which pages they are.
+std::vector<std::size_t> pages_in(const std::string& path, const OpenOptions& options = {}) {
+  const auto samples = read_file<std::uint16_t>(path, options);
+  std::vector<std::size_t> pages;
+  for (std::size_t at = 0; at < samples.size(); at += 20) {
+    const auto found = std::find(kSamples.begin(), kSamples.end(), samples[at]);
+    pages.push_back(static_cast<std::size_t>(found - kSamples.begin()) / 20);
+  }
+  return pages;
+}
+
+using Pages = std::vector<std::size_t>;
+
+TEST(OmeTiff, PagesAreThePlanesThatTiffDataSays) {
+  const TempFolder folder;
+  std::string backwards, named;
+  for (std::size_t n = 0; n < 4; ++n) backwards += tiff_data(n, 3 - n, "PlaneCount=\"1\"/>");
+  for (std::size_t n = 0; n < 4; ++n) named += tiff_data(n, 3 - n) + in_file("other name.tif", "urn:uuid:1");
+  const auto pages = [&](const std::string& inside) { return pages_in(put_stack(folder, ome(4, inside))); };
+  EXPECT_EQ(pages(backwards), (Pages{3, 2, 1, 0}));
+  EXPECT_TRUE(contains(open_volume(folder / "a.tif")->info().notes.front(), "TiffData"));
+  EXPECT_EQ(pages(named), (Pages{3, 2, 1, 0})) << "a file that was renamed";
+  EXPECT_EQ(pages("<TiffData IFD=\"2\" PlaneCount=\"2\"/><TiffData FirstZ=\"2\" PlaneCount=\"2\"/>"),
+            (Pages{2, 3, 0, 1}));
+  // A number of planes that is not given reaches to the next plane that is described.
+  EXPECT_EQ(pages("<TiffData IFD=\"2\"/><TiffData FirstZ=\"2\"/>"), (Pages{2, 3, 0, 1}));
+  for (const std::string plain : {"", "<TiffData/>", "<TiffData></TiffData>", "<TiffData IFD='0'/>"}) {
+    EXPECT_EQ(pages(plain), (Pages{0, 1, 2, 3})) << plain;
+  }
+  EXPECT_TRUE(open_volume(folder / "a.tif")->info().notes.size() == 3) << "spacings alone";
+}
+
+TEST(OmeTiff, PlanesOfChannelsAreCountedInTheirOrder) {
+  const TempFolder folder;
+  const std::string text =
+      "<OME><Image><Pixels DimensionOrder=\"XYCZT\" SizeZ=\"2\" SizeC=\"2\" SizeT=\"1\"><TiffData IFD=\"0\" "
+      "FirstC=\"1\" "
+      "FirstZ=\"1\"/><TiffData IFD=\"1\" FirstC=\"0\" FirstZ=\"1\"/><TiffData IFD=\"2\" FirstC=\"1\"/><TiffData "
+      "IFD=\"3\"/></Pixels></Image></OME>";
+  OpenOptions options;
+  for (const std::int64_t channel : {0, 1}) {
+    options.channel = channel;
+    EXPECT_EQ(pages_in(put_stack(folder, text), options), channel == 0 ? (Pages{3, 1}) : (Pages{2, 0}));
+  }
+}
+
+// Directories that are left out count as well.
+TEST(OmeTiff, PagesAreCountedWithSmallerCopies) {
+  const TempFolder folder;
+  TIFF* tiff = TIFFOpen((folder / "a.tif").c_str(), "w");
+  TiffPage page, copy{2, 2};
+  page.description = ome(2, tiff_data(2, 0, "/>") + tiff_data(0, 1, "/>"));
+  copy.subfile = FILETYPE_REDUCEDIMAGE;
+  write_page(tiff, page, slice(0));
+  write_page(tiff, copy, std::string(8, 'x'));
+  write_page(tiff, {}, slice(1));
+  TIFFClose(tiff);
+  EXPECT_EQ(pages_in(folder / "a.tif"), (Pages{1, 0}));
+}
+
+TEST(OmeTiff, RefusesTiffDataThatIsNoOrder) {
+  const TempFolder folder;
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"<TiffData FirstZ=\"1\" PlaneCount=\"3\"/>", "expected a page for plane 0 in TiffData, found none"},
+      {"<TiffData PlaneCount=\"1\"/><TiffData FirstZ=\"1\"/>",
+       "a page for each plane in TiffData, found IFD 0 for two"},
+      {"<TiffData IFD=\"1\"/>", "a page for plane 3 in TiffData, found IFD 4, which is none of the slices"},
+      {"<TiffData PlaneCount=\"5\"/>", "expected 4 planes in TiffData, found more"},
+      {"<TiffData/><TiffData/>", "expected one page for each plane in TiffData, found two for plane 0"},
+      {"<TiffData FirstZ=\"4\"/>", "expected FirstZ below 4, found 4"},
+      {"<TiffData IFD=\"-1\"/>", "expected a number of at least 0 as IFD of TiffData, found '-1'"},
+      {tiff_data(0, 0) + in_file("a.tif") + tiff_data(0, 1) + in_file("b.tif"),
+       "expected all planes in this file, found some in files that its description names"}};
+  for (const auto& [inside, message] : refused) {
+    const std::string path = put_stack(folder, ome(4, inside));
+    EXPECT_TRUE(contains(refusal(path), message)) << inside << refusal(path);
+  }
+}
+
+TEST(OmeTiff, SeveralImagesAreRefusedUnlessOneAloneIsInTheFile) {
+  const TempFolder folder;
+  const auto image = [](const std::string& inside) {
+    return "<Image><Pixels DimensionOrder=\"XYZCT\" SizeZ=\"4\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeZ=\"" +
+           std::to_string(inside.size()) + "\">" + inside + "</Pixels></Image>";
+  };
+  const std::string both = "<OME>" + image("<TiffData/>") + image("<TiffData IFD=\"4\"/>") + "</OME>";
+  EXPECT_EQ(refusal(put_stack(folder, both)),
+            folder /
+                "a.tif: expected one image in its OME description, found 2 (each can be read from a file of its "
+                "own, which bfconvert -series N writes)");
+  const std::string first = "<TiffData" + in_file("b.tif"), second = "<TiffData " + in_file("a.tif");
+  const std::string path = put_stack(folder, "<OME>" + image(first) + image(second) + "</OME>");
+  EXPECT_EQ(open_volume(path)->info().geometry.spacing[2], static_cast<double>(second.size()));
+}
+
+TEST(OmeTiff, FilesThatAreElsewhereAreTold) {
+  const TempFolder folder;
+  std::string seven;
+  for (std::size_t n = 0; n < 7; ++n) seven += tiff_data(0, n) + in_file("z" + std::to_string(n) + ".tif");
+  EXPECT_TRUE(contains(refusal(put_stack(folder, ome(7, seven))),
+                       "expected 7 pages by its description, found 4 (the others are in the files that it names)"));
+  const std::string strange = tiff_data(0, 0) + in_file("z0.tif") + tiff_data(0, 1) + in_file("z1.tif");
+  EXPECT_TRUE(contains(open_volume(put_stack(folder, ome(4, strange)))->info().notes.front(),
+                       "the files that its description names are others"));
+}
+
+// Writes z0.tif to z3.tif; `text` gives the description of the n-th.
+template <class Text>
+void put_ome_series(const TempFolder& folder, const Text& text) {
+  for (std::size_t n = 0; n < 4; ++n) {
+    TiffPage page;
+    page.description = text(n);
+    write_stack(folder / ("z" + std::to_string(n) + ".tif"), page, slice(n));
+  }
+}
+
+TEST(OmeSeries, FilesAreInTheOrderOfTheirPlanes) {
+  const TempFolder folder;
+  const auto note = [&] { return contains(open_volume(folder / "")->info().notes.back(), "FirstZ"); };
+  std::string backwards, identified;
+  for (std::size_t n = 0; n < 4; ++n) backwards += tiff_data(0, 3 - n) + in_file("z" + std::to_string(n) + ".tif");
+  put_ome_series(folder, [&](std::size_t) { return ome(4, backwards); });
+  EXPECT_EQ(pages_in(folder / ""), (Pages{3, 2, 1, 0}));
+  EXPECT_EQ(pages_in(folder / "z*.tif"), (Pages{3, 2, 1, 0}));
+  EXPECT_TRUE(note());
+  // Identifiers count before names, as files may have been renamed.
+  const auto uuid = [](std::size_t n) { return "urn:uuid:" + std::to_string(n); };
+  for (std::size_t n = 0; n < 4; ++n) identified += tiff_data(0, n ^ 1) + in_file("z0.tif", uuid(n));
+  put_ome_series(folder, [&](std::size_t n) { return ome(4, identified, uuid(n)); });
+  EXPECT_EQ(pages_in(folder / ""), (Pages{1, 0, 3, 2}));
+  put_ome_series(folder, [](std::size_t n) { return ome(4, tiff_data(0, n, "/>")); });
+  EXPECT_EQ(pages_in(folder / ""), (Pages{0, 1, 2, 3}));
+  EXPECT_FALSE(note());
+  put_ome_series(folder, [](std::size_t) { return ome(4, "<TiffData/>"); });
+  EXPECT_EQ(pages_in(folder / ""), (Pages{0, 1, 2, 3})) << "descriptions that say nothing of a file";
+}
+
+TEST(OmeSeries, PlanesThatAreMissingOrOccurTwiceAreTold) {
+  const TempFolder folder;
+  put_ome_series(folder, [](std::size_t n) { return ome(9, tiff_data(0, 2 * n, "/>")); });
+  EXPECT_EQ(open_volume(folder / "")->info().notes.back(),
+            "3 slices seem to be missing by the planes in the descriptions (FirstZ)");
+  put_ome_series(folder, [](std::size_t n) { return ome(4, tiff_data(0, n / 2, "/>")); });
+  EXPECT_EQ(refusal(folder / ""), folder / "z1.tif: expected a plane of its own (FirstZ) in the description of each "
+                                           "file, found that of '" +
+                                      folder / "z0.tif'");
+  put_ome_series(folder, [](std::size_t n) { return n == 1 ? "" : ome(4, tiff_data(0, 3 - n, "/>")); });
+  EXPECT_TRUE(contains(refusal(folder / ""), "z1.tif: expected a plane of its own (FirstZ)"));
+}
+
 TEST(Tiff, TilesThatTheSurfaceMissesAreNotDecoded) {
   const TempFolder folder;
   for (const std::uint32_t tile : {0U, 16U}) {

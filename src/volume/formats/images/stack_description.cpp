@@ -124,14 +124,15 @@ void set_ome_axes(StackDescription& stack, std::string_view tag, std::string_vie
   }
 }
 
-// The first Pixels element of an OME-XML text; a unit that is not given is the micrometre.
-StackDescription parse_ome(std::string_view text, std::string_view path) {
+// The Pixels element of the image in this file; a unit that is not given is the micrometre.
+StackDescription parse_ome(std::string_view text, const std::string& path) {
   StackDescription stack;
   stack.writer = StackDescription::Writer::kOme;
-  const std::size_t begin = text.find("<Pixels ");
-  if (begin == std::string_view::npos) bad_input(path, "Pixels in its OME description", "none");
-  const std::string_view tag = text.substr(begin, text.find('>', begin) - begin);
+  const OmeImage image = find_ome_image(text, path);
+  const std::string_view tag = image.pixels;
   set_ome_axes(stack, tag, path);
+  stack.runs = plane_runs(image, stack.axes, path);
+  stack.names_others = !image.elsewhere.empty();
   constexpr std::array<const char*, 3> kSizes{"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     stack.spacing[axis] = length_of(xml_attribute(tag, kSizes[axis]));
@@ -196,7 +197,7 @@ StackDescription parse_tifffile(std::string_view text, std::string_view path) {
 
 }  // namespace
 
-StackDescription parse_stack_description(std::string_view text, std::string_view path) {
+StackDescription parse_stack_description(std::string_view text, const std::string& path) {
   if (text.starts_with("ImageJ=")) return parse_imagej(text, path);
   if (text.find("<OME") != std::string_view::npos) return parse_ome(text, path);
   if (text.starts_with("{\"")) return parse_tifffile(text, path);

@@ -129,11 +129,31 @@ std::vector<std::uint64_t> pages_of(const TiffPages& pages, const PageNumbers& n
 void check_images(StackDescription& stack, std::int64_t found, VolumeInfo& info) {
   if (stack.images == 0 || stack.images == found) return;
   if (stack.writer != StackDescription::Writer::kTifffile) {
-    bad_input(info.path, std::to_string(stack.images) + " pages by its description", std::to_string(found));
+    bad_input(info.path, std::to_string(stack.images) + " pages by its description",
+              std::to_string(found) + (stack.names_others ? " (the others are in the files that it names)" : ""));
   }
   info.notes.push_back("the shape in its description is of " + std::to_string(stack.images) + " pages; all " +
                        std::to_string(found) + " that there are are read as slices");
   stack.axes.clear();
+}
+
+// Puts the pages into the order of the planes that they hold.
+void follow_runs(TiffPages& pages, const StackDescription& stack, VolumeInfo& info) {
+  if (stack.images == 0) return;
+  if (stack.names_others && stack.runs.empty()) {
+    info.notes.emplace_back("the files that its description names are others: pages are read one after another");
+  }
+  if (stack.runs.empty()) return;
+  if (stack.names_others) {
+    bad_input(info.path, "all planes in this file", "some in files that its description names");
+  }
+  const std::vector<std::size_t> places = places_of_planes(stack.runs, pages.numbers, info.path);
+  if (std::is_sorted(places.begin(), places.end())) return;
+  info.notes.emplace_back(
+      "pages are in the order of the planes in its description (TiffData), not in that of the file");
+  std::vector<std::uint64_t> offsets;
+  for (const std::size_t place : places) offsets.push_back(pages.offsets[place]);
+  pages.offsets = std::move(offsets);
 }
 
 // ImageJ writes stacks beyond 4 GB as one directory, with the samples of all images behind one another.
@@ -162,9 +182,9 @@ std::unique_ptr<ByteStream> contiguous_samples(const TiffFile& tiff, const Volum
   return std::make_unique<FileSequence>(info.dims[2], slice, open, [file](std::int64_t) { return file->path(); });
 }
 
-// Every file of an OME series describes the whole of it.
-void describe_one_slice(StackDescription& stack, const std::string& path) {
-  if (stack.writer != StackDescription::Writer::kOme) return;
+// Every file of an OME series describes the whole of it. Returns which slice the file has, where that is said.
+std::optional<std::int64_t> describe_one_slice(StackDescription& stack, const std::string& path) {
+  if (stack.writer != StackDescription::Writer::kOme) return std::nullopt;
   const auto slices =
       std::find_if(stack.axes.begin(), stack.axes.end(), [](const ArrayAxis& a) { return a.name == "z"; });
   if (stack.images != slices->size) {
@@ -173,6 +193,7 @@ void describe_one_slice(StackDescription& stack, const std::string& path) {
   }
   stack.images = 0;
   stack.axes.clear();
+  return stack.runs.size() == 1 ? std::optional(stack.runs.front().plane) : std::nullopt;
 }
 
 }  // namespace
@@ -180,17 +201,17 @@ void describe_one_slice(StackDescription& stack, const std::string& path) {
 OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOptions& options) {
   auto tiff = std::make_unique<TiffFile>(file);
   StackDescription stack = parse_stack_description(description_of(*tiff), file->path());
-  if (one_of_series) describe_one_slice(stack, file->path());
+  OpenedVolume volume;
+  if (one_of_series) volume.place_in_series = describe_one_slice(stack, file->path());
   if (stack.writer == StackDescription::Writer::kImageJ) {
     use_resolution(stack, *tiff);
     name_pixels(stack);
   }
-  OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = file->path();
   info.format = "tiff";
   const std::uint64_t first_directory = TIFFCurrentDirOffset(tiff->handle());
-  const TiffPages pages = find_tiff_pages(*tiff);
+  TiffPages pages = find_tiff_pages(*tiff);
   if (TIFFSetSubDirectory(tiff->handle(), first_directory) == 0) tiff->refuse("a readable TIFF directory");
   info.type = pages.kind.type.type;
   info.dims = {pages.kind.width, pages.kind.height, 1};
@@ -198,6 +219,7 @@ OpenedVolume open_tiff(const FilePtr& file, bool one_of_series, const OpenOption
   const bool contiguous = is_contiguous(*tiff, pages, stack);
   const auto found = static_cast<std::int64_t>(pages.offsets.size());
   if (!contiguous) check_images(stack, found, info);
+  follow_runs(pages, stack, info);
   const std::int64_t images = contiguous ? stack.images : found;
   const PageNumbers numbers = choose_slices(info, stack, images, options);
   info.dims[2] = numbers.count;

@@ -124,6 +124,7 @@ TiffPages find_tiff_pages(TiffFile& tiff) {
                 text_of(pages.kind) + " on page " + std::to_string(pages.offsets.size()) + " as on page 0",
                 text_of(kind));
     }
+    pages.numbers.push_back(static_cast<std::int64_t>(pages.offsets.size()) + pages.left_out);
     pages.offsets.push_back(TIFFCurrentDirOffset(tiff.handle()));
     // The samples of a contiguous stack are checked with their number.
     check_stored(tiff, kind);

@@ -23,6 +23,7 @@ struct TiffPageKind {
 struct TiffPages {
   TiffPageKind kind;
   std::vector<std::uint64_t> offsets;  // of their directories
+  std::vector<std::int64_t> numbers;   // of their directories, in the order of the file
   std::int64_t left_out = 0;           // masks and smaller copies
 };
 
