@@ -51,6 +51,13 @@ std::vector<std::string_view> words_of(std::string_view text) {
 std::optional<std::int64_t> parse_integer(std::string_view text) { return parse_number<std::int64_t>(text); }
 std::optional<double> parse_double(std::string_view text) { return parse_number<double>(text); }
 
+std::string with_exponent_e(std::string_view number) {
+  std::string text(number);
+  const std::size_t exponent = text.find_first_of("dD");
+  if (exponent != std::string::npos) text[exponent] = 'E';
+  return text;
+}
+
 std::string number_text(double value) {
   std::array<char, 32> text;
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);

@@ -24,6 +24,9 @@ std::vector<std::string_view> words_of(std::string&& text) = delete;
 std::optional<std::int64_t> parse_integer(std::string_view text);
 std::optional<double> parse_double(std::string_view text);
 
+// A number with E before its exponent, where Fortran and FITS may write D.
+std::string with_exponent_e(std::string_view number);
+
 // The shortest text that reads back as the same number.
 std::string number_text(double value);
 

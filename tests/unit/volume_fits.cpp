@@ -66,6 +66,22 @@ TEST(Fits, ScalesAndLeavesOutAxesOfOneSample) {
   EXPECT_TRUE(contains(refusal(path, options), "expected --time below 2, found 2"));
 }
 
+TEST(Fits, ExponentsMayBeWrittenWithD) {
+  const TempFolder folder;
+  for (const std::string exponent : {"E", "D", "e", "d"}) {
+    std::vector<std::string> all = cards();
+    all.insert(all.end(),
+               {"BZERO   =           3.2768" + exponent + "4 / D, or E", "BSCALE  = +25." + exponent + "-2"});
+    const VolumeInfo info = open_volume(folder.put("a.fits", fits(all, stored(kSamples, true))))->info();
+    EXPECT_EQ(info.intercept, 32768) << exponent;
+    EXPECT_EQ(info.slope, 0.25) << exponent;
+  }
+  std::vector<std::string> all = cards();
+  all.emplace_back("BZERO   =           3.2768D4D4");
+  EXPECT_TRUE(contains(refusal(folder.put("a.fits", fits(all, stored(kSamples, true)))),
+                       "expected a number as BZERO, found '3.2768D4D4'"));
+}
+
 TEST(Fits, RefusesHeadersThatLie) {
   const TempFolder folder;
   const auto refused = [&](const std::vector<std::string>& all, const std::string& why) {

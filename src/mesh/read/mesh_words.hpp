@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "files/header_text.hpp"
 #include "mesh/read/mesh_input.hpp"
 #include "mesh/read/mesh_place.hpp"
 
@@ -22,11 +23,7 @@ std::optional<Real> parse_number(std::string_view word) {
   if (const std::optional<Real> value = parse_real<Real>(word)) return value;
   if (is_tiny_number(word)) return Real{0};
   if (word.find(".#") != std::string_view::npos) return std::numeric_limits<Real>::quiet_NaN();
-  const std::size_t exponent = word.find_first_of("dD");
-  if (exponent == std::string_view::npos) return std::nullopt;
-  std::string text(word);
-  text[exponent] = 'e';
-  return parse_real<Real>(text);
+  return parse_real<Real>(with_exponent_e(word));
 }
 
 // The number that parse_wide reads, where it is finite in 32 bits.

@@ -50,7 +50,7 @@ std::int64_t integer_of(const FitsHeader& header, const std::string& key, const 
 double number_of(const FitsHeader& header, const std::string& key, double missing, const std::string& path) {
   const auto found = header.values.find(key);
   if (found == header.values.end()) return missing;
-  const auto value = parse_double(found->second);
+  const auto value = parse_double(with_exponent_e(found->second));
   if (!value) bad_input(path, "a number as " + key, in_quotes(found->second));
   return *value;
 }
