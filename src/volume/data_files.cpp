@@ -84,7 +84,7 @@ std::unique_ptr<ByteStream> open_text(const FilePtr& file, std::uint64_t begin, 
   // A digit and a blank for each sample, but for the last.
   const std::uint64_t samples = bytes / sample_bytes(layout.type);
   check_plausible(file->path(), samples, (available - skip + 1) / 2, 1);
-  return std::make_unique<NumberStream>(std::move(text), layout.type, samples, file->path());
+  return std::make_unique<NumberStream>(std::move(text), NumberText{layout.type, samples, true}, file->path());
 }
 
 // The only conversion that a file name pattern may hold, cut in three.

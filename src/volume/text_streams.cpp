@@ -55,18 +55,30 @@ std::string TextStream::next_word() {
   return word;
 }
 
-NumberStream::NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path)
-    : text_(std::move(text)), type_(type), left_(count), path_(std::move(path)) {}
+NumberStream::NumberStream(std::unique_ptr<ByteStream> text, const NumberText& layout, std::string path)
+    : text_(std::move(text)), type_(layout.type), left_(layout.count), commas_(layout.commas), path_(std::move(path)) {}
+
+// The next word without commas around it; empty behind the last. A word of commas alone is none.
+std::string NumberStream::next_number() {
+  std::string word = text_.next_word();
+  while (commas_ && !word.empty()) {
+    const std::size_t first = word.find_first_not_of(',');
+    if (first != std::string::npos) return word.substr(first, word.find_last_not_of(',') - first + 1);
+    word = text_.next_word();
+  }
+  return word;
+}
 
 bool NumberStream::next_sample() {
   if (left_ == 0) return false;
-  const std::string word = text_.next_word();
+  const std::string word = next_number();
   if (word.empty()) return false;
   --left_;
   visit_sample_type(type_, [&]<class Sample>() {
     Sample value{};
     if (!parse(word, value)) {
-      bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)), in_quotes(word));
+      bad_input(path_, "numbers of type " + std::string(sample_type_name(type_)) + (commas_ ? ", between blanks" : ""),
+                in_quotes(word));
     }
     std::memcpy(sample_.data(), &value, sizeof(Sample));
     size_ = sizeof(Sample);

@@ -39,19 +39,28 @@ class TextStream {
   bool ended_ = false;
 };
 
-// Numbers between blanks as `count` samples in the machine's byte order; what follows them is not read.
+struct NumberText {
+  SampleType type = SampleType::kUint8;
+  std::uint64_t count = 0;  // of samples
+  bool commas = false;      // may stand before and behind numbers
+};
+
+// Numbers between blanks as samples in the machine's byte order; what follows them is not read. A comma inside of a
+// number is refused: it may be that of a decimal fraction.
 class NumberStream final : public ByteStream {
  public:
-  NumberStream(std::unique_ptr<ByteStream> text, SampleType type, std::uint64_t count, std::string path);
+  NumberStream(std::unique_ptr<ByteStream> text, const NumberText& layout, std::string path);
 
   std::size_t read(std::span<std::byte> out) override;
 
  private:
+  std::string next_number();
   bool next_sample();
 
   TextStream text_;
   SampleType type_;
   std::uint64_t left_;  // samples
+  bool commas_;
   std::string path_;
   std::array<std::byte, 8> sample_{};
   std::size_t used_ = 0;  // bytes of the sample

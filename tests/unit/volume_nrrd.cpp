@@ -399,6 +399,12 @@ TEST(Nrrd, NumbersInTextAndHexadecimalDigits) {
   // Text has no order of bytes, and needs none.
   const std::string endless = "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 5\nencoding: text\n\n";
   EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nrrd", endless + numbers)), kSamples);
+  // Commas stand before and behind numbers, where Teem passes over them. Inside they may be those of fractions.
+  std::string commas = ",,";
+  for (const std::int16_t sample : kSamples) commas += " " + std::to_string(sample) + (sample % 2 == 0 ? "," : " , ,");
+  EXPECT_EQ(read_file<std::int16_t>(folder.put("a.nrrd", endless + commas)), kSamples);
+  EXPECT_TRUE(contains(refusal(folder.put("a.nrrd", endless + "1,5" + commas)),
+                       "expected numbers of type int16, between blanks, found '1,5'"));
   const std::string hex = header("encoding: hex\nendian: big\n") + "\n" + digits;
   EXPECT_EQ(read_file<std::int16_t>(folder.put("b.nrrd", hex)), kSamples);
   folder.put("data.txt", "one line\n" + numbers);
@@ -406,7 +412,8 @@ TEST(Nrrd, NumbersInTextAndHexadecimalDigits) {
       read_file<std::int16_t>(folder.put("c.nhdr", header("encoding: text\nline skip: 1\ndata file: data.txt\n"))),
       kSamples);
   EXPECT_TRUE(contains(refusal(folder.put("a.nrrd", endless + numbers + "x")), "nothing was thrown"));
-  EXPECT_TRUE(contains(refusal(folder.put("a.nrrd", endless + "1 2 x" + numbers)), "expected numbers of type int16"));
+  EXPECT_TRUE(
+      contains(refusal(folder.put("a.nrrd", endless + "1 2 x" + numbers)), "expected numbers of type int16, between"));
   EXPECT_TRUE(contains(refusal(folder.put("a.nrrd", endless + "1 2 3")), "which cannot hold them"));
   EXPECT_TRUE(contains(refusal(folder.put("b.nrrd", header("encoding: hex\n") + "\nxy" + digits)), "'x'"));
   EXPECT_TRUE(

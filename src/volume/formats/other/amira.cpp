@@ -181,7 +181,7 @@ std::unique_ptr<ByteStream> samples_of(const FilePtr& file, const AmiraHeader& h
   // A digit and a blank for each sample.
   check_plausible(info.path, 2 * samples, file->size() - std::min(header.data, file->size()) + 1, 1);
   auto text = std::make_unique<FileStream>(file, header.data, file->size());
-  return std::make_unique<NumberStream>(std::move(text), info.type, samples, info.path);
+  return std::make_unique<NumberStream>(std::move(text), NumberText{info.type, samples}, info.path);
 }
 
 }  // namespace

@@ -238,7 +238,7 @@ PieceSamples open_samples(const ImageHeader& header, const VtkArray& array, std:
     // A digit and a blank for each sample.
     check_plausible(header.path, 2 * samples, file->size() - std::min(begin, file->size()) + 1, 1);
     auto text = std::make_unique<FileStream>(file, begin, file->size());
-    return {std::make_unique<NumberStream>(std::move(text), type, samples, header.path)};
+    return {std::make_unique<NumberStream>(std::move(text), NumberText{type, samples}, header.path)};
   }
   if (is_bits(array)) {
     constexpr std::uint64_t kBits = 8;

@@ -107,7 +107,7 @@ std::unique_ptr<ByteStream> open_samples(const LegacyFile& file, const LegacyArr
     check_plausible(file.path(), 2 * samples, left + 1, 1);
     auto text = std::make_unique<FileStream>(input, array.at, input->size());
     const SampleType read = array.is_colours ? SampleType::kFloat64 : type;
-    auto numbers = std::make_unique<NumberStream>(std::move(text), read, samples, file.path());
+    auto numbers = std::make_unique<NumberStream>(std::move(text), NumberText{read, samples}, file.path());
     if (!array.is_colours) return numbers;
     return std::make_unique<ColourStream>(std::move(numbers));
   }
