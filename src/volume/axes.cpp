@@ -82,15 +82,16 @@ Vector3 normal_of(const Vector3& a, const Vector3& b) {
   return normal;
 }
 
-void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
+void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path, const std::string& source) {
   std::array<Vector3, 3> units{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = length_of(axes.steps[axis]);
+    const std::string of_axis = " on axis " + std::to_string(axis) + source;
     if (!std::isfinite(length) || !(length > 0)) {
-      bad_input(path, "a positive, finite sample spacing on axis " + std::to_string(axis), number_text(length));
+      bad_input(path, "a positive, finite sample spacing" + of_axis, number_text(length));
     }
     if (!is_usable_step(length)) {
-      bad_input(path, "a sample spacing from 1e-30 to 1e30 on axis " + std::to_string(axis), number_text(length));
+      bad_input(path, "a sample spacing from 1e-30 to 1e30" + of_axis, number_text(length));
     }
     geometry.spacing[axis] = length;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -101,7 +102,7 @@ void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path) {
   constexpr double kFlat = 1e-6;
   const double determinant = dot(cross(units[0], units[1]), units[2]);
   if (!(std::abs(determinant) > kFlat)) {
-    bad_input(path, "axes that span space", "directions of determinant " + number_text(determinant));
+    bad_input(path, "axes that span space" + source, "directions of determinant " + number_text(determinant));
   }
   for (const double coordinate : axes.origin) {
     if (!std::isfinite(coordinate)) bad_input(path, "a finite origin", number_text(coordinate));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "isoweave/volume.hpp"
@@ -22,7 +23,8 @@ double length_of(const Vector3& v);
 
 // Splits steps into spacing (their lengths) and unit directions. Throws BadInput naming `path` when a number is not
 // finite, a step has no length, or the axes do not span space. Mirrored axes (negative determinant) are kept.
-void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path);
+// source: of the steps, where a header may have several, such as " by the sform"
+void set_geometry(Geometry& geometry, const Axes& axes, std::string_view path, const std::string& source = {});
 
 // A unit vector orthogonal to `a` and `b`: the missing third axis of a plane image.
 Vector3 normal_of(const Vector3& a, const Vector3& b);

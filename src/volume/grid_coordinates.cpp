@@ -59,6 +59,15 @@ std::pair<double, double> even_axis(const std::vector<double>& places, char axis
   return {first, step};
 }
 
+// Equal places are refused where the distances are looked at.
+void refuse_turns(const std::vector<double>& places, bool descend, const std::string& path) {
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    if (descend ? places[n] <= places[n - 1] : places[n] >= places[n - 1]) continue;
+    bad_input(path, "z coordinates that ascend, or descend, from the first to the last",
+              number_text(places[n]) + " behind " + number_text(places[n - 1]) + " at " + std::to_string(n));
+  }
+}
+
 EvenGrid grid_of(VolumeInfo& info, const std::vector<double>& places, bool descend, const OpenOptions& options) {
   SlicePlaces slices{info.path, places, [](std::size_t n) { return "slice " + std::to_string(n); },
                      [path = info.path](std::size_t) { return path; }};
@@ -109,6 +118,7 @@ EvenGrid place_on_grid(VolumeInfo& info, const GridCoordinates& points, bool cel
       continue;
     }
     const bool descend = places.back() < places.front();
+    refuse_turns(places, descend, info.path);
     grid = grid_of(info, places, descend, options);
     axes.origin[axis] = places.front();
     if (places.size() > 1) axes.steps[axis][axis] = descend ? -grid.distance() : grid.distance();

@@ -113,6 +113,7 @@ OpenedVolume open_by_content(const FilePtr& file, const OpenOptions& options) {
   if (is_vtk_legacy(head)) return open_vtk_legacy(jumping_file(file), options);
   if (is_pvm(head)) return open_pvm(jumping_file(file));
   if (is_metaimage(head)) return open_metaimage(file, options);
+  refuse_other_magic(file->path(), head);
   if (is_nifti(head)) return open_nifti(file, options);
   if (is_npy(head)) return open_npy(file, options);
   if (is_npz(head, file->path())) return open_npz(jumping_file(file), options);

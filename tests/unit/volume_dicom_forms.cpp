@@ -277,6 +277,20 @@ TEST(DicomExport, FollowsNoLinkTwice) {
   EXPECT_TRUE(contains(refusal(folder / ""), "expected folders no deeper than 16, found '"));
 }
 
+TEST(DicomSamples, OfKindsThatAreNotReadAreNamed) {
+  const TempFolder folder;
+  const std::string good = dicom({}, std::string(4 * kSlice, 'x'));
+  const std::string integers = element(0x7fe0, 0x10, "OW", "").substr(0, 4);
+  const auto found = [&](std::uint16_t number) {
+    std::string file = good;
+    file.replace(file.rfind(integers), 4, bytes_of(std::uint16_t{0x7fe0}) + bytes_of(number));
+    return refusal(folder.put("a.dcm", file));
+  };
+  EXPECT_TRUE(contains(found(8), "expected samples of whole numbers (Pixel Data), found Float Pixel Data, which"));
+  EXPECT_TRUE(contains(found(9), "found Double Float Pixel Data, which is not read"));
+  EXPECT_TRUE(contains(found(7), "expected samples of whole numbers (Pixel Data), found none"));
+}
+
 TEST(DicomSeries, WithoutUidIsChosenByAName) {
   const TempFolder folder;
   DicomFields fields;

@@ -73,6 +73,10 @@ TEST(MetaImage, ReadsDetachedFilesWithTheirHeaders) {
   EXPECT_TRUE(contains(refusal(folder.put("a.mhd", header("HeaderSize = 6\n", "headed.raw"))), "60 bytes of samples"));
   EXPECT_TRUE(contains(refusal(folder.put("a.mhd", header("", "gone.raw"))),
                        "a.mhd: expected its samples in " + folder / "gone.raw" + ", found no such file"));
+  const std::string long_name(3000, 'n');
+  EXPECT_TRUE(contains(refusal(folder.put("a.mhd", header("", long_name))),
+                       "a.mhd: expected its samples in a file, found a name that is too long for one, of " +
+                           std::to_string((folder / long_name).size()) + " bytes: 'nnn"));
   EXPECT_TRUE(contains(refusal(folder.put("a.mhd", header("", ""))), "behind ElementDataFile, found nothing"));
 }
 

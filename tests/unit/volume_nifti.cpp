@@ -128,7 +128,8 @@ TEST(Nifti, RefusesAxesThatDoNotSpanSpace) {
   fields.rows = {1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0};
   EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "span space"));
   fields.rows = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "spacing on axis 0"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))),
+                       "expected a positive, finite sample spacing on axis 0 by the sform (code 1), found 0"));
   fields.rows = {1, 0, 0, std::nan(""), 0, 1, 0, 0, 0, 0, 1, 0};
   EXPECT_TRUE(contains(refusal(folder.put("a.nii", nifti_file(fields))), "origin"));
 }
@@ -274,6 +275,27 @@ TEST(Nifti, ReadsPairsFromEitherName) {
   EXPECT_TRUE(contains(refusal(header), "a.hdr: expected its samples in " + folder / "a.img" + ", found no such file"));
   folder.put("a.img.gz", gzipped(stored(kSamples)));
   EXPECT_EQ(read_file<std::int16_t>(header), kSamples);
+}
+
+TEST(Nifti, AMagicThatIsNotThatOfItsNameIsTold) {
+  const TempFolder folder;
+  for (const int version : {1, 2}) {
+    const std::string number = std::to_string(version);
+    for (const bool big : {false, true}) {
+      NiftiFields fields;
+      fields.version = version;
+      fields.big = big;
+      std::string content = nifti_file(fields);
+      const std::size_t at = version == 1 ? 344 : 4;
+      for (const std::string& magic : {"ni" + number, std::string("n,1"), std::string("???")}) {
+        content.replace(at, 3, magic);
+        const std::string expected =
+            "expected the magic 'n+" + number + "' of a NIfTI file with its samples, found '" + magic + "'";
+        EXPECT_TRUE(contains(refusal(folder.put("a.nii", content)), expected)) << refusal(folder / "a.nii");
+        EXPECT_TRUE(contains(refusal(folder.put("a.NII.gz", gzipped(content))), expected));
+      }
+    }
+  }
 }
 
 TEST(Nifti, ReadsFromADistantOffset) {

@@ -83,6 +83,24 @@ TEST(Npy, TakesTheLastThreeAxes) {
   EXPECT_EQ(read_file<std::int16_t>(four, second), std::vector<std::int16_t>(all.begin() + 30, all.end()));
 }
 
+TEST(Npy, ArraysOfTooFewAxesAreCalledByTheirSizes) {
+  const TempFolder folder;
+  const std::string expected =
+      "expected an array of 2 or 3 axes, or one that names its axes x, y, z, channel and time, found ";
+  const auto found = [&](const std::string& shape, std::size_t bytes) {
+    const std::string message = refusal(folder.put("a.npy", npy_header("|u1", shape) + std::string(bytes, 'x')));
+    const std::size_t at = message.find(expected);
+    return at == std::string::npos ? message : message.substr(at + expected.size());
+  };
+  EXPECT_EQ(found("()", 1), "a single value without axes");
+  EXPECT_EQ(found("(7,)", 7), "one of 7");
+  EXPECT_EQ(found("(2, 2, 2, 2)", 16), "one of 2 x 2 x 2 x 2 (--channel and --time choose along leading axes)");
+  OpenOptions options;
+  options.time = 0;
+  folder.put("a.npy", npy_header("|u1", "()") + "x");
+  EXPECT_TRUE(contains(refusal(folder / "a.npy", options), "an axis for --time, found a single value without axes"));
+}
+
 TEST(Npy, TakesAChannelOfTheOrderOfFortran) {
   const TempFolder folder;
   std::vector<std::int16_t> both;

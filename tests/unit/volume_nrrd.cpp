@@ -248,6 +248,8 @@ TEST(Nrrd, RefusesDirectionsThatSpanNothing) {
         "(1,0,0) (0,1,0)", "(1,0,0) (0,1,0) (0,0,1", "(1,0,0,0,0) (0,1,0,0,0) (0,0,1,0,0)", "1 0 0"}) {
     EXPECT_TRUE(contains(refusal_of(folder, "space: LPS\nspace directions: " + wrong + "\n"), "expected")) << wrong;
   }
+  EXPECT_TRUE(contains(refusal_of(folder, "space: LPS\nspace directions: (0,0,0) (0,1,0) (0,0,1)\n"),
+                       "expected a positive, finite sample spacing on axis 0 by the space directions, found 0"));
   const std::string axes = "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n";
   EXPECT_TRUE(contains(refusal_of(folder, axes + "space origin: (0,nan,0)\n"), "origin"));
 }

@@ -127,6 +127,23 @@ TEST(VtkGrids, UnevenSlicesAreTreatedAsThoseOfDicom) {
 }
 
 // Samples in the order that is not the machine's are turned before they are interpolated.
+TEST(VtkGrids, SlicesThatTurnBackAreRefusedByTheirCoordinates) {
+  const TempFolder folder;
+  const auto found = [&](const std::string& z) {
+    const std::string expected = "expected z coordinates that ascend, or descend, from the first to the last, found ";
+    const Grid grid{.x = "0 1", .y = "0", .z = z, .extent = "0 1 0 0 0 4"};
+    const std::string message = refusal(folder.put("a.vtr", vtr(grid, ramp<std::int16_t>(10))));
+    EXPECT_EQ(refusal(folder.put("a.vtk", legacy(z, ramp<std::int16_t>(10)))),
+              folder / "a.vtk" + message.substr((folder / "a.vtr").size()));
+    const std::size_t at = message.find(expected);
+    return at == std::string::npos ? message : message.substr(at + expected.size());
+  };
+  EXPECT_EQ(found("0 1 3 2 4"), "2 behind 3 at 3");
+  EXPECT_EQ(found("4 2 3 1 0"), "3 behind 2 at 2");
+  EXPECT_EQ(found("0 1 2 1 0"), "1 behind 2 at 3");
+  EXPECT_TRUE(contains(found("0 1 1 2 3"), "a position of its own for every slice, found that of 'slice 1'"));
+}
+
 TEST(VtkGrids, UnevenSlicesMayHaveTheOtherByteOrder) {
   const TempFolder folder;
   const Samples samples{0, 1000, 10, 1010, 30, 1030};

@@ -21,6 +21,9 @@ OpenedVolume open_raw_slices(const std::string& path, const OpenOptions& options
 
 // Whether `head`, the first bytes of a file, are a NIfTI header.
 bool is_nifti(std::string_view head);
+// Throws BadInput where a file that is named as a NIfTI file with its samples begins as one, and its magic is another:
+// damaged, or that of a header beside its samples.
+void refuse_other_magic(const std::string& path, std::string_view head);
 OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options);
 // The file of samples that belongs to a header file: "scan.img" or "scan.img.gz" for "scan.hdr".
 FilePtr image_of_header(const std::string& header_path);

@@ -35,6 +35,10 @@ std::string text_of(const std::vector<ArrayAxis>& axes) {
   return text;
 }
 
+std::string axes_found(const std::vector<ArrayAxis>& axes) {
+  return axes.empty() ? "a single value without axes" : "axes of " + text_of(axes);
+}
+
 bool are_named(const std::vector<ArrayAxis>& axes) {
   bool x = false, y = false;
   for (const ArrayAxis& axis : axes) {
@@ -72,7 +76,7 @@ void take_index(AxisChoice& choice, std::size_t n, const std::vector<ArrayAxis>&
 void check_asked(bool there, const std::optional<std::int64_t>& asked, std::string_view word,
                  const std::vector<ArrayAxis>& axes, std::string_view path) {
   if (there || !asked) return;
-  bad_input(path, "an axis for --" + std::string(word), "axes of " + text_of(axes));
+  bad_input(path, "an axis for --" + std::string(word), axes_found(axes));
 }
 
 AxisChoice choose_named(const std::vector<ArrayAxis>& axes, const OpenOptions& options, std::string_view path) {
@@ -113,7 +117,7 @@ std::size_t take_slices_from(std::vector<ArrayAxis>& axes, SliceAxis from, std::
   };
   const auto holder = named(channels ? AxisKind::kChannel : AxisKind::kTime);
   const auto slices = named(AxisKind::kZ);
-  if (holder == axes.end()) bad_input(path, "an axis for --slices-from " + word, "axes of " + text_of(axes));
+  if (holder == axes.end()) bad_input(path, "an axis for --slices-from " + word, axes_found(axes));
   if (slices != axes.end() && slices->size > 1) {
     bad_input(path, "one slice for --slices-from " + word, std::to_string(slices->size));
   }
@@ -131,7 +135,7 @@ AxisChoice choose_unnamed(const std::vector<ArrayAxis>& axes, const OpenOptions&
   std::size_t first = 0;
   const auto take_leading = [&](const std::optional<std::int64_t>& asked, std::string_view word) {
     if (!asked) return;
-    if (axes.size() - first <= 3) bad_input(path, "an axis for --" + std::string(word), "axes of " + text_of(axes));
+    if (axes.size() - first <= 3) bad_input(path, "an axis for --" + std::string(word), axes_found(axes));
     take_index(choice, first, axes, asked, word, path);
     choice.notes.push_back("axis " + std::to_string(first) + " has no name and is taken for " + std::string(word));
     ++first;
@@ -149,8 +153,9 @@ AxisChoice choose_unnamed(const std::vector<ArrayAxis>& axes, const OpenOptions&
     }
   }
   if (left.size() > 3 || left.size() < 2) {
+    const std::string found = axes.empty() ? axes_found(axes) : "one of " + text_of(axes);
     bad_input(path, "an array of 2 or 3 axes, or one that names its axes x, y, z, channel and time",
-              "one of " + text_of(axes) + " (--channel and --time choose along leading axes)");
+              found + (axes.size() > 3 ? " (--channel and --time choose along leading axes)" : ""));
   }
   for (std::size_t n = 0; n < left.size(); ++n) choice.axis.at(left.size() - 1 - n) = left[n];
   return choice;

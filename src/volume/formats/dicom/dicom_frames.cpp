@@ -16,6 +16,14 @@ void override_with(std::string& text, const std::string& other) {
   if (!other.empty()) text = other;
 }
 
+// The name of an element that stands for Pixel Data and is not read; empty for others.
+std::string_view unread_samples(std::uint32_t tag) {
+  if (tag == 0x00287fe0) return "Pixel Data Provider URL";
+  if (tag == 0x7fe00008) return "Float Pixel Data";
+  if (tag == 0x7fe00009) return "Double Float Pixel Data";
+  return {};
+}
+
 }  // namespace
 
 void DicomFrames::take(const DicomElementWalk& walk, const DicomElement& element) {
@@ -25,6 +33,7 @@ void DicomFrames::take(const DicomElementWalk& walk, const DicomElement& element
   constexpr std::size_t kDepth = 4;
   stack_.take(walk, element);
   if (walk.depth() == 0) {
+    if (const std::string_view name = unread_samples(element.tag); !name.empty()) unread_ = name;
     group_ = element.tag == kSharedGroups ? Group::kShared : element.tag == kFrameGroups ? Group::kFrame : Group::kNone;
   } else if (group_ == Group::kFrame && walk.depth() == 1 && element.tag == DicomElement::kItem) {
     if (frames_.size() == kMostFrames) {
@@ -91,7 +100,10 @@ DicomSlice DicomFrames::slice(const DicomSlice& common, std::size_t frame) const
 }
 
 std::vector<DicomSlice> DicomFrames::slices(const DicomSlice& common) const {
-  if (!has_samples_) bad_input(common.path, "samples (Pixel Data)", "none");
+  if (!has_samples_) {
+    bad_input(common.path, "samples of whole numbers (Pixel Data)",
+              unread_.empty() ? "none" : std::string(unread_) + ", which is not read");
+  }
   const std::size_t count = count_of(common);
   std::vector<std::vector<DicomRange>> samples = samples_of(common, count);
   std::vector<DicomSlice> slices;

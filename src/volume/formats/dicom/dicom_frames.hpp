@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "volume/formats/dicom/dicom_file.hpp"
@@ -44,6 +45,7 @@ class DicomFrames {
   Place shared_;
   std::vector<Place> frames_;
   bool has_samples_ = false;
+  std::string_view unread_;  // what the data set has in place of samples that are read
   bool packed_ = false;
   DicomFragments fragments_;
   DicomRange plain_;

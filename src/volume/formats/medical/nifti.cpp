@@ -15,6 +15,7 @@
 #include "files/external_files.hpp"
 #include "files/header_text.hpp"
 #include "files/part_file.hpp"
+#include "files/quoted.hpp"
 #include "volume/axes.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/formats.hpp"
@@ -237,6 +238,13 @@ void note_other_spacing(VolumeInfo& info, const NiftiHeader& header) {
   }
 }
 
+// The form that gives the axes, for messages.
+std::string form_of(const NiftiHeader& header) {
+  if (header.sform > 0) return " by the sform (code " + std::to_string(header.sform) + ")";
+  if (header.qform > 0) return " by the qform (code " + std::to_string(header.qform) + ") and pixdim";
+  return " by pixdim";
+}
+
 Axes axes_of_form(VolumeInfo& info, const NiftiHeader& header) {
   if (header.sform > 0) {
     const Axes axes = axes_from_rows(header);
@@ -254,7 +262,7 @@ Axes axes_of_form(VolumeInfo& info, const NiftiHeader& header) {
 
 void set_axes(VolumeInfo& info, const NiftiHeader& header) {
   info.geometry.space = Space::kRas;
-  set_geometry(info.geometry, axes_of_form(info, header), info.path);
+  set_geometry(info.geometry, axes_of_form(info, header), info.path, form_of(header));
   if (header.sform > 0 && header.qform <= 0) note_other_spacing(info, header);
   constexpr std::array<std::string_view, 4> kUnits{"", "m", "mm", "um"};
   const auto unit = static_cast<std::size_t>(header.units & 7);
@@ -326,6 +334,21 @@ FilePtr image_of_header(const std::string& header_path) {
 }
 
 bool is_nifti(std::string_view head) { return parse_nifti(head).has_value(); }
+
+void refuse_other_magic(const std::string& path, std::string_view head) {
+  std::string name = lower_case(path);
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  if (!name.ends_with(".nii") || head.size() < kHeader1) return;
+  for (const bool swapped : {false, true}) {
+    const std::int32_t size = HeaderFields(head, swapped).at<std::int32_t>(0);
+    if (size != kHeader1 && size != kHeader2) continue;
+    const bool first = size == kHeader1;
+    const std::string_view expected(first ? "n+1\0" : "n+2\0", 4), magic = head.substr(first ? 344 : 4, 4);
+    if (magic == expected) continue;
+    bad_input(path, "the magic " + in_quotes(expected.substr(0, 3)) + " of a NIfTI file with its samples",
+              in_quotes(magic.ends_with('\0') ? magic.substr(0, 3) : magic));
+  }
+}
 
 OpenedVolume open_nifti(const FilePtr& file, const OpenOptions& options) {
   const std::optional<NiftiHeader> header = parse_nifti(file->head(kNiftiHeadBytes));

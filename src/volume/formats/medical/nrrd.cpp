@@ -217,7 +217,7 @@ void set_axes(OpenedVolume& volume, const NrrdFields& fields, const std::vector<
   }
   const CommonUnit unit = unit_of(fields, axes);
   apply_unit(out, unit);
-  set_geometry(info.geometry, out, info.path);
+  set_geometry(info.geometry, out, info.path, axes[0].step ? " by the space directions" : "");
   take_unit(volume, unit);
 }
 
