@@ -84,6 +84,14 @@ class Writer {
     H5Dclose(dataset);
   }
 
+  // A link to an object of another file; the groups around it are made.
+  void put_link(const std::string& name, const std::string& file, const std::string& object) {
+    const hid_t links = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    H5Lcreate_external(file.c_str(), object.c_str(), file_, name.c_str(), links, H5P_DEFAULT);
+    H5Pclose(links);
+  }
+
   void put_group(const std::string& name) {
     const hid_t links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(links, 1);

@@ -213,11 +213,25 @@ TEST(Hdf5, LinksIntoOtherFilesAreNotFollowed) {
   const TempFolder folder;
   Writer(folder / "secret.h5").put_int16("/v", {2, 2, 2});
   {
-    const Writer writer(folder / "a.h5");
+    Writer writer(folder / "a.h5");
     H5Lcreate_external((folder / "secret.h5").c_str(), "/v", writer.file(), "outside", H5P_DEFAULT, H5P_DEFAULT);
     H5Lcreate_hard(writer.file(), "/", writer.file(), "itself", H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_soft("/itself/outside", writer.file(), "soft", H5P_DEFAULT, H5P_DEFAULT);
+    writer.put_link("/group", "secret.h5", "/");
   }
-  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "expected a dataset of numbers of 2 axes or more, found none"));
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"),
+                       "expected a dataset of numbers of 2 axes or more, found none; links "
+                       "into other files, such as '/group', are not followed"));
+  OpenOptions options;
+  for (const std::string name : {"outside", "/itself/outside", "soft", "group/v", "group"}) {
+    options.dataset = name;
+    const std::string message = refusal(folder / "a.h5", options);
+    EXPECT_TRUE(contains(message, "/" + name.substr(name[0] == '/' ? 1 : 0) + "' in the file itself, found a link to"))
+        << message;
+    EXPECT_TRUE(contains(message, "secret.h5', which is not followed")) << message;
+  }
+  Writer(folder / "a.h5").put_int16("/w", {2, 2, 2});
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a.h5"), counting(8));
 }
 
 TEST(Hdf5, TheCallersPrinterOfErrorsIsLeftAlone) {

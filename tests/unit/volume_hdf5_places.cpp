@@ -121,6 +121,51 @@ TEST(Hdf5Places, ItkDirectionsAreRows) {
   EXPECT_TRUE(contains(refusal(folder / "c.h5"), "expected 3 numbers in '/ITKImage/0/Origin', found 2"));
 }
 
+// Each object that a format has may be a link; so may the groups around it.
+TEST(Hdf5Places, LinksIntoOtherFilesAreNotFollowed) {
+  const TempFolder folder;
+  {
+    Writer writer(folder / "secret.h5");
+    put_imaris(writer);
+    writer.put_int16("/ITKImage/0/VoxelData", {2, 3, 4});
+    writer.put_values("/ITKImage/0/Spacing", {3}, {2, 3, 4});
+    writer.put_values("/ITKImage/0/Origin", {3}, {10, 20, 30});
+    writer.put_values("/ITKImage/0/Directions", {3, 3}, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  }
+  const auto refused = [&](const std::vector<std::string>& own, const std::vector<std::string>& linked) {
+    {
+      Writer writer(folder / "a.h5");
+      for (const std::string& name : own) {
+        name == "/ITKImage/0/VoxelData" ? writer.put_int16(name, {2, 3, 4}) : writer.put_values(name, {3}, {1, 2, 3});
+      }
+      for (const std::string& name : linked) writer.put_link(name, folder / "secret.h5", name);
+    }
+    return refusal(folder / "a.h5");
+  };
+  const std::string data = "/ITKImage/0/VoxelData", spacing = "/ITKImage/0/Spacing", origin = "/ITKImage/0/Origin";
+  EXPECT_TRUE(contains(refused({}, {"/ITKImage"}), "expected '/ITKImage/0/VoxelData' in the file itself"));
+  EXPECT_TRUE(contains(refused({}, {data}), "found a link to '/ITKImage/0/VoxelData' in '"));
+  EXPECT_TRUE(contains(refused({data, origin}, {spacing}), "expected '/ITKImage/0/Spacing' in the file itself"));
+  EXPECT_TRUE(contains(refused({}, {"/DataSet", "/DataSetInfo"}), "expected '/DataSetInfo/Image' in the file itself"));
+}
+
+TEST(Hdf5Places, NumbersInOtherFilesAreNotRead) {
+  const TempFolder folder;
+  folder.put("numbers", std::string(24, 'x'));
+  {
+    Writer writer(folder / "a.h5");
+    writer.put_int16("/ITKImage/0/VoxelData", {2, 3, 4});
+    const hsize_t count = 3;
+    const hid_t space = H5Screate_simple(1, &count, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(creation, (folder / "numbers").c_str(), 0, 24);
+    H5Dclose(
+        H5Dcreate2(writer.file(), "/ITKImage/0/Spacing", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+  }
+  EXPECT_TRUE(contains(refusal(folder / "a.h5"), "expected samples in the file, found external files"));
+}
+
 struct MincFields {
   std::string order = "zspace,yspace,xspace";
   std::vector<double> image_min{-10};

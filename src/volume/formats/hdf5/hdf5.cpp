@@ -156,9 +156,16 @@ std::string text_of(const Hdf5Dataset& dataset) {
 
 constexpr std::string_view kReadTypes = "integers of 8 to 64 bits or floats of 16 to 64 bits";
 
+// The end of a message about what a file holds.
+std::string links_out_text(const Hdf5Contents& contents) {
+  if (contents.link_out.empty()) return {};
+  return "; links into other files, such as " + in_quotes(contents.link_out) + ", are not followed";
+}
+
 // The one that is taken when none is named: the only one of three axes or more whose samples can be read.
-std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::string& path) {
+std::string only_dataset(const Hdf5Contents& contents, const std::string& path) {
   constexpr std::size_t kMostNamed = 12;
+  const std::vector<Hdf5Dataset>& found = contents.datasets;
   std::vector<const Hdf5Dataset*> volumes, unread;
   for (const Hdf5Dataset& dataset : found) {
     if (dataset.shape.size() > 2) (dataset.type ? volumes : unread).push_back(&dataset);
@@ -171,7 +178,7 @@ std::string only_dataset(const std::vector<Hdf5Dataset>& found, const std::strin
   for (std::size_t n = 0; n < std::min(found.size(), kMostNamed); ++n)
     listed += (n == 0 ? "" : ", ") + text_of(found[n]);
   if (found.size() > kMostNamed) listed += " and " + std::to_string(found.size() - kMostNamed) + " more";
-  if (found.empty()) bad_input(path, "a dataset of numbers of 2 axes or more", "none");
+  if (found.empty()) bad_input(path, "a dataset of numbers of 2 axes or more", "none" + links_out_text(contents));
   bad_input(path, "--dataset with one of " + listed, "no choice");
 }
 
@@ -212,10 +219,7 @@ std::vector<std::int64_t> chunks_of(const Hdf5Session& session, hid_t dataset, s
   const Hdf5Functions& h5 = session.h5();
   const Hdf5Handle properties(h5.dget_create_plist(dataset), h5.pclose);
   if (!properties) session.refuse(path, "the layout of the dataset");
-  const H5D_layout_t layout = h5.pget_layout(properties.id());
-  if (layout == H5D_VIRTUAL) bad_input(path, "samples in the file", "a virtual dataset, which lies in other files");
-  if (h5.pget_external_count(properties.id()) != 0) bad_input(path, "samples in the file", "external files");
-  if (layout != H5D_CHUNKED) return {};
+  if (layout_in_file(session, dataset, path) != H5D_CHUNKED) return {};
   check_filters(session, properties.id(), path);
   std::array<hsize_t, H5S_MAX_RANK> sizes{};
   const int rank = h5.pget_chunk(properties.id(), static_cast<int>(sizes.size()), sizes.data());
@@ -268,8 +272,10 @@ FoundDataset find_dataset(const Hdf5File& file, const OpenOptions& options) {
     found.name = found.place->dataset;
     found.notes = found.place->notes;
   } else if (found.name.empty()) {
-    found.name = only_dataset(find_datasets(file.session, file.id), file.path);
-    found.notes.push_back(in_quotes(found.name) + " is the only dataset of 3 axes or more, and is read");
+    const Hdf5Contents contents = find_datasets(file.session, file.id, file.path);
+    found.name = only_dataset(contents, file.path);
+    found.notes.push_back(in_quotes(found.name) + " is the only dataset of 3 axes or more, and is read" +
+                          links_out_text(contents));
     found.place = find_hdf5_place(file, found.name, options);
     if (found.place) found.notes.insert(found.notes.end(), found.place->notes.begin(), found.place->notes.end());
   }
@@ -395,11 +401,12 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   open.file = Hdf5Handle(h5.fopen(FileName(*file).text().c_str(), kReadOnly, kDefaultProperties), h5.fclose);
   if (!open.file) session.refuse(path, "a readable HDF5 file");
   const FoundDataset found = find_dataset({session, open.file.id(), path}, options);
-  open.dataset = Hdf5Handle(h5.oopen(open.file.id(), found.name.c_str(), kDefaultProperties), h5.oclose);
+  open.dataset = session.open_object(open.file.id(), found.name, path);
   if (!open.dataset) session.refuse(path, "a dataset " + in_quotes(found.name));
   if (h5.iget_type(open.dataset.id()) != H5I_DATASET) {
     bad_input(path, "a dataset " + in_quotes(found.name), "a group");
   }
+  layout_in_file(session, open.dataset.id(), path);
   const Hdf5Dataset dataset = describe_dataset(session, open.dataset.id(), found.name);
   if (!dataset.type) {
     bad_input(path, std::string(kReadTypes) + " in " + in_quotes(found.name), dataset.type_text);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "files/input_file.hpp"
 #include "volume/samples.hpp"
 #include "volume/stream_source.hpp"
 
@@ -97,36 +98,39 @@ bool take_shape(const Hdf5Functions& h5, hid_t dataset, Hdf5Dataset& found) {
 // Walks the groups of a file along its hard links. Others may lead into other files, or nowhere.
 class Search {
  public:
-  explicit Search(const Hdf5Functions& h5) : h5_(h5) {}
+  Search(const Hdf5Session& session, const std::string& path) : session_(session), h5_(session.h5()), path_(path) {}
 
   void visit(hid_t group, const std::string& path, std::size_t depth) {
     H5G_info_t info{};
     if (h5_.gget_info(group, &info) < 0) return;
     for (hsize_t n = 0; n < info.nlinks && visited_ < kMostObjects; ++n, ++visited_) {
-      const std::string name = name_of(group, n);
-      if (name.empty()) continue;
-      const Hdf5Handle object(h5_.oopen(group, name.c_str(), kDefaultProperties), h5_.oclose);
-      if (!object) continue;
-      const H5I_type_t kind = h5_.iget_type(object.id());
+      const auto [name, link] = link_at(group, n);
       std::string inner = path;
       inner.append("/").append(name);
+      if (link == H5L_TYPE_EXTERNAL && contents.link_out.empty()) contents.link_out = inner;
+      if (name.empty() || link != H5L_TYPE_HARD) continue;
+      const Hdf5Handle object = session_.open_object(group, name, path_);
+      if (!object) continue;
+      const H5I_type_t kind = h5_.iget_type(object.id());
       if (kind == H5I_GROUP && depth < kDeepest) visit(object.id(), inner, depth + 1);
       if (kind == H5I_DATASET) take(object.id(), inner);
     }
   }
 
-  std::vector<Hdf5Dataset> found;
+  Hdf5Contents contents;
 
  private:
-  // The name of a hard link; empty for any other.
-  std::string name_of(hid_t group, hsize_t n) const {
+  // The name and the kind of a link; no name where there is none, or a very long one.
+  std::pair<std::string, H5L_type_t> link_at(hid_t group, hsize_t n) const {
     H5L_info_t link{};
-    if (h5_.lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefaultProperties) < 0) return {};
-    if (link.type != H5L_TYPE_HARD) return {};
+    if (h5_.lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, &link, kDefaultProperties) < 0) {
+      return {std::string(), H5L_TYPE_ERROR};
+    }
     std::array<char, 1024> name{};
     const ssize_t length =
         h5_.lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size(), kDefaultProperties);
-    return length > 0 && static_cast<std::size_t>(length) < name.size() ? name.data() : std::string();
+    const bool fits = length > 0 && static_cast<std::size_t>(length) < name.size();
+    return {fits ? name.data() : std::string(), link.type};
   }
 
   void take(hid_t dataset, const std::string& path) {
@@ -134,10 +138,12 @@ class Search {
     entry.name = path;
     if (!take_shape(h5_, dataset, entry) || entry.shape.size() < 2) return;
     take_type(h5_, dataset, entry);
-    found.push_back(std::move(entry));
+    contents.datasets.push_back(std::move(entry));
   }
 
+  const Hdf5Session& session_;
   const Hdf5Functions& h5_;
+  const std::string& path_;
   std::size_t visited_ = 0;
 };
 
@@ -206,10 +212,10 @@ std::vector<std::string> read_texts(const Hdf5Functions& h5, hid_t attribute) {
 
 }  // namespace
 
-std::vector<Hdf5Dataset> find_datasets(const Hdf5Session& session, hid_t file) {
-  Search search(session.h5());
+Hdf5Contents find_datasets(const Hdf5Session& session, hid_t file, const std::string& path) {
+  Search search(session, path);
   search.visit(file, "", 0);
-  return std::move(search.found);
+  return std::move(search.contents);
 }
 
 Hdf5Dataset describe_dataset(const Hdf5Session& session, hid_t dataset, const std::string& name) {
@@ -237,8 +243,19 @@ ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
   return {numbers, texts};
 }
 
-std::optional<std::vector<double>> hdf5_numbers(const Hdf5Session& session, hid_t dataset) {
+H5D_layout_t layout_in_file(const Hdf5Session& session, hid_t dataset, const std::string& path) {
+  const Hdf5Functions& h5 = session.h5();
+  const Hdf5Handle properties(h5.dget_create_plist(dataset), h5.pclose);
+  if (!properties) session.refuse(path, "the layout of the dataset");
+  const H5D_layout_t layout = h5.pget_layout(properties.id());
+  if (layout == H5D_VIRTUAL) bad_input(path, "samples in the file", "a virtual dataset, which lies in other files");
+  if (h5.pget_external_count(properties.id()) != 0) bad_input(path, "samples in the file", "external files");
+  return layout;
+}
+
+std::optional<std::vector<double>> hdf5_numbers(const Hdf5Session& session, hid_t dataset, const std::string& path) {
   constexpr hssize_t kMostNumbers = 1 << 20;
+  layout_in_file(session, dataset, path);
   const Hdf5Functions& h5 = session.h5();
   const Hdf5Handle type(h5.dget_type(dataset), h5.tclose);
   const Hdf5Handle space(h5.dget_space(dataset), h5.sclose);

@@ -101,6 +101,8 @@ void take_extent(Hdf5Place& place, const ArrayAttributes& image, std::size_t axi
 }  // namespace
 
 std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& named, const OpenOptions& options) {
+  const std::optional<Choice> given = named_choice(named);
+  if (!named.empty() && !given) return std::nullopt;
   const Hdf5Handle image = open_object(file, kImarisImage);
   if (!image || !open_object(file, level_path({}))) return std::nullopt;
   Hdf5Place place;
@@ -111,10 +113,8 @@ std::optional<Hdf5Place> imaris_place(const Hdf5File& file, const std::string& n
     choice.level = choose(place, options.level, links_in(file, kLevels), "level", file.path);
     choice.time = choose(place, options.time, links_in(file, level_path(choice)), "time", file.path);
     choice.channel = choose(place, options.channel, links_in(file, time_path(choice)), "channel", file.path);
-  } else if (const std::optional<Choice> given = named_choice(named)) {
-    choice = *given;
   } else {
-    return std::nullopt;
+    choice = *given;
   }
   place.dataset = channel_path(choice) + "/Data";
   if (!named.empty() && named != place.dataset) return std::nullopt;

@@ -75,6 +75,9 @@ Hdf5Functions load_functions(const std::string& path) {
   ISOWEAVE_LOAD(H5Tget_fields, tget_fields);
   ISOWEAVE_LOAD(H5Tget_ebias, tget_ebias);
   ISOWEAVE_LOAD(H5Tis_variable_str, tis_variable_str);
+  ISOWEAVE_LOAD(H5P_CLS_LINK_ACCESS_ID_g, link_access);
+  ISOWEAVE_LOAD(H5Pcreate, pcreate);
+  ISOWEAVE_LOAD(H5Pset_elink_cb, pset_elink_cb);
   ISOWEAVE_LOAD(H5Pclose, pclose);
   ISOWEAVE_LOAD(H5Pget_layout, pget_layout);
   ISOWEAVE_LOAD(H5Pget_chunk, pget_chunk);
@@ -114,14 +117,33 @@ herr_t keep_message(unsigned, const H5E_error2_t* error, void* data) {
   return 0;
 }
 
+// Called for every link into another file. Notes where the link leads, and fails.
+herr_t refuse_link(const char*, const char*, const char* file, const char* object, unsigned*, hid_t, void* data) {
+  *static_cast<std::string*>(data) = in_quotes(object) + " in " + in_quotes(file);
+  return -1;
+}
+
 }  // namespace
 
 Hdf5Session::Hdf5Session(const std::string& path) : lock_(one_at_a_time()), functions_(functions(path)) {
   functions_.eget_auto2(H5E_DEFAULT, &printer_, &printer_data_);
   functions_.eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  links_ = Hdf5Handle(functions_.pcreate(*functions_.link_access), functions_.pclose);
+  const bool ready = links_ && functions_.pset_elink_cb(links_.id(), refuse_link, &link_out_) >= 0;
+  if (!ready) bad_input(path, "a libhdf5 that can leave links alone", "another");
 }
 
-Hdf5Session::~Hdf5Session() { functions_.eset_auto2(H5E_DEFAULT, printer_, printer_data_); }
+Hdf5Session::~Hdf5Session() {
+  links_.reset();
+  functions_.eset_auto2(H5E_DEFAULT, printer_, printer_data_);
+}
+
+Hdf5Handle Hdf5Session::open_object(hid_t above, const std::string& name, const std::string& path) const {
+  link_out_.clear();
+  Hdf5Handle object(functions_.oopen(above, name.c_str(), links_.id()), functions_.oclose);
+  if (link_out_.empty()) return object;
+  bad_input(path, in_quotes(name) + " in the file itself", "a link to " + link_out_ + ", which is not followed");
+}
 
 void Hdf5Session::refuse(const std::string& path, const std::string& expected) const {
   std::string message;

@@ -6,6 +6,7 @@
 
 #include <mutex>
 #include <string>
+#include <utility>
 
 namespace isoweave {
 
@@ -51,6 +52,9 @@ struct Hdf5Functions {
   decltype(&::H5Tget_fields) tget_fields = nullptr;
   decltype(&::H5Tget_ebias) tget_ebias = nullptr;
   decltype(&::H5Tis_variable_str) tis_variable_str = nullptr;
+  decltype(&::H5P_CLS_LINK_ACCESS_ID_g) link_access = nullptr;  // a class of properties
+  decltype(&::H5Pcreate) pcreate = nullptr;
+  decltype(&::H5Pset_elink_cb) pset_elink_cb = nullptr;
   decltype(&::H5Pclose) pclose = nullptr;
   decltype(&::H5Pget_layout) pget_layout = nullptr;
   decltype(&::H5Pget_chunk) pget_chunk = nullptr;
@@ -64,28 +68,6 @@ struct Hdf5Functions {
   decltype(&::H5Aget_type) aget_type = nullptr;
   decltype(&::H5Aget_space) aget_space = nullptr;
   decltype(&::H5free_memory) free_memory = nullptr;
-};
-
-// The library while it is being used: by one thread at a time, since most builds of it allow no more, and without
-// printing. What the calling program set up for its own use of the library is left as it was.
-class Hdf5Session {
- public:
-  // Throws BadInput naming `path`, the file that needs the library, when it cannot be loaded.
-  explicit Hdf5Session(const std::string& path);
-  ~Hdf5Session();
-  Hdf5Session(const Hdf5Session&) = delete;
-  Hdf5Session& operator=(const Hdf5Session&) = delete;
-
-  const Hdf5Functions& h5() const { return functions_; }
-
-  // Throws BadInput "PATH: expected EXPECTED, found (what the library said of its last failure)".
-  [[noreturn]] void refuse(const std::string& path, const std::string& expected) const;
-
- private:
-  std::lock_guard<std::mutex> lock_;
-  const Hdf5Functions& functions_;
-  H5E_auto2_t printer_ = nullptr;
-  void* printer_data_ = nullptr;
 };
 
 // An open object of the library, closed at the end of its life, which must lie inside a session.
@@ -113,6 +95,35 @@ class Hdf5Handle {
  private:
   hid_t id_ = -1;
   Close close_ = nullptr;
+};
+
+// The library while it is being used: by one thread at a time, since most builds of it allow no more, and without
+// printing. What the calling program set up for its own use of the library is left as it was.
+class Hdf5Session {
+ public:
+  // Throws BadInput naming `path`, the file that needs the library, when it cannot be loaded.
+  explicit Hdf5Session(const std::string& path);
+  ~Hdf5Session();
+  Hdf5Session(const Hdf5Session&) = delete;
+  Hdf5Session& operator=(const Hdf5Session&) = delete;
+
+  const Hdf5Functions& h5() const { return functions_; }
+
+  // The object of a name below another object; none where there is no such path. Every object is opened here: no link
+  // into another file is followed, neither on the way to an object nor as the target of a link inside the file. Throws
+  // BadInput naming `path`, the file, where there is one.
+  Hdf5Handle open_object(hid_t above, const std::string& name, const std::string& path) const;
+
+  // Throws BadInput "PATH: expected EXPECTED, found (what the library said of its last failure)".
+  [[noreturn]] void refuse(const std::string& path, const std::string& expected) const;
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  const Hdf5Functions& functions_;
+  Hdf5Handle links_;              // how links are followed
+  mutable std::string link_out_;  // where a link into another file leads, once one was met
+  H5E_auto2_t printer_ = nullptr;
+  void* printer_data_ = nullptr;
 };
 
 }  // namespace isoweave

@@ -3,17 +3,14 @@
 #include "files/header_text.hpp"
 
 namespace isoweave {
-namespace {}  // namespace
-
 Hdf5Handle open_object(const Hdf5File& file, const std::string& name) {
-  const Hdf5Functions& h5 = file.session.h5();
-  return Hdf5Handle(h5.oopen(file.id, name.c_str(), kDefaultProperties), h5.oclose);
+  return file.session.open_object(file.id, name, file.path);
 }
 
 std::optional<std::vector<double>> numbers_in(const Hdf5File& file, const std::string& name) {
   const Hdf5Handle dataset = open_object(file, name);
   if (!dataset || file.session.h5().iget_type(dataset.id()) != H5I_DATASET) return std::nullopt;
-  return hdf5_numbers(file.session, dataset.id());
+  return hdf5_numbers(file.session, dataset.id(), file.path);
 }
 
 std::string text_in(const ArrayAttributes& attributes, const std::string& name) {

@@ -52,7 +52,7 @@ std::optional<Hdf5Place> vtkhdf_place(const Hdf5File& file, const std::string& n
 // The first of the above that knows the dataset.
 std::optional<Hdf5Place> find_hdf5_place(const Hdf5File& file, const std::string& named, const OpenOptions& options);
 
-// An object of the file; none where there is no such path.
+// An object of the file; none where there is no such path. Throws BadInput where it lies in another file.
 Hdf5Handle open_object(const Hdf5File& file, const std::string& name);
 
 // The numbers of a dataset, of a bounded number of them; nothing where there is none, or it holds something else.

@@ -17,9 +17,10 @@ std::vector<double> numbers_or(const ArrayAttributes& attributes, const std::str
 }  // namespace
 
 std::optional<Hdf5Place> vtkhdf_place(const Hdf5File& file, const std::string& named) {
+  if (!named.starts_with(kPoints)) return std::nullopt;
   const Hdf5Handle root = open_object(file, kRoot);
   const Hdf5Handle array = open_object(file, named);
-  if (!named.starts_with(kPoints) || !root || !array) return std::nullopt;
+  if (!root || !array) return std::nullopt;
   const ArrayAttributes attributes = hdf5_attributes(file.session, root.id());
   const std::size_t rank = describe_dataset(file.session, array.id(), named).shape.size();
   if (text_in(attributes, "Type") != "ImageData" || rank < 3 || rank > 4) return std::nullopt;
