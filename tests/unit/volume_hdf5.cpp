@@ -126,8 +126,10 @@ TEST(Hdf5, AttributesSayWhereSamplesLie) {
     Writer writer(folder / "a.h5");
     writer.put_int16("/v", {2, 2, 2});
     writer.put_numbers("/v", "element_size_um", {2, 0.5, 0.25});
+    writer.put_numbers("/v", "offset", {30, 20, 10});
   }
   const Geometry microns = open_volume(folder / "a.h5")->info().geometry;
+  EXPECT_EQ(microns.origin, (std::array<double, 3>{10, 20, 30}));
   EXPECT_EQ(microns.spacing, (std::array<double, 3>{0.25, 0.5, 2}));
   EXPECT_EQ(microns.unit, "um");
   {

@@ -108,6 +108,8 @@ TEST(N5, LevelsAndTheirPlaces) {
   EXPECT_EQ(geometry.origin, (std::array<double, 3>{10, 20, 30}));
   put_n5(folder / "c", "raw", {{"resolution", {1, 2, 3}}, {"units", {"nm", "nm", "um"}}, {"offset", {10, 20, 30}}});
   const Geometry mixed = open_volume(folder / "c")->info().geometry;
+  put_n5(folder / "d", "raw", {{"pixelResolution", {1, 2, 3}}, {"offset", {10, 20, 30}}});
+  EXPECT_EQ(open_volume(folder / "d")->info().geometry.origin, (std::array<double, 3>{10, 20, 30}));
   EXPECT_EQ(mixed.spacing, (std::array<double, 3>{1, 2, 3000}));
   EXPECT_EQ(mixed.origin, (std::array<double, 3>{10, 20, 30000}));
 }

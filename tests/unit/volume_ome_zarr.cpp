@@ -193,6 +193,12 @@ TEST(ZarrFolder, AttributesOfPlainArraysSayWhereSamplesLie) {
   const Geometry geometry = open_volume(folder / "a")->info().geometry;
   expect_places(geometry, {8, 4, 40}, {80, 0, 400});
   EXPECT_EQ(geometry.unit, "nm");
+  put_array(folder / "c", {2, 2, 2}, {{"element_size_um", {40, 4, 8}}, {"offset", {400, 0, 80}}});
+  expect_places(open_volume(folder / "c")->info().geometry, {8, 4, 40}, {80, 0, 400});
+  put_array(folder / "d", {2, 2, 2}, {{"offset", {400, 0, 80}}});
+  const VolumeInfo unspaced = open_volume(folder / "d")->info();
+  expect_places(unspaced.geometry, {1, 1, 1}, {0, 0, 0});
+  EXPECT_TRUE(contains(unspaced.notes.at(0), "offset has no spacing beside it"));
   put_array(folder / "b", {2, 2, 3, 2}, {{"_ARRAY_DIMENSIONS", {"channel", "z", "y", "x"}}});
   EXPECT_EQ(open_volume(folder / "b")->info().dims, (std::array<std::int64_t, 3>{2, 3, 2}));
 }

@@ -22,29 +22,48 @@ std::vector<Value> for_axes(const std::vector<Value>& list, const AxisChoice& ch
   return values;
 }
 
+struct ListOfAxes {
+  const ArrayAttributes& attributes;
+  const AxisChoice& choice;
+  std::string name;
+  double otherwise;
+};
+
+// Takes an attribute of a number for each axis. Returns whether there is one.
+bool take_list(AxisPlaces& places, const ListOfAxes& list, std::vector<double>& to) {
+  const std::optional<std::vector<double>> numbers = list.attributes.numbers(list.name);
+  if (!numbers) return false;
+  to = for_axes(*numbers, list.choice, list.otherwise);
+  if (to.empty()) places.notes.push_back("attribute " + list.name + " has another number of axes and is left out");
+  return !to.empty();
+}
+
 }  // namespace
 
 AxisPlaces places_of_attributes(const ArrayAttributes& attributes, const AxisChoice& choice) {
   AxisPlaces places;
-  const auto take = [&](const std::string& name, double otherwise, std::vector<double>& to) {
-    const std::optional<std::vector<double>> list = attributes.numbers(name);
-    if (!list) return false;
-    to = for_axes(*list, choice, otherwise);
-    if (to.empty()) places.notes.push_back("attribute " + name + " has another number of axes and is left out");
-    return !to.empty();
+  const auto take = [&](const std::string& name) {
+    return take_list(places, {attributes, choice, name, 1}, places.step);
   };
-  if (take("element_size_um", 1, places.step)) {
+  if (take("element_size_um")) {
     places.units.assign(choice.at.size(), "um");
-  } else if (take("resolution", 1, places.step) || take("voxel_size", 1, places.step)) {
+  } else if (take("resolution") || take("voxel_size")) {
     std::vector<std::string> units = attributes.texts("units");
     if (units.empty()) units = attributes.texts("unit");
     if (units.size() == 1) units.assign(choice.at.size(), units[0]);
     places.units = for_axes(units, choice, std::string());
-    if (take("offset", 0, places.begin)) {
-      places.notes.emplace_back("attribute offset is taken in the unit of the spacing");
-    }
   }
   return places;
+}
+
+void take_offset(AxisPlaces& places, const ArrayAttributes& attributes, const AxisChoice& choice) {
+  if (!take_list(places, {attributes, choice, "offset", 0}, places.begin)) return;
+  if (places.step.empty()) {
+    places.begin.clear();
+    places.notes.emplace_back("attribute offset has no spacing beside it and is left out");
+  } else {
+    places.notes.emplace_back("attribute offset is taken in the unit of the spacing");
+  }
 }
 
 void place_axes(OpenedVolume& volume, const AxisChoice& choice, const AxisPlaces& places) {

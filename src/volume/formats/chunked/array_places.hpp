@@ -26,8 +26,12 @@ struct ArrayAttributes {
   std::function<std::vector<std::string>(const std::string& name)> texts;
 };
 
-// element_size_um (micrometres), or resolution or voxel_size with units and offset. Lists of three are of k, j, i.
+// The steps of element_size_um (micrometres), or of resolution or voxel_size with units. Lists of three are of k, j, i.
 AxisPlaces places_of_attributes(const ArrayAttributes& attributes, const AxisChoice& choice);
+
+// The starts of the attribute offset, in the unit of the steps, whichever attribute gave these. An offset without steps
+// is left out with a note.
+void take_offset(AxisPlaces& places, const ArrayAttributes& attributes, const AxisChoice& choice);
 
 // Sets spacing, origin and unit; what is not said is taken as 1 and 0 with a note. Units that differ are made one.
 // Throws BadInput for steps of no length.

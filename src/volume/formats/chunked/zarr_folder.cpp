@@ -245,28 +245,40 @@ ArrayAttributes attributes_of(const ZarrNode& node) {
   return {numbers, texts};
 }
 
-// pixelResolution, with the steps and the shift that downsamplingFactors make of it (N5 viewer).
-void take_n5_viewer(AxisPlaces& places, const ZarrNode& node, const AxisChoice& choice) {
-  ArrayAttributes attributes = attributes_of(node);
-  if (const Json* resolution = member(node.attributes, "pixelResolution");
-      resolution != nullptr && places.step.empty()) {
-    ZarrNode inner = node;
-    inner.attributes = resolution->is_object() ? *resolution : Json{{"dimensions", *resolution}};
-    const ArrayAttributes own = attributes_of(inner);
-    const auto list = own.numbers("dimensions");
-    if (list && list->size() == choice.at.size()) {
-      places.step = *list;
-      const std::vector<std::string> unit = own.texts("unit");
-      if (unit.size() == 1) places.units.assign(choice.at.size(), unit[0]);
-    }
-  }
-  const auto factors = attributes.numbers("downsamplingFactors");
+// The steps of pixelResolution (N5 viewer).
+void take_pixel_resolution(AxisPlaces& places, const ZarrNode& node, const AxisChoice& choice) {
+  const Json* resolution = member(node.attributes, "pixelResolution");
+  if (resolution == nullptr || !places.step.empty()) return;
+  ZarrNode inner = node;
+  inner.attributes = resolution->is_object() ? *resolution : Json{{"dimensions", *resolution}};
+  const ArrayAttributes own = attributes_of(inner);
+  const auto list = own.numbers("dimensions");
+  if (!list || list->size() != choice.at.size()) return;
+  places.step = *list;
+  const std::vector<std::string> unit = own.texts("unit");
+  if (unit.size() == 1) places.units.assign(choice.at.size(), unit[0]);
+}
+
+// The steps and the shift that downsamplingFactors make of those of the full size (N5 viewer).
+void take_factors(AxisPlaces& places, const ZarrNode& node) {
+  const auto factors = attributes_of(node).numbers("downsamplingFactors");
   if (!factors || places.step.size() != factors->size()) return;
   places.begin.resize(factors->size(), 0);
   for (std::size_t n = 0; n < factors->size(); ++n) {
     places.begin[n] += ((*factors)[n] - 1) / 2 * places.step[n];
     places.step[n] *= (*factors)[n];
   }
+}
+
+// Where the samples of an array lie by its own attributes.
+AxisPlaces own_places(const ZarrNode& node, const AxisChoice& choice) {
+  const ArrayAttributes attributes = attributes_of(node);
+  const bool is_n5 = node.format == ZarrNode::Format::kN5;
+  AxisPlaces places = places_of_attributes(attributes, choice);
+  if (is_n5) take_pixel_resolution(places, node, choice);
+  take_offset(places, attributes, choice);
+  if (is_n5) take_factors(places, node);
+  return places;
 }
 
 void check_places(const FoundArray& found, std::size_t axes) {
@@ -326,8 +338,7 @@ OpenedVolume open_array(const StorePtr& store, const std::string& folder, const 
   }
   check_places(found, array.axes.size());
   const AxisChoice choice = choose_axes(array.axes, options, array.header);
-  AxisPlaces places = found.places ? *found.places : places_of_attributes(attributes_of(found.node), choice);
-  if (found.node.format == ZarrNode::Format::kN5 && !found.places) take_n5_viewer(places, found.node, choice);
+  const AxisPlaces places = found.places ? *found.places : own_places(found.node, choice);
   OpenedVolume volume = open_chunks(array, choice);
   VolumeInfo& info = volume.info;
   info.path = folder;

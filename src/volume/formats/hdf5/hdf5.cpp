@@ -385,7 +385,9 @@ OpenedVolume describe_volume(const Hdf5Dataset& dataset, const FoundDataset& fou
   if (found.place) {
     take_place(volume, *found.place);
   } else {
-    place_axes(volume, choice, places_of_attributes(attributes, choice));
+    AxisPlaces places = places_of_attributes(attributes, choice);
+    take_offset(places, attributes, choice);
+    place_axes(volume, choice, places);
   }
   volume.swap_bytes = dataset.big_endian != (std::endian::native == std::endian::big);
   return volume;
