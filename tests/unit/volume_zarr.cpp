@@ -287,6 +287,22 @@ TEST(Zarr3, WhatIsNotReadIsRefusedByName) {
   EXPECT_TRUE(contains(refused({{"codecs", turned}}), "an order of all axes"));
 }
 
+TEST(Zarr3, FieldsThatMustBeUnderstoodAreRefused) {
+  const TempFolder folder;
+  for (const ArrayJson& value :
+       {ArrayJson(1), ArrayJson::object(), ArrayJson({{"name", "x"}}), ArrayJson({{"must_understand", true}})}) {
+    put_zarr3(folder / "a", {{"mask", value}});
+    EXPECT_TRUE(contains(refusal(folder / "a"), "zarr.json: expected fields of Zarr 3")) << value;
+    put_zarr3(folder / "b/c");
+    put_json(folder / "b/zarr.json", {{"zarr_format", 3}, {"node_type", "group"}, {"mask", value}});
+    EXPECT_TRUE(contains(refusal(folder / "b"), "found 'mask'")) << value;
+  }
+  put_zarr3(folder / "a", {{"mask", {{"must_understand", false}}}, {"attributes", {{"must_understand", true}}}});
+  EXPECT_EQ(read_file<std::int16_t>(folder / "a"), kExpected);
+  put_json(folder / "b/zarr.json", {{"zarr_format", 3}, {"node_type", "group"}, {"consolidated_metadata", nullptr}});
+  EXPECT_EQ(read_file<std::int16_t>(folder / "b"), kExpected);
+}
+
 TEST(Zarr, LinksOutOfTheFolderAreRefusedWhereTheyAreNotTrusted) {
   const TempFolder folder;
   OpenOptions options;

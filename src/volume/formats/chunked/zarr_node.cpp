@@ -1,12 +1,15 @@
 #include "volume/formats/chunked/zarr_node.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -20,11 +23,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A field that Zarr 3 does not define may change what the others mean, unless its own words say otherwise.
+void check_zarr3_fields(const Json& metadata, bool is_array, const std::string& header) {
+  static constexpr std::array<std::string_view, 12> kFields{
+      "zarr_format", "node_type", "attributes",      "consolidated_metadata",
+      "shape",       "data_type", "chunk_grid",      "chunk_key_encoding",
+      "fill_value",  "codecs",    "dimension_names", "storage_transformers"};
+  constexpr std::size_t kOfGroups = 4;
+  const auto known = std::span(kFields).first(is_array ? kFields.size() : kOfGroups);
+  for (const auto& [name, value] : metadata.items()) {
+    const Json* needed = member(value, "must_understand");
+    const bool optional = needed != nullptr && needed->is_boolean() && !needed->get<bool>();
+    if (optional || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    bad_input(header, "fields of Zarr 3, or others with must_understand false in them", in_quotes(name));
+  }
+}
+
 ZarrNode zarr3_node(const std::string& folder, const std::string& header, Json metadata) {
   ZarrNode node{ZarrNode::Format::kZarr3, false, folder, header, std::move(metadata), {}};
   const std::string type = text_member(node.metadata, "node_type");
   if (type != "array" && type != "group") bad_input(header, "node_type array or group", in_quotes(type));
   node.is_array = type == "array";
+  check_zarr3_fields(node.metadata, node.is_array, header);
   if (const Json* attributes = member(node.metadata, "attributes")) node.attributes = *attributes;
   return node;
 }
