@@ -20,13 +20,13 @@ class FolderStore final : public ObjectStore {
 
   std::optional<std::vector<std::byte>> read(const ObjectPart& part) override {
     if (!open(part.path)) return std::nullopt;
-    const std::uint64_t size = file_->size();
+    const std::uint64_t size = open_size();
     if (part.whole && size > part.bytes) {
       bad_input(part.path, "at most " + std::to_string(part.bytes) + " bytes", std::to_string(size));
     }
     const std::uint64_t wanted = part.whole ? size : part.bytes;
     std::vector<std::byte> bytes(static_cast<std::size_t>(std::min(wanted, size - std::min(part.begin, size))));
-    if (bytes.size() < wanted || file_->read_at(part.begin, bytes) < wanted) {
+    if (bytes.size() < wanted || (wanted > 0 && file_->read_at(part.begin, bytes) < wanted)) {
       bad_input(part.path, std::to_string(wanted) + " bytes from byte " + std::to_string(part.begin) + " on", "fewer");
     }
     if (part.whole) file_ = nullptr;
@@ -39,7 +39,7 @@ class FolderStore final : public ObjectStore {
   }
 
   std::optional<std::uint64_t> size(const std::string& path) override {
-    return open(path) ? std::optional(file_->size()) : std::nullopt;
+    return open(path) ? std::optional(open_size()) : std::nullopt;
   }
 
   std::optional<FolderAbove> above(const std::string& folder) const override {
@@ -58,12 +58,15 @@ class FolderStore final : public ObjectStore {
     std::error_code error;
     if (fs::status(path, error).type() == fs::file_type::not_found) return false;
     if (!root_.empty() && path.starts_with(root_)) check_within(path, root_);
-    file_ = open_file(path);
+    const bool is_empty = fs::is_regular_file(path, error) && fs::is_empty(path, error) && !error;
+    if (!is_empty) file_ = open_file(path, "an object in a file");
     return true;
   }
 
+  std::uint64_t open_size() const { return file_ == nullptr ? 0 : file_->size(); }
+
   std::string root_;
-  FilePtr file_;
+  FilePtr file_;  // none for an empty object
 };
 
 }  // namespace

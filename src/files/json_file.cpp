@@ -20,6 +20,7 @@ Json parse_json(std::string_view text, const std::string& path) {
   };
   Json json = Json::parse(text, look, false);
   if (too_deep) bad_input(path, "JSON of at most " + std::to_string(kDeepest) + " levels", "more");
+  if (text.empty()) bad_input(path, "JSON", "an empty file");
   if (json.is_discarded()) bad_input(path, "JSON", "other text, or a damaged file");
   return json;
 }

@@ -54,6 +54,8 @@ TEST(N5, DamagedBlocksAreRefused) {
     put_file(path, good.substr(0, length));
     EXPECT_FALSE(reads_or_refuses(folder / "a")) << length;
   }
+  put_file(path, "");
+  EXPECT_TRUE(contains(refusal(folder / "a"), "0/0/0: expected a chunk, found no bytes"));
   const auto refused = [&](std::size_t at, char byte) {
     std::string broken = good;
     broken[at] = byte;

@@ -171,6 +171,10 @@ TEST(Zarr2, DamageIsRefusedByTheFileItIsIn) {
   EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected a chunk of 24 bytes, found 5"));
   put_file(folder / "a/0.0.0", std::string(9000, 'x'));
   EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected at most 4120 bytes, found 9000"));
+  put_file(folder / "a/0.0.0", "");
+  EXPECT_TRUE(contains(refusal(folder / "a"), "0.0.0: expected a chunk, found no bytes"));
+  put_file(folder / "a/.zarray", "");
+  EXPECT_TRUE(contains(refusal(folder / "a"), ".zarray: expected JSON, found an empty file"));
   put_file(folder / "a/.zarray", "{\"zarr_format\": 2,");
   EXPECT_TRUE(contains(refusal(folder / "a"), ".zarray: expected JSON"));
   put_file(folder / "a/.zarray", std::string(200, '[') + std::string(200, ']'));

@@ -108,6 +108,7 @@ bool ChunkReader::read(const ChunkIndex& index, Chunk& chunk) {
     stored = array_.store->read(*place);
   }
   if (!stored && !place->whole) bad_input(place->path, "an object that stays as it is while it is read", "none");
+  if (stored && stored->empty()) bad_input(place->path, "a chunk", "no bytes");
   if (stored) decode(std::move(*stored), index, place->path, chunk);
   return stored.has_value();
 }
