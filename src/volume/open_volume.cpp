@@ -161,9 +161,10 @@ void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   const bool array = is_one_of(info.format, {"hdf5", "zarr", "n5", "precomputed"});
   // The files of VTK and NumPy have arrays with names, and no levels.
   const bool named = array || is_one_of(info.format, {"vti", "vtr", "vtk", "npz"});
-  if ((!named && !options.dataset.empty()) || (!array && options.level)) {
-    bad_input(info.path, "HDF5, Zarr or N5 for --dataset and --level", info.format);
+  if (!named && !options.dataset.empty()) {
+    bad_input(info.path, "HDF5, Zarr, N5, VTI, VTR, legacy VTK or NPZ for --dataset", info.format);
   }
+  if (!array && options.level) bad_input(info.path, "HDF5, Zarr, N5 or a precomputed volume for --level", info.format);
   const bool axes = array || is_one_of(info.format, {"npy", "npz", "tiff", "nifti", "nrrd", "metaimage", "analyze",
                                                      "mgh", "mrc", "fits"});
   if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {

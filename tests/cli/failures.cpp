@@ -153,10 +153,10 @@ TEST(CliBadInput, NothingThereAndNoFile) {
   expect_failure(folder, mesh("box.nrrd", {"--series", "1.2"}), 3, "expected the DICOM series '1.2', found no DICOM");
   expect_failure(folder, mesh(kSmall, {"--series", "1.2"}), 2, "--series does not go with a generated volume");
   for (const std::string option : {"--dataset", "--level", "--channel", "--time"}) {
-    const bool of_arrays = option == "--dataset" || option == "--level";
-    expect_failure(
-        folder, mesh("box.nrrd", {option, "1"}), 3,
-        of_arrays ? "expected HDF5, Zarr or N5 for --dataset and --level" : "expected an axis for " + option);
+    const std::string expected = option == "--dataset" ? "expected HDF5, Zarr, N5, VTI, VTR, legacy VTK or NPZ for "
+                                 : option == "--level" ? "expected HDF5, Zarr, N5 or a precomputed volume for "
+                                                       : "expected an axis for ";
+    expect_failure(folder, mesh("box.nrrd", {option, "1"}), 3, expected + option);
     expect_failure(folder, mesh(kSmall, {option, "1"}), 2, option + " does not go with a generated volume");
   }
   files::write_bytes(folder / "box.bin", std::string(8, 'x'));

@@ -183,7 +183,7 @@ TEST(ZarrFolder, AnArrayIsChosenByItsPath) {
   EXPECT_TRUE(contains(refusal(folder / "a", options), "expected an array or group at 'nothing'"));
   EXPECT_TRUE(contains(
       refusal(folder.put("x.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\n1"), options),
-      "expected HDF5, Zarr or N5 for --dataset"));
+      "expected HDF5, Zarr, N5, VTI, VTR, legacy VTK or NPZ for --dataset, found nrrd"));
 }
 
 TEST(ZarrFolder, AttributesOfPlainArraysSayWhereSamplesLie) {

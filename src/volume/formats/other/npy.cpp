@@ -253,10 +253,7 @@ OpenedVolume open_npy_array(const FilePtr& file, const NpyHeader& header, const 
 }
 
 OpenedVolume open_npy(const FilePtr& file, const OpenOptions& options) {
-  const NpyHeader header = read_npy_header(file);
-  if (!options.dataset.empty() || options.level)
-    bad_input(file->path(), "HDF5, Zarr or N5 for --dataset and --level", "NPY");
-  return open_npy_array(file, header, options);
+  return open_npy_array(file, read_npy_header(file), options);
 }
 
 }  // namespace isoweave
