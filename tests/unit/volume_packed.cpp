@@ -205,7 +205,7 @@ TEST(Unread, AreToldWithTheWayRound) {
     return zip + std::string(1, static_cast<char>(name.size())) + std::string(3, '\0') + name + "content";
   };
   const std::vector<std::pair<std::string, std::string>> files{
-      {"CDF\1", "netCDF, as MINC 1 is: mincconvert"},
+      {"CDF\1", "classic netCDF, as MINC 1 is: nccopy -k nc4, and mincconvert -2 for MINC 1, write what is read"},
       {std::string(" BDV\0\0\0\0", 8), "OpenVDB"},
       {"# HyperMesh BINARY\n", "HyperMesh"},
       {"ncaa\nrank=3;\n", "VFF: --raw"},
@@ -253,7 +253,7 @@ TEST(Unread, AreToldWithTheWayRound) {
   }
   EXPECT_TRUE(contains(refusal(folder.put("a.stl", std::string(100, '\0'))), "simplify"));
   EXPECT_TRUE(contains(refusal(folder.put("a.obj", "v 1 2 3\n")), "simplify"));
-  EXPECT_TRUE(contains(refusal(folder.put("a.npy", "CDF\1")), "the magic of NPY, found netCDF"));
+  EXPECT_TRUE(contains(refusal(folder.put("a.npy", "CDF\1")), "the magic of NPY, found classic netCDF"));
 }
 
 }  // namespace

@@ -24,9 +24,11 @@ struct Unread {
 };
 
 constexpr auto kUnread = std::to_array<Unread>({
-    {0, "CDF\x01"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
-    {0, "CDF\x02"sv, "netCDF, as MINC 1 is", "mincconvert -2 or mnc2nii write what is read"},
-    {0, "CDF\x05"sv, "netCDF", "nccopy -k nc4 writes HDF5, which is read"},
+    {0, "CDF\x01"sv, "classic netCDF, as MINC 1 is",
+     "nccopy -k nc4, and mincconvert -2 for MINC 1, write what is read"},
+    {0, "CDF\x02"sv, "classic netCDF, as MINC 1 is",
+     "nccopy -k nc4, and mincconvert -2 for MINC 1, write what is read"},
+    {0, "CDF\x05"sv, "classic netCDF", "nccopy -k nc4 writes HDF5, which is read"},
     {0, " BDV\0\0\0\0"sv, "OpenVDB, a sparse grid", "write it as a dense one, in VTI or NPY"},
     {0, "# HyperMesh"sv, "HyperMesh", "write it as NRRD or raw"},
     {0, "\xff\xd8\xff"sv, "a JPEG image", kSlices},
