@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -44,19 +43,20 @@ std::vector<double> middles(const std::vector<double>& points) {
   return places;
 }
 
+// Where a coordinate would lie among even ones.
+double place_of(const std::vector<double>& places, std::size_t n) {
+  return places.front() + even_step(places) * static_cast<double>(n);
+}
+
 // First place and step.
 std::pair<double, double> even_axis(const std::vector<double>& places, char axis, const std::string& path) {
-  if (places.size() < 2) return {places.front(), 1};
-  const double first = places.front();
-  const double step = (places.back() - first) / static_cast<double>(places.size() - 1);
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    const double even = first + step * static_cast<double>(n);
-    if (std::abs(places[n] - even) <= std::abs(step) / 100) continue;
+  if (const std::optional<std::size_t> n = first_uneven(places)) {
+    const double even = place_of(places, *n);
     bad_input(path,
-              std::string("evenly spaced ") + axis + " coordinates, " + number_text(even) + " at " + std::to_string(n),
-              number_text(places[n]));
+              std::string("evenly spaced ") + axis + " coordinates, " + number_text(even) + " at " + std::to_string(*n),
+              number_text(places[*n]));
   }
-  return {first, step};
+  return {places.front(), even_step(places)};
 }
 
 // Equal places are refused where the distances are looked at.
@@ -90,15 +90,19 @@ std::vector<double> read_coordinates(ByteStream& stream, SampleType type, bool s
   std::vector<std::byte> bytes(to_size(count, sample_bytes(type)));
   if (stream.read(bytes) < bytes.size()) bad_input(path, "all coordinates", "the end of an array");
   if (swap_bytes) swap_sample_bytes(bytes, sample_bytes(type));
-  std::vector<double> coordinates;
-  visit_sample_type(type, [&]<class Sample>() {
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Sample)) {
-      Sample sample;
-      std::memcpy(&sample, bytes.data() + at, sizeof(Sample));
-      coordinates.push_back(static_cast<double>(sample));
-    }
-  });
-  return coordinates;
+  return numbers_of_samples(bytes, type);
+}
+
+double even_step(const std::vector<double>& places) {
+  return places.size() < 2 ? 1 : (places.back() - places.front()) / static_cast<double>(places.size() - 1);
+}
+
+std::optional<std::size_t> first_uneven(const std::vector<double>& places) {
+  const double slack = std::abs(even_step(places)) / 100;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (!(std::abs(places[n] - place_of(places, n)) <= slack)) return n;
+  }
+  return std::nullopt;
 }
 
 EvenGrid place_on_grid(VolumeInfo& info, const GridCoordinates& points, bool cells, const OpenOptions& options) {

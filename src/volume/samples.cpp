@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace isoweave {
@@ -54,6 +55,18 @@ void SampleRange::merge(const SampleRange& other) {
   }
   min = std::min(min, other.min);
   max = std::max(max, other.max);
+}
+
+std::vector<double> numbers_of_samples(std::span<const std::byte> samples, SampleType type) {
+  std::vector<double> values;
+  visit_sample_type(type, [&]<class Sample>() {
+    for (std::size_t at = 0; at + sizeof(Sample) <= samples.size(); at += sizeof(Sample)) {
+      Sample value;
+      std::memcpy(&value, samples.data() + at, sizeof value);
+      values.push_back(static_cast<double>(value));
+    }
+  });
+  return values;
 }
 
 SampleRange sample_range(const std::byte* samples, SampleType type, std::int64_t count) {

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "isoweave/volume.hpp"
 
@@ -48,6 +50,9 @@ struct SampleRange {
   bool empty() const { return min > max; }
   void merge(const SampleRange& other);
 };
+
+// Samples as numbers.
+std::vector<double> numbers_of_samples(std::span<const std::byte> samples, SampleType type);
 
 SampleRange sample_range(const std::byte* samples, SampleType type, std::int64_t count);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <functional>
 
 #include "files/input_file.hpp"
@@ -149,17 +148,6 @@ class Search {
 
 constexpr hssize_t kMostValues = 64;
 
-template <class Value>
-std::vector<double> as_doubles(const std::vector<std::byte>& bytes) {
-  std::vector<double> values;
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Value)) {
-    Value value;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    values.push_back(static_cast<double>(value));
-  }
-  return values;
-}
-
 // Numbers of a type and a space; `read` fills the memory with them as they are stored.
 std::optional<std::vector<double>> read_plain(const Hdf5Functions& h5, hid_t type, hid_t space, hssize_t most,
                                               const std::function<herr_t(void*)>& read) {
@@ -172,7 +160,7 @@ std::optional<std::vector<double>> read_plain(const Hdf5Functions& h5, hid_t typ
   if (read(values.data()) < 0) return std::nullopt;
   const bool swap = number->big_endian != (std::endian::native == std::endian::big);
   if (swap) swap_sample_bytes(values, number->bytes);
-  return visit_sample_type(*known, [&]<class Value>() { return as_doubles<Value>(values); });
+  return numbers_of_samples(values, *known);
 }
 
 std::optional<std::vector<double>> read_numbers(const Hdf5Functions& h5, hid_t attribute) {
