@@ -35,10 +35,10 @@ isoweave_reader(JPEGLS dicom_jpegls.cpp IsoweaveCharls::IsoweaveCharls IsoweaveC
 isoweave_reader(JPEG2000 dicom_jpeg2000.cpp IsoweaveOpenJpeg::IsoweaveOpenJpeg IsoweaveOpenJpeg)
 # Loaded when it is needed; headers only.
 set(hdf5_sources hdf5.cpp hdf5_dataset.cpp hdf5_dream3d.cpp hdf5_imaris.cpp hdf5_itk.cpp hdf5_library.cpp hdf5_minc.cpp
-    hdf5_place.cpp hdf5_vtk.cpp)
+    hdf5_place.cpp hdf5_scales.cpp hdf5_vtk.cpp)
 isoweave_reader(HDF5 "${hdf5_sources}" $<BUILD_INTERFACE:IsoweaveHdf5::IsoweaveHdf5> IsoweaveHdf5)
 # Zarr, OME-Zarr and N5: their metadata are JSON (headers only); of the codecs of their chunks, gzip is always there.
-isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp;precomputed_info.cpp"
+isoweave_reader(ZARR "json_file.cpp;zarr_node.cpp;zarr_coordinates.cpp;zarr2.cpp;zarr3.cpp;n5.cpp;ome_multiscale.cpp;zarr_folder.cpp;precomputed_info.cpp"
                 $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> nlohmann_json)
 isoweave_reader(ZSTD codec_zstd.cpp IsoweaveZstd::IsoweaveZstd IsoweaveZstd)
 isoweave_reader(BLOSC codec_blosc.cpp IsoweaveBlosc::IsoweaveBlosc IsoweaveBlosc)

@@ -84,6 +84,25 @@ class Writer {
     H5Dclose(dataset);
   }
 
+  // Attaches datasets as scales of the axes of another, as H5DSattach_scale does; "": none.
+  void put_scales(const std::string& object, const std::vector<std::string>& names) {
+    const hsize_t count = names.size();
+    const hid_t space = H5Screate_simple(1, &count, nullptr), type = H5Tvlen_create(H5T_STD_REF_OBJ);
+    const hid_t attribute =
+        H5Acreate_by_name(file_, object.c_str(), "DIMENSION_LIST", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    std::vector<hobj_ref_t> references(names.size());
+    std::vector<hvl_t> lists(names.size());
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      if (names[n].empty()) continue;
+      H5Rcreate(&references[n], file_, names[n].c_str(), H5R_OBJECT, -1);
+      lists[n] = {1, &references[n]};
+    }
+    H5Awrite(attribute, type, lists.data());
+    H5Aclose(attribute);
+    H5Tclose(type);
+    H5Sclose(space);
+  }
+
   // A link to an object of another file; the groups around it are made.
   void put_link(const std::string& name, const std::string& file, const std::string& object) {
     const hid_t links = H5Pcreate(H5P_LINK_CREATE);

@@ -145,6 +145,143 @@ TEST(Hdf5, AttributesSayWhereSamplesLie) {
   EXPECT_EQ(nanometres.unit, "nm");
 }
 
+// netCDF-4: values of packed samples, and coordinates along axes.
+TEST(Hdf5, SamplesArePackedByAFactorAndAnOffset) {
+  const TempFolder folder;
+  {
+    Writer writer(folder / "a.nc");
+    writer.put_int16("/v", {2, 2, 2});
+    writer.put_numbers("/v", "scale_factor", {0.5});
+    writer.put_numbers("/v", "add_offset", {100});
+    writer.put_numbers("/v", "_FillValue", {-9});
+    writer.put_text("/v", "_Unsigned", "true", true);
+    Writer other(folder / "b.nc");
+    other.put_int16("/v", {2, 2, 2});
+    other.put_numbers("/v", "scale_factor", {0});
+    other.put_numbers("/v", "add_offset", {1, 2});
+    other.put_numbers("/v", "missing_value", {std::nan("")});
+  }
+  const VolumeInfo packed = open_volume(folder / "a.nc")->info();
+  EXPECT_EQ(packed.slope, 0.5);
+  EXPECT_EQ(packed.intercept, 100);
+  EXPECT_TRUE(has_note(packed, "attribute _FillValue (-9) is not applied"));
+  EXPECT_TRUE(has_note(packed, "attribute _Unsigned is not applied: samples are read as int16"));
+  const VolumeInfo plain = open_volume(folder / "b.nc")->info();
+  EXPECT_EQ(plain.slope, 1);
+  EXPECT_EQ(plain.intercept, 0);
+  EXPECT_TRUE(has_note(plain, "attribute scale_factor is 0 and is left out"));
+  EXPECT_TRUE(has_note(plain, "attribute add_offset is no finite number and is left out"));
+  EXPECT_FALSE(has_note(plain, "missing_value"));
+}
+
+// A dataset of 4 x 3 x 2 samples, and its coordinates: x in micrometres, y descending, z packed.
+void put_netcdf(Writer& writer, const std::string& unit = "mm") {
+  writer.put_int16("/g/v", {2, 3, 4});
+  writer.put_values("/g/x", {4}, {10, 10.5, 11, 11.5});
+  writer.put_values("/g/y", {3}, {5, 3, 1});
+  writer.put_values("/g/z", {2}, {1, 2});
+  writer.put_numbers("/g/z", "scale_factor", {4});
+  writer.put_text("/g/x", "units", unit, true);
+}
+
+TEST(Hdf5, ScalesSayWhereSamplesLie) {
+  const TempFolder folder;
+  const auto expect_places = [&folder] {
+    const VolumeInfo info = open_volume(folder / "a.nc")->info();
+    EXPECT_EQ(info.dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+    EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{0.5, 2, 4}));
+    EXPECT_EQ(info.geometry.origin, (std::array<double, 3>{10, 5, 4}));
+    EXPECT_EQ(info.geometry.direction, (std::array<double, 9>{1, 0, 0, 0, -1, 0, 0, 0, 1}));
+    EXPECT_EQ(info.geometry.unit, "mm");
+    EXPECT_FALSE(has_note(info, "spacing"));
+  };
+  {
+    Writer writer(folder / "a.nc");
+    put_netcdf(writer);
+    writer.put_scales("/g/v", {"/g/z", "/g/y", "/g/x"});
+  }
+  expect_places();
+  // Datasets of the names of the axes.
+  {
+    Writer writer(folder / "a.nc");
+    put_netcdf(writer);
+    writer.put_text("/g/v", "axistags", R"({"axes": [{"key": "z"}, {"key": "y"}, {"key": "x"}]})", false);
+  }
+  expect_places();
+  // Attributes of the dataset come first.
+  {
+    Writer writer(folder / "a.nc");
+    put_netcdf(writer);
+    writer.put_scales("/g/v", {"/g/z", "/g/y", "/g/x"});
+    writer.put_numbers("/g/v", "element_size_um", {3, 2, 1});
+  }
+  EXPECT_EQ(open_volume(folder / "a.nc")->info().geometry.spacing, (std::array<double, 3>{1, 2, 3}));
+}
+
+TEST(Hdf5, ScalesNameAxes) {
+  const TempFolder folder;
+  {
+    Writer writer(folder / "a.nc");
+    writer.put_int16("/v", {4, 3, 2});
+    writer.put_values("/x", {4}, {0, 1, 2, 3});
+    writer.put_values("/y", {3}, {0, 1, 2});
+    writer.put_values("/depth", {2}, {0, 0});
+    writer.put_text("/depth", "NAME", "This is a netCDF dimension but not a netCDF variable.         2", true);
+    writer.put_scales("/v", {"/x", "/y", "/depth"});
+  }
+  const auto turned = open_volume(folder / "a.nc");
+  EXPECT_EQ(turned->info().dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  EXPECT_TRUE(has_note(turned->info(), "axis 'depth' is taken for z"));
+  EXPECT_TRUE(has_note(turned->info(), "the spacing of axis 2 is not given and taken as 1"));
+  EXPECT_EQ(samples_of<std::int16_t>(*turned).at(1), 7);
+  // Names that are not known are no reason to refuse what their order says.
+  {
+    Writer writer(folder / "b.nc");
+    writer.put_int16("/v", {2, 2, 3, 4});
+    writer.put_values("/x", {4}, {0, 1, 2, 3});
+    writer.put_values("/y", {3}, {0, 1, 2});
+    writer.put_values("/member", {2}, {0, 1});
+    writer.put_scales("/v", {"/member", "/member", "/y", "/x"});
+  }
+  OpenOptions options;
+  options.channel = 1;
+  const VolumeInfo ordered = open_volume(folder / "b.nc", options)->info();
+  EXPECT_EQ(ordered.dims, (std::array<std::int64_t, 3>{4, 3, 2}));
+  EXPECT_TRUE(has_note(ordered, "the names of the axes of 2 ('member') x 2 ('member') x 3 ('y') x 4 ('x')"));
+}
+
+TEST(Hdf5, CoordinatesThatGiveNoStepAreNoted) {
+  const TempFolder folder;
+  const auto note = [&folder](const std::string& name, const std::function<void(Writer&)>& put) {
+    {
+      Writer writer(folder / "a.nc");
+      writer.put_int16("/v", {3, 3, 4});
+      put(writer);
+      writer.put_scales("/v", {name, "", ""});
+    }
+    const VolumeInfo info = open_volume(folder / "a.nc")->info();
+    EXPECT_EQ(info.geometry.spacing, (std::array<double, 3>{1, 1, 1}));
+    EXPECT_EQ(info.geometry.origin, (std::array<double, 3>{0, 0, 0}));
+    return info.notes.at(3);
+  };
+  const auto values = [](const std::vector<double>& list, const std::string& unit) {
+    return [list, unit](Writer& writer) {
+      writer.put_values("/z", {list.size()}, list);
+      if (!unit.empty()) writer.put_text("/z", "units", unit, false);
+    };
+  };
+  const std::string begin = "the coordinates 'z' of axis 2 are ", end = ": its spacing is taken as 1";
+  EXPECT_EQ(note("/z", values({0, 2.1, 4}, "m")), begin + "not evenly spaced" + end);
+  EXPECT_EQ(note("/z", values({1, 1, 1}, "")), begin + "not evenly spaced" + end);
+  EXPECT_EQ(note("/z", values({0, std::nan(""), 2}, "")), begin + "not evenly spaced" + end);
+  EXPECT_EQ(note("/z", values({0, 2}, "m")), begin + "2 for 3 samples" + end);
+  for (const std::string unit : {"degrees_north", "days since 2000-01-01", "hPa"}) {
+    EXPECT_EQ(note("/z", values({0, 2, 4}, unit)), begin + "in '" + unit + "', which is no length that is known" + end);
+  }
+  const auto texts = [](Writer& writer) { writer.put<char>("/z", {3}, H5T_C_S1, H5T_C_S1); };
+  EXPECT_EQ(note("/z", texts), begin + "no numbers that can be read" + end);
+}
+
 TEST(Hdf5, AxesByTheTagsOfIlastik) {
   const TempFolder folder;
   for (const bool fixed : {false, true}) {

@@ -83,6 +83,12 @@ std::string stored(const std::vector<Sample>& samples, bool big = false) {
   return bytes;
 }
 
+// Whether a note about a volume has this text in it.
+inline bool has_note(const VolumeInfo& info, const std::string& text) {
+  return std::any_of(info.notes.begin(), info.notes.end(),
+                     [&text](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
 // All slices of a source, `at_once` at a time.
 inline std::vector<std::byte> read_all(SliceSource& source, std::int64_t at_once = 2) {
   const VolumeInfo& info = source.info();

@@ -203,6 +203,81 @@ TEST(ZarrFolder, AttributesOfPlainArraysSayWhereSamplesLie) {
   EXPECT_EQ(open_volume(folder / "b")->info().dims, (std::array<std::int64_t, 3>{2, 3, 2}));
 }
 
+// Coordinates of one axis, as xarray keeps them.
+void put_coordinates(const std::string& folder, const std::vector<std::int16_t>& values, const std::string& unit) {
+  const auto count = static_cast<std::int64_t>(values.size());
+  put_array(folder, {count}, {{"_ARRAY_DIMENSIONS", list({folder.substr(folder.rfind('/') + 1)})}, {"units", unit}});
+  std::string samples;
+  for (const std::int16_t value : values) samples += bytes_of(value);
+  put_file(folder + "/0", samples);
+}
+
+TEST(ZarrFolder, CoordinatesOfXarraySayWhereSamplesLie) {
+  const TempFolder folder;
+  put_group(folder / "a", ArrayJson::object());
+  put_array(folder / "a/v", {4, 2, 3}, {{"_ARRAY_DIMENSIONS", {"x", "z", "y"}}});
+  put_coordinates(folder / "a/x", {100, 102, 104, 106}, "um");
+  put_coordinates(folder / "a/y", {9, 6, 3}, "um");
+  put_coordinates(folder / "a/z", {0, 1}, "degrees");
+  OpenOptions options;
+  options.dataset = "v";
+  for (const VolumeInfo& info : {open_volume(folder / "a")->info(), open_volume(folder / "a", options)->info(),
+                                 open_volume(folder / "a/v")->info()}) {
+    expect_places(info.geometry, {2, 3, 1}, {100, 9, 0});
+    EXPECT_EQ(info.geometry.direction, (std::array<double, 9>{1, 0, 0, 0, -1, 0, 0, 0, 1}));
+    EXPECT_EQ(info.geometry.unit, "um");
+    EXPECT_TRUE(has_note(info, "the coordinates 'z' of axis 2 are in 'degrees', which is no length that is known"));
+  }
+  // Arrays beside the folder that was named are none of a stranger's business.
+  options = {};
+  options.external = false;
+  expect_places(open_volume(folder / "a/v", options)->info().geometry, {1, 1, 1}, {0, 0, 0});
+  expect_places(open_volume(folder / "a", options)->info().geometry, {2, 3, 1}, {100, 9, 0});
+  put_array(folder / "a/v", {4, 2, 3}, {{"_ARRAY_DIMENSIONS", {"x", "z", "y"}}, {"element_size_um", {1, 3, 2}}});
+  expect_places(open_volume(folder / "a")->info().geometry, {1, 2, 3}, {0, 0, 0});
+  put_array(folder / "a/v", {4, 2, 3}, {{"_ARRAY_DIMENSIONS", {"x", "../x", "y"}}});
+  EXPECT_TRUE(has_note(open_volume(folder / "a")->info(), "axis '../x' is taken for z"));
+  put_json(folder / "a/x/.zarray", {{"zarr_format", 2}, {"shape", {4}}, {"dtype", "<U5"}});
+  EXPECT_TRUE(has_note(open_volume(folder / "a")->info(), "the coordinates 'x' of axis 0 are no numbers"));
+}
+
+TEST(ZarrFolder, CoordinatesByNamesOfDimensionsInZarr3) {
+  const TempFolder folder;
+  put_json(folder / "a/zarr.json", {{"zarr_format", 3}, {"node_type", "group"}});
+  put_zarr3(folder / "a/v", {{"dimension_names", {"z", nullptr, "x"}},
+                             {"attributes", {{"scale_factor", 0.5}, {"_FillValue", "AAAAAAAA+H8="}}}});
+  ArrayJson axis = kZarr3;
+  axis.update({{"shape", {3}}, {"dimension_names", list({"z"})}, {"attributes", {{"units", "nm"}, {"add_offset", 7}}}});
+  axis["chunk_grid"]["configuration"]["chunk_shape"] = list({2});
+  put_json(folder / "a/z/zarr.json", axis);
+  put_file(folder / "a/z/c/0", bytes_of(std::int16_t{10}) + bytes_of(std::int16_t{14}));
+  put_file(folder / "a/z/c/1", bytes_of(std::int16_t{18}) + bytes_of(std::int16_t{0}));
+  const VolumeInfo info = open_volume(folder / "a")->info();
+  expect_places(info.geometry, {1, 1, 4}, {0, 0, 17});
+  EXPECT_EQ(info.slope, 0.5);
+  EXPECT_FALSE(has_note(info, "_FillValue"));
+}
+
+TEST(ZarrFolder, SamplesArePackedByAFactorAndAnOffset) {
+  const TempFolder folder;
+  put_array(folder / "a", {2, 2, 2},
+            {{"_ARRAY_DIMENSIONS", {"z", "y", "x"}}, {"scale_factor", 0.5}, {"add_offset", 100}});
+  ArrayJson metadata = kZarr2;
+  metadata.update({{"shape", {2, 2, 2}}, {"chunks", {2, 2, 2}}, {"fill_value", -32768}});
+  put_json(folder / "a/.zarray", metadata);
+  const VolumeInfo info = open_volume(folder / "a")->info();
+  EXPECT_EQ(info.slope, 0.5);
+  EXPECT_EQ(info.intercept, 100);
+  EXPECT_TRUE(has_note(info, "attribute _FillValue (-32768) is not applied"));
+  put_array(folder / "b", {2, 2, 2}, {{"scale_factor", "0.5"}, {"missing_value", {"x", 1}}});
+  const VolumeInfo plain = open_volume(folder / "b")->info();
+  EXPECT_EQ(plain.slope, 1);
+  EXPECT_TRUE(has_note(plain, "attribute scale_factor is no finite number and is left out"));
+  EXPECT_TRUE(has_note(plain, "attribute missing_value ('x', '') is not applied"));
+  put_n5(folder / "n5", "raw", {{"scale_factor", 2}});
+  EXPECT_EQ(open_volume(folder / "n5")->info().slope, 2);
+}
+
 TEST(ZarrFolder, AxesWithoutNames) {
   const TempFolder folder;
   put_array(folder / "flat", {3, 4});

@@ -48,11 +48,6 @@ std::string legacy(const std::string& z, const Samples& samples) {
          text_of(samples) + "\n";
 }
 
-bool has_note(const VolumeInfo& info, const std::string& part) {
-  return std::any_of(info.notes.begin(), info.notes.end(),
-                     [&](const std::string& note) { return contains(note, part); });
-}
-
 TEST(VtkGrids, EvenCoordinatesAreAVolume) {
   const TempFolder folder;
   const Samples samples = ramp<std::int16_t>(24);

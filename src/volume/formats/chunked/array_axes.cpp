@@ -171,6 +171,21 @@ std::array<std::int64_t, 3> AxisChoice::dims(const std::vector<ArrayAxis>& axes)
   return dims;
 }
 
+void take_dimension_names(std::vector<ArrayAxis>& axes, std::vector<ArrayAxis> named, std::vector<std::string>& notes) {
+  const auto is_slices = [](const ArrayAxis& axis) { return kind_of(axis) == AxisKind::kZ; };
+  const auto is_unknown = [](const ArrayAxis& axis) { return kind_of(axis) == AxisKind::kOther && axis.size > 1; };
+  const auto unknown = std::count_if(named.begin(), named.end(), is_unknown);
+  if (are_named(named) && unknown == 1 && std::none_of(named.begin(), named.end(), is_slices)) {
+    const auto slices = std::find_if(named.begin(), named.end(), is_unknown);
+    notes.push_back("axis " + in_quotes(slices->name) + " is taken for z");
+    slices->name = "z";
+  } else if (are_named(named) && unknown > 0 && !are_named(axes)) {
+    notes.push_back("the names of the axes of " + text_of(named) + " are left out");
+    return;
+  }
+  axes = std::move(named);
+}
+
 AxisChoice choose_axes(std::vector<ArrayAxis> axes, const OpenOptions& options, std::string_view path) {
   if (axes.size() > kMostAxes) {
     bad_input(path, "at most " + std::to_string(kMostAxes) + " axes", std::to_string(axes.size()));

@@ -39,4 +39,9 @@ struct AxisChoice {
 // leading ones are. Throws BadInput naming `path` where that does not leave a volume.
 AxisChoice choose_axes(std::vector<ArrayAxis> axes, const OpenOptions& options, std::string_view path);
 
+// Takes the names of dimensions, which files have for their own use (netCDF-4, xarray). Where x and y are among them,
+// the one other axis of several samples is that of slices, with a note. Names that leave axes unknown beside x and y
+// are left out, with a note.
+void take_dimension_names(std::vector<ArrayAxis>& axes, std::vector<ArrayAxis> named, std::vector<std::string>& notes);
+
 }  // namespace isoweave

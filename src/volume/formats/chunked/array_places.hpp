@@ -24,6 +24,7 @@ struct AxisPlaces {
 struct ArrayAttributes {
   std::function<std::optional<std::vector<double>>(const std::string& name)> numbers;
   std::function<std::vector<std::string>(const std::string& name)> texts;
+  std::function<bool(const std::string& name)> has;
 };
 
 // The steps of element_size_um (micrometres), or of resolution or voxel_size with units. Lists of three are of k, j, i.

@@ -6,7 +6,9 @@
 
 #include "files/header_text.hpp"
 #include "files/quoted.hpp"
+#include "volume/formats/chunked/array_coordinates.hpp"
 #include "volume/formats/chunked/array_places.hpp"
+#include "volume/formats/chunked/array_values.hpp"
 #include "volume/formats/chunked/ome_multiscale.hpp"
 #include "volume/formats/chunked/open_array.hpp"
 #include "volume/formats/chunked/precomputed_info.hpp"
@@ -225,26 +227,6 @@ FoundArray find_array(ObjectStore& store, const ZarrNode& node, const OpenOption
   return found;
 }
 
-ArrayAttributes attributes_of(const ZarrNode& node) {
-  const bool turned = node.format == ZarrNode::Format::kN5;
-  const auto numbers = [node, turned](const std::string& name) {
-    std::optional<std::vector<double>> list = numbers_of(member(node.attributes, name));
-    if (list && turned) std::reverse(list->begin(), list->end());
-    return list;
-  };
-  const auto texts = [node, turned](const std::string& name) {
-    std::vector<std::string> list;
-    const Json* value = member(node.attributes, name);
-    if (value != nullptr && value->is_string()) list.push_back(value->get<std::string>());
-    if (value != nullptr && value->is_array()) {
-      for (const Json& entry : *value) list.push_back(entry.is_string() ? entry.get<std::string>() : std::string());
-    }
-    if (turned) std::reverse(list.begin(), list.end());
-    return list;
-  };
-  return {numbers, texts};
-}
-
 // The steps of pixelResolution (N5 viewer).
 void take_pixel_resolution(AxisPlaces& places, const ZarrNode& node, const AxisChoice& choice) {
   const Json* resolution = member(node.attributes, "pixelResolution");
@@ -279,6 +261,29 @@ AxisPlaces own_places(const ZarrNode& node, const AxisChoice& choice) {
   take_offset(places, attributes, choice);
   if (is_n5) take_factors(places, node);
   return places;
+}
+
+// The folder around an array, where arrays beside it are looked for; nothing where that is none of the caller's.
+std::optional<std::string> group_around(ObjectStore& store, const ZarrNode& node, const std::string& folder,
+                                        const OpenOptions& options) {
+  if (node.folder != folder) {
+    const fs::path path(node.folder);
+    return (path.has_filename() ? path : path.parent_path()).parent_path().string();
+  }
+  if (!options.external) return std::nullopt;
+  const std::optional<FolderAbove> around = store.above(node.folder);
+  return around ? std::optional(around->folder) : std::nullopt;
+}
+
+// The attributes that say which values samples stand for. xarray keeps _FillValue as the fill value of Zarr 2, which is
+// 0 where nobody chose one.
+ArrayAttributes value_attributes(ZarrNode node) {
+  const Json* const fill = member(node.metadata, "fill_value");
+  const bool by_xarray = node.format == ZarrNode::Format::kZarr2 && node.attributes.is_object() &&
+                         member(node.attributes, "_ARRAY_DIMENSIONS") != nullptr;
+  const bool chosen = fill != nullptr && fill->is_number() && fill->get<double>() != 0;
+  if (by_xarray && chosen && !node.attributes.contains("_FillValue")) node.attributes["_FillValue"] = *fill;
+  return attributes_of(node);
 }
 
 void check_places(const FoundArray& found, std::size_t axes) {
@@ -337,12 +342,18 @@ OpenedVolume open_array(const StorePtr& store, const std::string& folder, const 
     name_axes(array.axes, &*found.axis_names);
   }
   check_places(found, array.axes.size());
+  const std::vector<ArrayAxis> own_names = array.axes;
+  if (!found.axis_names) take_dimension_names(array.axes, own_names, array.notes);
   const AxisChoice choice = choose_axes(array.axes, options, array.header);
-  const AxisPlaces places = found.places ? *found.places : own_places(found.node, choice);
+  AxisPlaces places = found.places ? *found.places : own_places(found.node, choice);
+  const auto group =
+      found.places || !places.step.empty() ? std::nullopt : group_around(*store, found.node, folder, options);
+  if (group) take_coordinates(places, zarr_coordinates(store, found.node, *group, own_names), array.axes, choice);
   OpenedVolume volume = open_chunks(array, choice);
   VolumeInfo& info = volume.info;
   info.path = folder;
   place_axes(volume, choice, places);
+  take_values(info, value_attributes(found.node));
   info.notes.insert(info.notes.end(), found.notes.begin(), found.notes.end());
   const std::string dataset = options.dataset.empty() ? "" : "dataset " + options.dataset;
   note_parts(info, store->identity(array.header), {found.part, dataset});

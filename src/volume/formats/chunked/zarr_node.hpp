@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files/json_file.hpp"
+#include "volume/formats/chunked/array_coordinates.hpp"
 #include "volume/formats/chunked/chunked_array.hpp"
 #include "volume/half_floats.hpp"
 
@@ -30,6 +31,14 @@ ChunkedArray array_of(const StorePtr& store, const ZarrNode& node);
 ChunkedArray zarr2_array(const ZarrNode& node);
 ChunkedArray zarr3_array(const ZarrNode& node);
 ChunkedArray n5_array(const ZarrNode& node);
+
+// The attributes that users and conventions add; a number alone counts as a list of one.
+ArrayAttributes attributes_of(const ZarrNode& node);
+
+// The coordinates along the axes of an array that have names: arrays of one axis beside it, in a group. An array whose
+// type or codec is not read gives no numbers.
+std::vector<AxisCoordinates> zarr_coordinates(const StorePtr& store, const ZarrNode& node, const std::string& group,
+                                              const std::vector<ArrayAxis>& axes);
 
 // The fill value of an array, as one sample would be stored.
 std::array<std::byte, 8> fill_sample(const Json* value, const StoredType& type, bool big_endian,

@@ -12,9 +12,11 @@
 #include "files/whole_input.hpp"
 #include "volume/axes.hpp"
 #include "volume/band_stream.hpp"
+#include "volume/formats/chunked/array_values.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/hdf5/hdf5_dataset.hpp"
 #include "volume/formats/hdf5/hdf5_place.hpp"
+#include "volume/formats/hdf5/hdf5_scales.hpp"
 #include "volume/scaled_stream.hpp"
 
 namespace isoweave {
@@ -260,6 +262,7 @@ std::int64_t band_depth(const VolumeInfo& info, const AxisChoice& choice, const 
 struct FoundDataset {
   std::string name;
   std::optional<Hdf5Place> place;
+  std::vector<AxisCoordinates> coordinates;
   std::vector<std::string> notes;
 };
 
@@ -284,15 +287,21 @@ FoundDataset find_dataset(const Hdf5File& file, const OpenOptions& options) {
   return found;
 }
 
-// The axes of a dataset with their names; those of a padded one end where its samples that count end.
-std::vector<ArrayAxis> axes_of(const Hdf5Dataset& dataset, const FoundDataset& found, const ArrayAttributes& attributes,
-                               const std::string& path) {
+// The axes of a dataset that no format describes, by its attributes and scales.
+std::vector<ArrayAxis> plain_axes(const Hdf5File& file, hid_t id, const Hdf5Dataset& dataset, FoundDataset& found) {
   std::vector<ArrayAxis> axes;
   for (const std::int64_t size : dataset.shape) axes.push_back({size, {}});
-  if (!found.place) {
-    name_hdf5_axes(attributes, axes);
-    return axes;
-  }
+  name_hdf5_axes(hdf5_attributes(file.session, id), axes);
+  Hdf5Scales scales = take_hdf5_scales(file, id, found.name, axes);
+  found.coordinates = std::move(scales.coordinates);
+  found.notes.insert(found.notes.end(), scales.notes.begin(), scales.notes.end());
+  return axes;
+}
+
+// The axes of a dataset with the names of a format; those of a padded one end where its samples that count end.
+std::vector<ArrayAxis> axes_of(const Hdf5Dataset& dataset, const FoundDataset& found, const std::string& path) {
+  std::vector<ArrayAxis> axes;
+  for (const std::int64_t size : dataset.shape) axes.push_back({size, {}});
   const std::vector<std::string>& names = found.place->axis_names;
   if (names.size() != axes.size()) {
     bad_input(path, std::to_string(names.size()) + " axes in " + in_quotes(found.name), std::to_string(axes.size()));
@@ -387,8 +396,10 @@ OpenedVolume describe_volume(const Hdf5Dataset& dataset, const FoundDataset& fou
   } else {
     AxisPlaces places = places_of_attributes(attributes, choice);
     take_offset(places, attributes, choice);
+    take_coordinates(places, found.coordinates, axes, choice);
     place_axes(volume, choice, places);
   }
+  if (!found.place || !found.place->has_values) take_values(info, attributes);
   volume.swap_bytes = dataset.big_endian != (std::endian::native == std::endian::big);
   return volume;
 }
@@ -402,7 +413,7 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
   OpenDataset open;
   open.file = Hdf5Handle(h5.fopen(FileName(*file).text().c_str(), kReadOnly, kDefaultProperties), h5.fclose);
   if (!open.file) session.refuse(path, "a readable HDF5 file");
-  const FoundDataset found = find_dataset({session, open.file.id(), path}, options);
+  FoundDataset found = find_dataset({session, open.file.id(), path}, options);
   open.dataset = session.open_object(open.file.id(), found.name, path);
   if (!open.dataset) session.refuse(path, "a dataset " + in_quotes(found.name));
   if (h5.iget_type(open.dataset.id()) != H5I_DATASET) {
@@ -414,7 +425,9 @@ OpenedVolume open_hdf5(const FilePtr& file, const OpenOptions& options) {
     bad_input(path, std::string(kReadTypes) + " in " + in_quotes(found.name), dataset.type_text);
   }
   const ArrayAttributes attributes = hdf5_attributes(session, open.dataset.id());
-  const std::vector<ArrayAxis> axes = axes_of(dataset, found, attributes, path);
+  const std::vector<ArrayAxis> axes =
+      found.place ? axes_of(dataset, found, path)
+                  : plain_axes({session, open.file.id(), path}, open.dataset.id(), dataset, found);
   OpenOptions left = options;
   if (found.place && found.place->chosen) left.channel = left.time = std::nullopt;
   const AxisChoice choice = choose_axes(axes, left, path);

@@ -228,7 +228,8 @@ ArrayAttributes hdf5_attributes(const Hdf5Session& session, hid_t object) {
     const Hdf5Handle attribute = open(name);
     return attribute ? read_texts(h5, attribute.id()) : std::vector<std::string>();
   };
-  return {numbers, texts};
+  const auto has = [&h5, object](const std::string& name) { return h5.aexists(object, name.c_str()) > 0; };
+  return {numbers, texts, has};
 }
 
 H5D_layout_t layout_in_file(const Hdf5Session& session, hid_t dataset, const std::string& path) {

@@ -49,6 +49,8 @@ Hdf5Functions load_functions(const std::string& path) {
   ISOWEAVE_LOAD(H5Oopen, oopen);
   ISOWEAVE_LOAD(H5Oclose, oclose);
   ISOWEAVE_LOAD(H5Iget_type, iget_type);
+  ISOWEAVE_LOAD(H5Iget_name, iget_name);
+  ISOWEAVE_LOAD(H5Rdereference2, rdereference);
   ISOWEAVE_LOAD(H5Gget_info, gget_info);
   ISOWEAVE_LOAD(H5Lget_name_by_idx, lget_name_by_idx);
   ISOWEAVE_LOAD(H5Lget_info_by_idx, lget_info_by_idx);

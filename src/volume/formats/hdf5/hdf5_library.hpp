@@ -26,6 +26,8 @@ struct Hdf5Functions {
   decltype(&::H5Oopen) oopen = nullptr;
   decltype(&::H5Oclose) oclose = nullptr;
   decltype(&::H5Iget_type) iget_type = nullptr;
+  decltype(&::H5Iget_name) iget_name = nullptr;
+  decltype(&::H5Rdereference2) rdereference = nullptr;
   decltype(&::H5Gget_info) gget_info = nullptr;
   decltype(&::H5Lget_name_by_idx) lget_name_by_idx = nullptr;
   decltype(&::H5Lget_info_by_idx) lget_info_by_idx = nullptr;

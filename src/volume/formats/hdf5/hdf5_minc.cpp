@@ -144,6 +144,7 @@ std::optional<Hdf5Place> minc_place(const Hdf5File& file, const std::string& nam
   if (!image) return std::nullopt;
   Hdf5Place place;
   place.format = "MINC";
+  place.has_values = true;
   place.dataset = kMincImage;
   place.space = Space::kRas;
   const Hdf5Dataset dataset = describe_dataset(file.session, image.id(), kMincImage);

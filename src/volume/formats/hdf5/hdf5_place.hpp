@@ -35,6 +35,7 @@ struct Hdf5Place {
   std::vector<double> slope;
   std::vector<double> intercept;
   std::size_t scaled_axes = 0;
+  bool has_values = false;  // the format itself says which values samples stand for
   std::vector<std::string> notes;
 };
 
