@@ -85,6 +85,13 @@ def compare_hdf5(comparison, folder):
         for axis, name in enumerate("tczyx"):
             dataset.dims[axis].label = name
         file.create_dataset("mask", data=volume("u1") > 100)
+    with h5py.File(folder / "scales.h5", "w") as file:
+        dataset = file.create_dataset("v", data=volume("i2").transpose(2, 1, 0))
+        for axis, name in enumerate("xyz"):
+            file[name] = np.arange(dataset.shape[axis]) * 0.5
+            file[name].make_scale(name)
+            dataset.dims[axis].attach_scale(file[name])
+    comparison.expect("hdf5 scales", folder / "scales.h5", volume("i2"))
     data = volume("u1", (2, 3) + SHAPE)
     comparison.expect("hdf5 5-D", path, data[1, 2], "dataset=v", "time=1", "channel=2")
     comparison.expect("hdf5 bool", path, (volume("u1") > 100).astype("i1"), "dataset=/mask")

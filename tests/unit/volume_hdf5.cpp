@@ -172,6 +172,17 @@ TEST(Hdf5, SamplesArePackedByAFactorAndAnOffset) {
   EXPECT_TRUE(has_note(plain, "attribute scale_factor is 0 and is left out"));
   EXPECT_TRUE(has_note(plain, "attribute add_offset is no finite number and is left out"));
   EXPECT_FALSE(has_note(plain, "missing_value"));
+  // NeXus keeps both beside the dataset.
+  {
+    Writer writer(folder / "c.nxs");
+    writer.put_int16("/entry/data/v", {2, 2, 2});
+    writer.put_text("/entry/data", "NX_class", "NXdata", true);
+    writer.put_values("/entry/data/v_scaling_factor", {1}, {0.5});
+    writer.put_values("/entry/data/offset", {1}, {2});
+  }
+  const VolumeInfo nexus = open_volume(folder / "c.nxs")->info();
+  EXPECT_TRUE(has_note(nexus, "the dataset 'v_scaling_factor' is not applied"));
+  EXPECT_TRUE(has_note(nexus, "the dataset 'offset' is not applied"));
 }
 
 // A dataset of 4 x 3 x 2 samples, and its coordinates: x in micrometres, y descending, z packed.

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "files/quoted.hpp"
+
 namespace isoweave {
 namespace {
 
@@ -64,6 +66,18 @@ AxisCoordinates coordinates_beside(const Hdf5File& file, const std::string& data
   return std::cmp_equal(found.values.size(), axis.size) ? std::move(found) : AxisCoordinates();
 }
 
+// NeXus keeps the scaling of a dataset in datasets beside the dataset.
+void note_nexus(const Hdf5File& file, const std::string& dataset, std::vector<std::string>& notes) {
+  const std::string folder = folder_of_path(dataset);
+  const Hdf5Handle group = open_object(file, folder.empty() ? "/" : folder);
+  if (!group || text_in(hdf5_attributes(file.session, group.id()), "NX_class") != "NXdata") return;
+  const std::string beside = folder + "/", own = step_of_path(dataset, 0) + "_";
+  for (const std::string& name :
+       {own + "scaling_factor", own + "offset", std::string("scaling_factor"), std::string("offset")}) {
+    if (open_object(file, beside + name)) notes.push_back("the dataset " + in_quotes(name) + " is not applied");
+  }
+}
+
 }  // namespace
 
 Hdf5Scales take_hdf5_scales(const Hdf5File& file, hid_t dataset, const std::string& name,
@@ -82,6 +96,7 @@ Hdf5Scales take_hdf5_scales(const Hdf5File& file, hid_t dataset, const std::stri
     if (named[n].name.empty()) named[n].name = of_scale;
   }
   take_dimension_names(axes, std::move(named), scales.notes);
+  note_nexus(file, name, scales.notes);
   return scales;
 }
 
