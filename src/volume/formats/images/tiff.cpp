@@ -152,6 +152,7 @@ void follow_runs(TiffPages& pages, const StackDescription& stack, VolumeInfo& in
   info.notes.emplace_back(
       "pages are in the order of the planes in its description (TiffData), not in that of the file");
   std::vector<std::uint64_t> offsets;
+  offsets.reserve(places.size());
   for (const std::size_t place : places) offsets.push_back(pages.offsets[place]);
   pages.offsets = std::move(offsets);
 }
