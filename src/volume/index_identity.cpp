@@ -134,7 +134,7 @@ std::string volume_identity(const VolumeInfo& volume) {
 std::vector<std::string> index_places(const VolumeInfo& volume) {
   std::error_code error;
   const fs::path path = fs::path(volume.path + "/").parent_path();
-  // What standard input is now it is not in the next run, though the system has a name for it.
+  // The name of standard input stands for another volume in the next run.
   const bool is_there = path != kStandardInput && fs::exists(path, error);
   if (!is_there && volume.data_files.empty()) return {};
   std::vector<std::string> places;

@@ -115,17 +115,18 @@ TEST(CliExitCodes, CoordinatesThatAreNotNumbersNameTheirFile) {
   }
 }
 
+Words mesh_with(const std::string& option, const std::string& value) {
+  return {"mesh", kSmall, "--iso", "0", "-o", "new.ply", option, value};
+}
+
 // As where a variable of a script is empty: an option is never left out in silence.
 TEST(CliUsage, AnEmptyValueIsRefused) {
   const files::Folder folder;
   for (const std::string option : {"--report", "--error", "--memory", "--roi", "--color-by", "--html", "--checkpoint",
                                    "--lods", "--spacing", "--raw", "--space", "--triangles", "--threads"}) {
-    const Words words{"mesh", kSmall, "--iso", "0", "-o", "new.ply"};
-    Words apart = words;
-    apart.insert(apart.end(), {option, ""});
-    expect_code(folder, apart, 2, option + ": expected a value, found ''");
-    Words joined = words;
-    joined.push_back(option + "=");
+    expect_code(folder, mesh_with(option, ""), 2, option + ": expected a value, found ''");
+    Words joined = mesh_with(option + "=", "");
+    joined.pop_back();
     expect_code(folder, joined, 2, option + ": ");
   }
   expect_code(folder, {"info", kSmall, "--series", ""}, 2, "--series: expected a value, found ''");
@@ -133,22 +134,16 @@ TEST(CliUsage, AnEmptyValueIsRefused) {
 
 TEST(CliUsage, AnOptionThatSaysNothingAloneIsRefused) {
   const files::Folder folder;
-  const auto with = [&](const std::string& option, const std::string& value) {
-    return Words{"mesh", kSmall, "--iso", "0", "-o", "new.ply", option, value};
-  };
-  expect_code(folder, with("--every", "3layers"), 2, "--every: expected --checkpoint as well");
-  expect_code(folder, with("--page-triangles", "3000"), 2, "--page-triangles requires --html");
+  expect_code(folder, mesh_with("--every", "3layers"), 2, "--every: expected --checkpoint as well");
+  expect_code(folder, mesh_with("--page-triangles", "3000"), 2, "--page-triangles requires --html");
 }
 
 TEST(CliUsage, NumbersThatDoNotDoAreNamed) {
   const files::Folder folder;
-  const auto with = [&](const std::string& option, const std::string& value) {
-    return Words{"mesh", kSmall, "--iso", "0", "-o", "new.ply", option, value};
-  };
-  expect_code(folder, with("--spacing", "0,1,1"), 2, "spacing: expected lengths from 1e-30 to 1e30, found 0");
-  expect_code(folder, with("--spacing", "1,1,1e31"), 2, "found 1e+31");
-  expect_code(folder, with("--scale", "1e40"), 2, "scale: expected one with which 32 bits hold all coordinates");
-  expect_code(folder, with("--threads", "0"), 2, "--threads: expected a whole number of at least 1, found '0'");
+  expect_code(folder, mesh_with("--spacing", "0,1,1"), 2, "spacing: expected lengths from 1e-30 to 1e30, found 0");
+  expect_code(folder, mesh_with("--spacing", "1,1,1e31"), 2, "found 1e+31");
+  expect_code(folder, mesh_with("--scale", "1e40"), 2, "scale: expected one with which 32 bits hold all coordinates");
+  expect_code(folder, mesh_with("--threads", "0"), 2, "--threads: expected a whole number of at least 1, found '0'");
 }
 
 }  // namespace

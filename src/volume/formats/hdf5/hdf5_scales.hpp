@@ -17,7 +17,7 @@ struct Hdf5Scales {
 
 // The scales of an open dataset. An axis without a name takes that of its scale. An axis that has a name and no scale
 // has the coordinates of a dataset of this name beside it, where that has one number for each sample.
-// What NeXus says of values is noted.
+// Scalings and offsets that NeXus keeps beside a dataset are noted, not applied.
 Hdf5Scales take_hdf5_scales(const Hdf5File& file, hid_t dataset, const std::string& name, std::vector<ArrayAxis>& axes);
 
 }  // namespace isoweave

@@ -11,7 +11,7 @@
 
 namespace isoweave {
 
-// What a TiffData element says of the planes from one on.
+// A run of planes that one TiffData element describes.
 struct PlaneRun {
   std::int64_t plane = 0;  // the first one, counted along all axes
   std::int64_t page = 0;   // of the first one, among all directories of the file
