@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "isoweave/error.hpp"
+#include "isoweave/length.hpp"
 #include "isoweave/measure.hpp"
 #include "isoweave/mesh.hpp"
 #include "options/files.hpp"
@@ -92,12 +95,23 @@ std::vector<std::string> match(TriangleMesh& b, const TriangleMesh& a, const Com
   }
 }
 
+// The length of a voxel in a mesh's unit; 0: none was given.
+double voxel_length(const CompareArguments& arguments, const std::string& unit) {
+  if (arguments.voxel.empty()) return 0;
+  try {
+    const Length voxel = parse_length(arguments.voxel, unit);
+    if (!voxel.in_voxels && voxel.value > 0) return voxel.value;
+  } catch (const std::invalid_argument&) {
+    // The library does not know which option the text came from.
+  }
+  wrong_value("--voxel", "a length above 0 such as 0.5, 0.5mm or 30um", arguments.voxel);
+}
+
 void run_compare(const CompareArguments& arguments) {
   DistanceOptions options;
   options.samples = static_cast<std::uint64_t>(parse_count("--samples", arguments.samples));
   options.threads = parse_threads(arguments.threads);
-  const double voxel = arguments.voxel.empty() ? 0 : parse_number("--voxel", arguments.voxel);
-  if (!arguments.voxel.empty() && !(voxel > 0)) wrong_value("--voxel", "a positive length", arguments.voxel);
+  voxel_length(arguments, "");  // finds an error in it now
   if (!arguments.histogram.empty()) {
     options.bins = static_cast<std::size_t>(parse_count("--histogram", arguments.histogram));
     if (options.bins > kMostBins) wrong_value("--histogram", fmt::format("at most {}", kMostBins), arguments.histogram);
@@ -111,6 +125,7 @@ void run_compare(const CompareArguments& arguments) {
   TriangleMesh a = read_surface(arguments.a, arguments.reading);
   TriangleMesh b = read_surface(arguments.b, arguments.reading);
   const std::vector<std::string> notes = match(b, a, arguments);
+  const double voxel = voxel_length(arguments, a.unit);
   const MeshDistance distance = compare_meshes(a, b, options);
   if (!arguments.distances.empty()) write_distances(arguments, a, b, options.threads);
   if (!arguments.json) {
@@ -147,7 +162,8 @@ void add_compare_verb(CLI::App& app) {
   verb->add_option("A", arguments->a, "Mesh")->required();
   verb->add_option("B", arguments->b, "Mesh")->required();
   verb->add_option("--samples", arguments->samples, "Points on each mesh")->capture_default_str();
-  verb->add_option("--voxel", arguments->voxel, "Length of a voxel: prints distances in voxels, too");
+  verb->add_option("--voxel", arguments->voxel,
+                   "Length of a voxel, in the unit of A or in mm, um, ...: prints distances in voxels, too");
   verb->add_option("--histogram", arguments->histogram, "Counts the distances in so many equal parts, both ways");
   verb->add_option("--distances", arguments->distances,
                    "Write A as PLY with the distance to B at each vertex, as the property quality");

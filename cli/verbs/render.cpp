@@ -160,7 +160,8 @@ Picture draw(const TriangleMesh& mesh, RenderOptions options, const std::optiona
 
 // Finds an error that would keep the picture from being written, before the picture is made.
 void check_output(const std::string& path) {
-  if (!path.ends_with(".png")) throw CannotWrite(path + ": expected a name that ends with .png");
+  if (!path.ends_with(".png") && !path.ends_with(".PNG"))
+    throw CannotWrite(path + ": expected a name that ends in .png");
   require_png(path);
 }
 

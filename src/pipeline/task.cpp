@@ -38,13 +38,13 @@ double most_distance(const Length& length, double side) {
 std::vector<double> level_errors(const SimplifyOptions& options, double error, double side) {
   std::vector<double> errors;
   if (!options.levels.empty() && options.triangles > 0) {
-    throw std::invalid_argument("levels: expected errors alone, found a number of triangles as well");
+    throw std::invalid_argument("levels of detail: expected errors alone, found a number of triangles as well");
   }
   for (const Length& level : options.levels) {
     const double length = length_in(level, side);
     if (!(length >= 0 && length < error && (errors.empty() || length > errors.back()))) {
-      throw std::invalid_argument("levels: expected ascending errors of 0 or more and below " + rounded_text(error) +
-                                  ", found " + rounded_text(length));
+      throw std::invalid_argument("levels of detail: expected ascending errors of 0 or more and below " +
+                                  rounded_text(error) + ", found " + rounded_text(length));
     }
     errors.push_back(length);
   }

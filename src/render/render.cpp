@@ -28,7 +28,8 @@ void check_options(const RenderOptions& options) {
     throw std::invalid_argument("expected a picture of 1 to 16384 pixels a side");
   }
   if (options.axes && std::min(options.width, options.height) < render::kLeastSideWithAxes) {
-    throw std::invalid_argument("axes: expected a picture of 72 pixels or more a side");
+    throw std::invalid_argument("axes: expected a picture of 72 pixels or more a side, found " +
+                                std::to_string(options.width) + " x " + std::to_string(options.height));
   }
   if (!within(options.samples, 1, kMostSamples)) {
     throw std::invalid_argument("expected 1 to 8 samples a side of a pixel");

@@ -140,7 +140,7 @@ TEST(CliValues, WithOneMeaningAreTaken) {
   ASSERT_EQ(run(folder.path(), {"mesh", "l_4x4x4_uint8.raw", "-o", "l.ply", "--labels", "1-3"}).code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "l_label2.ply"));
 #ifdef ISOWEAVE_HAS_PNG
-  ASSERT_EQ(run(folder.path(), {"render", "a.ply", "-o", "a.png", "--size", "40", "--color", "red"}).code, 0);
+  ASSERT_EQ(run(folder.path(), {"render", "a.ply", "-o", "a.PNG", "--size", "40", "--color", "red"}).code, 0);
 #endif
   program::expect_failed(
       run(folder.path(), {"mesh", "generate:sphere:8x8x8", "--iso", "0", "-o", "b.ply", "--triangles", "1.0001k"}), 2,

@@ -297,7 +297,7 @@ TEST(CliSimplify, MakesAMeshSmallerWithinTheDistanceAsked) {
   EXPECT_EQ(Json::parse(succeed(folder, {"check", "small.obj", "--json"}).out)["digest"], report["digest"]);
 
   const Json distance = Json::parse(
-      succeed(folder, {"compare", "full.ply", "small.obj", "--samples", "2000", "--voxel", "0.5", "--json"}).out);
+      succeed(folder, {"compare", "full.ply", "small.obj", "--samples", "2000", "--voxel", "500um", "--json"}).out);
   for (const std::string way : {"/a_to_b", "/b_to_a", "/both", "/voxels/both"}) {
     expect_keys(distance, {way + "/mean", way + "/rms", way + "/max"});
   }
