@@ -10,6 +10,7 @@
 
 #include "files.hpp"
 #include "isoweave/error.hpp"
+#include "mesh_file_helpers.hpp"
 #include "packed_meshes.hpp"
 
 namespace isoweave::testing::read_mesh_gltf_packed_test {
@@ -133,6 +134,27 @@ TEST(ReadPackedGlb, TakesFiltersAndSequences) {
   const TriangleMesh found = read_mesh(folder / "a.glb");
   EXPECT_EQ(found.triangles, mesh.triangles);
   expect_close(corners_of(found), corners_of(mesh), 1e-4);
+}
+
+// Newer libraries pack in versions that older ones do not read, and both kinds of data are sound.
+TEST(ReadPackedGlb, TellsOfAVersionThatIsNotRead) {
+  const files::Folder folder;
+  write(folder / "a.glb", sheet(), packed_options());
+  const std::string good = files::read_bytes(folder / "a.glb");
+  const std::size_t length = word_at(good, 12), data = kHeader + length + kChunkHeader;
+  const Json scene = Json::parse(good.substr(kHeader, length));
+  ASSERT_EQ(scene["bufferViews"].size(), 2U);
+  for (const Json& view : scene["bufferViews"]) {
+    const Json& packed = view["extensions"]["EXT_meshopt_compression"];
+    const std::size_t first = data + packed.value("byteOffset", std::size_t{0});
+    std::string changed = good;
+    changed[first] = static_cast<char>(changed[first] | 0xf);
+    const std::string found = mesh_files::failure("a.glb", changed);
+    EXPECT_TRUE(found.starts_with("expected " + packed["mode"].get<std::string>() + " packed in a version")) << found;
+    EXPECT_NE(found.find("found version 15"), std::string::npos) << found;
+    changed[first] = 0;
+    EXPECT_TRUE(mesh_files::failure("a.glb", changed).ends_with("found damaged data"));
+  }
 }
 
 TEST(ReadPackedGlb, RefusesWhatIsDamaged) {
