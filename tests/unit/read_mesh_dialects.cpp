@@ -181,6 +181,13 @@ TEST(ReadMeshDialects, StlColoursAreTold) {
             Notes{"left out: 2 attributes of triangles, which may be colours"});
 }
 
+std::string ply_with(const std::string& properties, const std::string& more, const std::string& last = "") {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+                     properties + "element face 1\nproperty list uchar int vertex_indices\n" + last + "end_header\n";
+  for (const char* point : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) text += point + more + "\n";
+  return text + "3 0 1 2 ";
+}
+
 TEST(ReadMeshDialects, PlyHeaderInOtherLetters) {
   expect_square(
       parse("a.ply", replaced(replaced(kPly, "ply\nformat", "PLY\nFormat"), "property float x", "Property Float32 x")),
@@ -191,6 +198,16 @@ TEST(ReadMeshDialects, PlyHeaderInOtherLetters) {
     expect_square(parse("a.ply", replaced(kPly, "list uchar int", list)), list);
   }
   expect_square(parse("a.ply", replaced(kPly, "vertex_indices", "vertex_index")), "vertex_index");
+}
+
+// As meshio writes arrays whose names have blanks.
+TEST(ReadMeshDialects, PlyPropertiesWithBlanksInTheirNames) {
+  const TriangleMesh mesh = parse("a.ply", ply_with("property double  wall stress \nproperty int cell  id\n", "7 1"));
+  EXPECT_EQ(mesh.values, (std::vector<float>{7, 7, 7}));
+  EXPECT_EQ(mesh.notes, (Notes{"not kept: cell  id", "the values at its vertices are the property 'wall stress'"}));
+  EXPECT_EQ(failure("a.ply", replaced(kPly, "float x", "float x 1")), "its vertices have no number 'x'");
+  EXPECT_EQ(failure("a.ply", replaced(kPly, "float x", "float ")),
+            "header line 4: expected 'property TYPE NAME', found 'property float'");
 }
 
 // The data begin with a line feed, which belongs to the first number.
@@ -231,13 +248,6 @@ TEST(ReadMeshDialects, PlyStrips) {
   EXPECT_EQ(failure("a.ply", ply_of_strips("4 0 2 1 -2\n")), "strip 0 refers to vertex -2, the file has 6");
   EXPECT_EQ(failure("a.ply", ply_of_strips("4 0 2 1\n")), "truncated: expected a number, found the end of the file");
   EXPECT_EQ(parse("a.ply", ply_of_strips("3 0 2 1\n", "element face 0\n")).triangles, (Triangles{{0, 2, 1}}));
-}
-
-std::string ply_with(const std::string& properties, const std::string& more, const std::string& last = "") {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
-                     properties + "element face 1\nproperty list uchar int vertex_indices\n" + last + "end_header\n";
-  for (const char* point : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) text += point + more + "\n";
-  return text + "3 0 1 2 ";
 }
 
 TEST(ReadMeshDialects, PlyValuesAreTheNumberThatProgramsMean) {
