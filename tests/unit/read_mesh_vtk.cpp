@@ -268,6 +268,13 @@ TEST(ReadLegacyVtk, ReadsFlatCellsOfUnstructuredGrids) {
   EXPECT_TRUE(contains(failure("a.vtk", head + "CELLS 1 4\n3 0 1 2\n"), "a type for each cell"));
 }
 
+// Cut off at 84 bytes, a file of zeros is as long as a binary STL without triangles.
+TEST(ReadLegacyVtk, IsNotTakenForStlWhereItIsCutOff) {
+  std::string cut = "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n";
+  cut.resize(84, '\0');
+  EXPECT_TRUE(contains(failure("a.vtk", cut), "truncated: expected 12 numbers in 'POINTS'"));
+}
+
 TEST(ReadLegacyVtk, RefusesWhatIsWrong) {
   const auto with = [](const std::string& rest) { return failure("a.vtk", legacy(kPoints + rest)); };
   EXPECT_EQ(with("POLYGONS 1 4\n3 0 1 4\n"), "a cell refers to point 4, there are 4");

@@ -77,10 +77,11 @@ bool is_stl_text(const std::string& head) {
 std::optional<TriangleMesh> read_by_content(MeshInput& input, const std::string& head, bool named_obj) {
   if (head.starts_with("glTF")) return mesh_io::read_glb(input);
   if (head.starts_with("PK\3\4")) return mesh_io::read_3mf(input);
+  // Before STL: legacy data that are cut off can be as long as their first numbers say, taken for a count of triangles.
+  if (is_vtk_legacy(head)) return mesh_io::read_vtk(input);
   if (!named_obj && mesh_io::is_binary_stl(input)) return mesh_io::read_stl_binary(input);
   if (head.find("<VTKFile") != std::string::npos) return mesh_io::read_vtp(input);
   if (is_wide_text(head)) input.fail("expected text in ASCII or UTF-8, found UTF-16 or UTF-32");
-  if (is_vtk_legacy(head)) return mesh_io::read_vtk(input);
   std::string_view rest = text_of(head);
   if (rest.starts_with('{')) return mesh_io::read_glb(input);  // an object in JSON
   const std::string_view word = mesh_io::take_word(rest);
