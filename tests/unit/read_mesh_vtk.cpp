@@ -75,6 +75,24 @@ TEST(ReadVtp, JoinsPieces) {
   EXPECT_TRUE(has_note(mesh, "2 pieces are joined"));
 }
 
+std::string ghosts(const std::string& bits) {
+  return "<CellData>" + array("type=\"UInt8\" Name=\"vtkGhostType\"", bits) + "</CellData>";
+}
+
+// Pieces of parallel runs overlap: bits of 1, 8 and 32 are copies of cells of other pieces, refined and hidden cells.
+TEST(ReadVtp, LeavesGhostCellsOut) {
+  const std::string all = cells("Verts", "0", "1") + cells("Lines", "0 1", "2") +
+                          cells("Polys", "0 1 2 0 2 3 1 2 3 0 1 3", "3 6 9 12") + cells("Strips", "0 1 3 3 1 2", "3 6");
+  const std::string counts = "NumberOfVerts=\"1\" NumberOfLines=\"1\" NumberOfPolys=\"4\" NumberOfStrips=\"2\"";
+  const TriangleMesh mesh = parse("a.vtp", vtp(piece(counts, all + ghosts("1 1 0 33 8 2 32 0"))));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {3, 1, 2}}));
+  EXPECT_TRUE(has_note(mesh, "3 ghost cells"));
+  EXPECT_FALSE(has_note(mesh, "not kept"));
+  EXPECT_EQ(parse("a.vtp", vtp(piece(counts, all + ghosts("1 1 0 0 0 0 0 0")))).triangles.size(), 6U);
+  EXPECT_TRUE(
+      contains(failure("a.vtp", vtp(piece(counts, all + ghosts("0 0")))), "as many numbers as its header says"));
+}
+
 TEST(ReadVtp, KeepsActiveScalarsAndNormals) {
   const std::string data = "<PointData Scalars=\"pressure\" Normals=\"up\">" +
                            array("type=\"Float32\" Name=\"other\"", "1 2 3 4") +

@@ -171,16 +171,57 @@ class VtpReader {
     if (points.empty() || points.front().components != 3) input_.fail("expected Points of 3 components, found none");
     VtkNumbers numbers = open(points.front(), 3 * piece.points);
     mesh_.add_points(numbers, piece.points, points.front().type == "Float32");
-    using Corners = std::span<const std::uint64_t>;
-    read_cells(piece, "Polys", piece.polys, [&](std::size_t, Corners corners) { mesh_.add_polygon(corners); });
-    read_cells(piece, "Strips", piece.strips, [&](std::size_t, Corners corners) { mesh_.add_strip(corners); });
-    const std::vector<std::uint64_t> kinds = kinds_of(piece);
-    read_cells(piece, "Cells", piece.cells, [&](std::size_t n, Corners corners) { mesh_.add_cell(kinds[n], corners); });
+    read_flat_cells(piece);
     mesh_.leftovers.left_out(piece.verts, kPointCells);
     mesh_.leftovers.left_out(piece.lines, kLineCells);
     for (const VtkArray& array : arrays_of(piece, "PointData")) read_point_data(piece, array);
-    for (const VtkArray& array : arrays_of(piece, "CellData"))
-      mesh_.leftovers.not_kept("cell array '" + array.name + "'");
+    for (const VtkArray& array : arrays_of(piece, "CellData")) {
+      if (!is_list_of_ghosts(array)) mesh_.leftovers.not_kept("cell array '" + array.name + "'");
+    }
+  }
+
+  // Adds the cells that have an area, but for ghosts. VTK numbers the cells of PolyData in the order vertices, lines,
+  // polygons, strips.
+  void read_flat_cells(const VtpPiece& piece) {
+    using Corners = std::span<const std::uint64_t>;
+    const std::vector<bool> ghosts = ghosts_of(piece);
+    std::uint64_t left_out = 0;
+    const auto is_ghost = [&](std::uint64_t cell) {
+      const bool found = cell < ghosts.size() && ghosts[static_cast<std::size_t>(cell)];
+      left_out += found ? 1 : 0;
+      return found;
+    };
+    const std::uint64_t polys = piece.verts + piece.lines, strips = polys + piece.polys;
+    read_cells(piece, "Polys", piece.polys, [&](std::size_t n, Corners corners) {
+      if (!is_ghost(polys + n)) mesh_.add_polygon(corners);
+    });
+    read_cells(piece, "Strips", piece.strips, [&](std::size_t n, Corners corners) {
+      if (!is_ghost(strips + n)) mesh_.add_strip(corners);
+    });
+    const std::vector<std::uint64_t> kinds = kinds_of(piece);
+    read_cells(piece, "Cells", piece.cells, [&](std::size_t n, Corners corners) {
+      if (!is_ghost(n)) mesh_.add_cell(kinds[n], corners);
+    });
+    mesh_.leftovers.left_out(left_out, "ghost cells");
+  }
+
+  static bool is_list_of_ghosts(const VtkArray& array) {
+    return array.name == "vtkGhostType" && array.type == "UInt8" && array.components == 1;
+  }
+
+  // Whether a cell is a ghost: a copy of one of another piece, or one that is refined or hidden. Empty where none is.
+  std::vector<bool> ghosts_of(const VtpPiece& piece) {
+    constexpr std::uint64_t kDuplicate = 1, kRefined = 8, kHidden = 32;
+    const Arrays& arrays = arrays_of(piece, "CellData");
+    const auto found = std::find_if(arrays.begin(), arrays.end(), is_list_of_ghosts);
+    if (found == arrays.end()) return {};
+    const std::uint64_t cells = piece.verts + piece.lines + piece.polys + piece.strips + piece.cells;
+    VtkNumbers numbers = open(*found, cells);
+    std::vector<bool> ghosts;
+    for (std::uint64_t n = 0; n < cells; ++n) {
+      ghosts.push_back((numbers.index() & (kDuplicate | kRefined | kHidden)) != 0);
+    }
+    return ghosts;
   }
 
   // The kinds of the cells of an unstructured grid.
