@@ -253,6 +253,17 @@ TEST(ReadGltf, RefusesDataInFilesThatAreNotAsTheSceneSays) {
       << refusal_with("a.bin", {});
 }
 
+// Data in Draco for those that know it, and plain ones for all others.
+TEST(ReadGltf, DracoThatIsNotRequiredIsPassedOver) {
+  Gltf gltf;
+  gltf.show({{{"mesh", gltf.add_tetrahedron()}}});
+  gltf.scene["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+  gltf.scene["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
+  EXPECT_EQ(read(gltf).triangles, meshes::tetrahedron().triangles);
+  gltf.scene["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  EXPECT_TRUE(contains(refusal(gltf), "KHR_draco_mesh_compression"));
+}
+
 TEST(ReadGltf, RefusesWhatItDoesNotRead) {
   const auto with = [](const std::function<void(Gltf&)>& change) {
     Gltf gltf;
@@ -262,9 +273,11 @@ TEST(ReadGltf, RefusesWhatItDoesNotRead) {
     return refusal(gltf);
   };
   const auto primitive = [](Gltf& gltf) -> Json& { return gltf.scene["meshes"][0]["primitives"][0]; };
-  EXPECT_TRUE(
-      contains(with([&](Gltf& g) { primitive(g)["extensions"]["KHR_draco_mesh_compression"] = Json::object(); }),
-               "KHR_draco_mesh_compression"));
+  EXPECT_TRUE(contains(with([&](Gltf& g) {
+                         primitive(g)["extensions"]["KHR_draco_mesh_compression"] = Json::object();
+                         g.scene["accessors"][0].erase("bufferView");
+                       }),
+                       "KHR_draco_mesh_compression"));
   EXPECT_TRUE(contains(
       with([&](Gltf& g) { g.scene["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = Json::object(); }),
       "not as glTF has it"));

@@ -252,16 +252,23 @@ class SceneReader {
     }
   }
 
+  // Whether a primitive has its data in Draco alone. A file that does not require Draco has them in accessors too.
+  bool is_draco_only(const GltfValue& primitive) const {
+    const GltfValue& positions = file_.element("accessors", primitive.at("attributes").at("POSITION"));
+    return !positions.contains("bufferView") &&
+           primitive.value("extensions", GltfValue::object()).contains("KHR_draco_mesh_compression");
+  }
+
   void add_primitive(const GltfValue& primitive, const Placement& placement, Shared* shared) {
     const std::uint64_t mode = primitive.contains("mode") ? file_.whole(primitive.at("mode"), "mode") : kTriangles;
     if (mode > kTriangleFan) input_.fail("expected a mode of up to 6, found " + std::to_string(mode));
-    if (primitive.value("extensions", GltfValue::object()).contains("KHR_draco_mesh_compression")) {
-      input_.fail("expected data that are not compressed, found 'KHR_draco_mesh_compression'");
-    }
     const GltfValue& attributes = primitive.at("attributes");
     if (shared != nullptr && mode < kTriangles) {
       leftovers_.left_out(1, mode == kPoints ? "sets of points" : "sets of lines");
       return;
+    }
+    if (is_draco_only(primitive)) {
+      input_.fail("expected data that are not compressed, found 'KHR_draco_mesh_compression'");
     }
     if (attributes.contains("COLOR_0")) leftovers_.not_kept("colours");
     if (primitive.contains("targets")) leftovers_.not_kept("morph targets");
