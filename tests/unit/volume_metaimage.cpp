@@ -195,6 +195,19 @@ TEST(MetaImage, ContradictionsAreTold) {
   EXPECT_TRUE(contains(notes(7).at(0), "CompressedDataSize is 7, and the file has " + std::to_string(packed.size())));
 }
 
+TEST(MetaImage, IntensitiesAreToldAndNotApplied) {
+  const TempFolder folder;
+  const std::string slope = "ElementToIntensityFunctionSlope = ", offset = "ElementToIntensityFunctionOffset = ";
+  const VolumeInfo scaled = info_of(folder, slope + "2\n" + offset + "-5\n");
+  EXPECT_EQ(scaled.slope, 1);
+  ASSERT_EQ(scaled.notes.size(), 1U);
+  EXPECT_TRUE(contains(scaled.notes[0], "scales samples to intensities by 2 and -5 (ElementToIntensityFunction)"));
+  const VolumeInfo moved = info_of(folder, offset + "3\n");
+  ASSERT_EQ(moved.notes.size(), 1U);
+  EXPECT_TRUE(contains(moved.notes[0], "by 1 and 3 ("));
+  EXPECT_TRUE(info_of(folder, slope + "1\n" + offset + "0\n").notes.empty());
+}
+
 TEST(MetaImage, BytesBehindTheSamplesAreTold) {
   const TempFolder folder;
   EXPECT_EQ(info_of(folder, "DimSize = 3 2 3\nElementSpacing = 1 1 1\n").notes.at(0),

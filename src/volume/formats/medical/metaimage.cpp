@@ -205,6 +205,17 @@ void set_axes(OpenedVolume& volume, const MetaFields& fields, std::size_t axes) 
   take_unit(volume, unit);
 }
 
+// ITK passes over the scaling from samples to intensities, so its programs show samples as they are stored.
+void note_intensities(VolumeInfo& info, const MetaFields& fields) {
+  const auto slope = numbers_of(fields, {"elementtointensityfunctionslope"}, 1, info.path);
+  const auto offset = numbers_of(fields, {"elementtointensityfunctionoffset"}, 1, info.path);
+  const bool scales = (!slope.empty() && slope[0] != 1) || (!offset.empty() && offset[0] != 0);
+  if (!scales) return;
+  info.notes.push_back("the header scales samples to intensities by " + number_text(slope.empty() ? 1 : slope[0]) +
+                       " and " + number_text(offset.empty() ? 0 : offset[0]) +
+                       " (ElementToIntensityFunction), which is not applied");
+}
+
 // HeaderSize counts bytes of the file as stored; -1 means that the samples end the file.
 std::uint64_t compressed_begin(const FilePtr& file, const MetaFields& fields, std::int64_t header_size) {
   if (header_size >= 0) return static_cast<std::uint64_t>(header_size);
@@ -297,6 +308,7 @@ OpenedVolume open_metaimage(const FilePtr& file, const OpenOptions& options) {
   const std::string_view data = fields.get({kDataFile});
   if (lower_case(data) != "local") check_external(options, info.path, data);
   note_compressed_size(info, file, fields);
+  note_intensities(info, fields);
   const bool big = is_true(fields.get({"binarydatabyteordermsb", "elementbyteordermsb"}));
   volume.swap_bytes = big != (std::endian::native == std::endian::big);
   const std::size_t each = sample_bytes(info.type);
