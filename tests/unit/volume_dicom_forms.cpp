@@ -291,6 +291,55 @@ TEST(DicomSamples, OfKindsThatAreNotReadAreNamed) {
   EXPECT_TRUE(contains(found(7), "expected samples of whole numbers (Pixel Data), found none"));
 }
 
+// Siemens writes all slices of a moment side by side in one image.
+TEST(DicomMosaic, IsNoSlice) {
+  const TempFolder folder;
+  DicomFields fields;
+  fields.thickness = "1";
+  fields.more = element(8, 8, "CS", "ORIGINAL\\PRIMARY\\M\\ND\\MOSAIC");
+  const std::string expected = "expected one slice in an image, found a mosaic of slices (Image Type)";
+  EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, slice(0)))), expected));
+  folder.put("b", dicom(fields, slice(1)));
+  EXPECT_TRUE(contains(refusal(folder / ""), expected));
+  // One that was cut up lies in several places.
+  const TempFolder cut;
+  put_series(cut, fields);
+  EXPECT_EQ(read_file<std::uint16_t>(cut / ""), kSamples);
+}
+
+TEST(DicomSyntax, ThatIsNotReadIsNamed) {
+  const TempFolder folder;
+  const auto found = [&](const std::string& syntax) {
+    return refusal(folder.put("a", packed_image({}, "1.2.840.10008.1.2.4." + syntax, "stream")));
+  };
+  EXPECT_TRUE(contains(found("201"), "JPEG 2000 or RLE samples, found '1.2.840.10008.1.2.4.201' (High-Throughput"));
+  EXPECT_TRUE(contains(found("110"), "(JPEG XL)"));
+  EXPECT_TRUE(contains(found("102"), "(MPEG or HEVC)"));
+}
+
+// Frames without anything in them may be left out of a segmentation.
+TEST(DicomSegmentation, IsNotInterpolatedWhereFramesAreLeftOut) {
+  const TempFolder folder;
+  const std::string image = "1.2.840.10008.5.1.4.1.1.2", segmentation = "1.2.840.10008.5.1.4.1.1.66.4";
+  const auto of_class = [&](const std::vector<std::string>& frames) {
+    std::string samples;
+    for (std::size_t n = 0; n < frames.size(); ++n) samples += slice(n);
+    std::string file = enhanced(frames, samples);
+    const std::string before = element(2, 2, "UI", image), after = element(2, 2, "UI", segmentation);
+    const std::size_t place = file.find(before);
+    file.replace(place, before.size(), after);
+    auto group = static_cast<unsigned char>(file[place - 4]);
+    file[place - 4] = static_cast<char>(group + after.size() - before.size());
+    return folder.put("a", file);
+  };
+  EXPECT_EQ(open_volume(of_class({frame_at(0), frame_at(2), frame_at(4)}))->info().dims[2], 3);
+  const std::string gap = of_class({frame_at(0), frame_at(2), frame_at(8)});
+  EXPECT_TRUE(contains(refusal(gap), "expected a segmentation with all its slices, also the empty ones, found 3 of 5"));
+  OpenOptions options;
+  options.uneven_slices = UnevenSlices::kMean;
+  EXPECT_EQ(open_volume(gap, options)->info().dims[2], 3);
+}
+
 TEST(DicomSeries, WithoutUidIsChosenByAName) {
   const TempFolder folder;
   DicomFields fields;

@@ -1,7 +1,9 @@
 #include "volume/formats/dicom/dicom_places.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "files/input_file.hpp"
@@ -26,7 +28,25 @@ SampleType sample_type_of(const DicomSlice& slice) {
   bad_input(slice.path, "8, 16 or 32 bits allocated", std::to_string(slice.bits));
 }
 
+// Refuses packed samples that no decoder is there for, by the name of their family. Files of other series in a folder
+// may have them.
+void refuse_unread_syntax(const DicomSlice& slice) {
+  struct Family {
+    std::string_view begin, name;
+  };
+  static constexpr std::array<Family, 3> kFamilies{{{"1.2.840.10008.1.2.4.10", "MPEG or HEVC"},
+                                                    {"1.2.840.10008.1.2.4.11", "JPEG XL"},
+                                                    {"1.2.840.10008.1.2.4.20", "High-Throughput JPEG 2000"}}};
+  for (const Family& family : kFamilies) {
+    const bool is_of_family = slice.syntax.size() == family.begin.size() + 1 && slice.syntax.starts_with(family.begin);
+    if (!is_of_family) continue;
+    bad_input(slice.path, "a transfer syntax of plain, deflated, JPEG, JPEG-LS, JPEG 2000 or RLE samples",
+              in_quotes(slice.syntax) + " (" + std::string(family.name) + ")");
+  }
+}
+
 SliceKindFacts facts_of(const DicomSlice& slice) {
+  refuse_unread_syntax(slice);
   if (slice.samples != 1 || !slice.photometric.starts_with("MONOCHROME")) {
     bad_input(slice.path, "grey samples (MONOCHROME1 or 2)",
               in_quotes(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
@@ -74,6 +94,18 @@ PlacedSlice placed(DicomSlice slice, const Vector3& normal) {
   return result;
 }
 
+// Refuses an image that holds slices beside one another, as Siemens writes functional MR: it is no slice itself. Images
+// that were cut up may still say so, but then they lie in several places.
+void refuse_mosaic(const std::vector<DicomSlice>& slices) {
+  const DicomSlice& first = slices.front();
+  const bool in_one_place = std::all_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
+    return slice.position == first.position && slice.offset == first.offset;
+  });
+  if (!in_one_place || first.image_type.find("MOSAIC") == std::string::npos) return;
+  bad_input(first.path, "one slice in an image",
+            "a mosaic of slices (Image Type), which is not read (dcm2niix turns it into NIfTI)");
+}
+
 // Drops slices that are in the place of the one before and are copies of it: exports hold images twice.
 void drop_copies(PlacedSeries& series) {
   std::vector<PlacedSlice> kept;
@@ -100,6 +132,7 @@ void drop_copies(PlacedSeries& series) {
 PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   PlacedSeries result;
   std::vector<DicomSlice> slices = without_scouts(series, result.notes);
+  refuse_mosaic(slices);
   const DicomSlice first = slices.front();
   result.facts = facts_of(first);
   result.plane = plane_of(first);

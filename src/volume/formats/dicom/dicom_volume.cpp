@@ -1,9 +1,11 @@
 #include "volume/formats/dicom/dicom_volume.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "files/header_text.hpp"
@@ -171,6 +173,16 @@ double rounding_of(const PlacedSeries& series) {
   return std::pow(10.0, -decimals);
 }
 
+// Refuses a segmentation between whose slices others would be made: writers leave out frames without anything in them,
+// and what is interpolated there would not be empty.
+void refuse_gaps_of_segmentation(const PlacedSeries& series, const EvenGrid& grid, const std::string& path) {
+  constexpr std::array<std::string_view, 2> kClasses{"1.2.840.10008.5.1.4.1.1.66.4", "1.2.840.10008.5.1.4.1.1.66.7"};
+  const std::string& found = series.slices.front().slice.media;
+  if (!grid.is_resampled || std::find(kClasses.begin(), kClasses.end(), found) == kClasses.end()) return;
+  bad_input(path, "a segmentation with all its slices, also the empty ones",
+            std::to_string(series.slices.size()) + " of " + std::to_string(grid.count));
+}
+
 EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions& options) {
   const Slices& slices = series.slices;
   SlicePlaces places{info.path,
@@ -185,6 +197,7 @@ EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions
   if (options.spacing && !notes.empty()) {
     notes.back() = "the slices do not lie at an even distance: the one that is given is taken for all of them";
   }
+  refuse_gaps_of_segmentation(series, grid, info.path);
   info.notes.insert(info.notes.end(), notes.begin(), notes.end());
   if (grid.is_resampled) info.part = "slices made at an even distance";
   return grid;
