@@ -52,6 +52,15 @@ Json read_json(const std::string& path) {
   return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
+// Tasks that are done, and lengths in voxels, are of the volume that was planned.
+void require_planned_volume(const PlannedMesh& plan, const std::string& path, const std::string& expected) {
+  const std::string found = facts_of_volume(plan.volume);
+  if (found == expected) return;
+  throw BadInput(
+      fmt::format("{}: changed since it was planned in {}: expected {}, found {}: plan it again, in a new folder",
+                  plan.arguments.input.path, path, expected, found));
+}
+
 // A rule for make for the tasks of each stage.
 std::string makefile(const TaskList& tasks) {
   std::string text =
@@ -93,6 +102,7 @@ PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const 
   const Json json = {{"version", ISOWEAVE_VERSION},
                      {"blocks", block},
                      {"stages", tasks.stages},
+                     {"volume", facts_of_volume(plan.volume)},
                      {"mesh", task_json(plan.arguments, plan.mesh.options)}};
   write_job_files(folder, tasks);
   write_file(folder + "/" + kPlan, json.dump(2) + "\n");
@@ -109,7 +119,9 @@ PlannedMesh read_plan(const std::string& folder) {
     }
     MeshArguments arguments;
     set_task(arguments, arguments, json.at("mesh"));
-    return planned(std::move(arguments), json.at("blocks"), folder);
+    PlannedMesh plan = planned(std::move(arguments), json.at("blocks"), folder);
+    require_planned_volume(plan, path, json.at("volume"));
+    return plan;
   } catch (const Json::exception&) {
     throw BadInput(path + ": expected the plan of isoweave plan, found another text");
   }

@@ -38,6 +38,10 @@ struct TaskMesh {
 // @throws what mesh_in_blocks throws for its options
 TaskList list_tasks(const TaskMesh& mesh);
 
+// The header of a volume with the sizes and times of change of its files, as text. Tasks of volumes that differ in it
+// do not go together, so whoever plans keeps it.
+std::string facts_of_volume(const VolumeInfo& volume);
+
 // The end of a call of do_task: the task is done; it was done before; another process works on it; a task of an earlier
 // stage is not done yet.
 enum class TaskEnd : std::uint8_t { kDone, kDoneBefore, kElsewhere, kTooEarly };

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "files/crc32.hpp"
 #include "isoweave/error.hpp"
 #include "system/file_facts.hpp"
 
@@ -23,24 +26,33 @@ std::string numbers_text(std::span<const double> numbers) {
   return text;
 }
 
-// The chosen part of the file that was opened, and the size and time of change of that file, or of the file that
-// describes a folder.
-std::string file_text(const VolumeInfo& volume) {
-  const std::string& path = volume.header.empty() ? volume.path : volume.header;
-  std::string part = volume.part.empty() ? "" : ", " + volume.part;
+// The size and time of change of a file. Empty for what is no file of this machine.
+std::string change_text(const std::string& path) {
   const std::optional<system::FileFacts> facts = system::facts_of_file(path);
-  if (!facts) return part;
-  return part + ", " + std::to_string(facts->bytes) + " bytes changed at " + std::to_string(facts->seconds) + "." +
+  if (!facts) return {};
+  return ", " + std::to_string(facts->bytes) + " bytes changed at " + std::to_string(facts->seconds) + "." +
          std::to_string(facts->nanoseconds);
 }
 
-std::string volume_text(const VolumeInfo& volume) {
-  const auto& [nx, ny, nz] = volume.dims;
-  const Geometry& geometry = volume.geometry;
-  return std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz) + ' ' +
-         std::string(sample_type_name(volume.type)) + ", spacing" + numbers_text(geometry.spacing) + ", origin" +
-         numbers_text(geometry.origin) + ", axes" + numbers_text(geometry.direction) + ", scale" +
-         numbers_text(std::array{volume.slope, volume.intercept}) + file_text(volume);
+// The same of the files that hold the samples of a header. A series has thousands of them, so many become a checksum.
+std::string samples_text(const std::vector<std::string>& files) {
+  if (files.empty()) return {};
+  if (files.size() == 1) return ", samples" + change_text(files.front());
+  std::uint32_t crc = 0;
+  for (const std::string& file : files) {
+    const std::string text = change_text(file);
+    crc = add_to_crc(crc, std::as_bytes(std::span(text)));
+  }
+  return ", samples in " + std::to_string(files.size()) + " files whose sizes and times of change have the checksum " +
+         std::to_string(crc);
+}
+
+// The chosen part of the file that was opened, and the size and time of change of that file, or of the file that
+// describes a folder, and of those that hold the samples.
+std::string file_text(const VolumeInfo& volume) {
+  const std::string& path = volume.header.empty() ? volume.path : volume.header;
+  const std::string part = volume.part.empty() ? "" : ", " + volume.part;
+  return part + change_text(path) + samples_text(volume.data_files);
 }
 
 // A task as text. Its fields are taken apart by name, so a new field of a task does not compile before it is told here.
@@ -88,6 +100,15 @@ std::string input_text(const Task& task) {
 }
 
 }  // namespace
+
+std::string volume_text(const VolumeInfo& volume) {
+  const auto& [nx, ny, nz] = volume.dims;
+  const Geometry& geometry = volume.geometry;
+  return std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz) + ' ' +
+         std::string(sample_type_name(volume.type)) + ", spacing" + numbers_text(geometry.spacing) + ", origin" +
+         numbers_text(geometry.origin) + ", axes" + numbers_text(geometry.direction) + ", scale" +
+         numbers_text(std::array{volume.slope, volume.intercept}) + file_text(volume);
+}
 
 std::string surface_text(const VolumeInfo& volume, const SurfaceOptions& surface) {
   return volume_text(volume) + ", " + level_set_text(surface);

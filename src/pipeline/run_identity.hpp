@@ -13,6 +13,9 @@ struct RunIdentity {
   std::string options;
 };
 
+// The header of a volume, and the sizes and times of change of its files.
+std::string volume_text(const VolumeInfo& volume);
+
 RunIdentity identity_of(const Task& task);
 
 // Everything that the surface in which components are chosen depends on.

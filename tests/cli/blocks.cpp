@@ -236,14 +236,47 @@ TEST(CliTasks, OtherFoldersAndVolumesAreRefused) {
   expect_failed(run(folder.path(), plan), 4, "tasks: expected a new or empty folder");
   expect_failed(run(folder.path(), with(plan, {"--triangles", "10"})), 2, "--triangles");
   ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", "0"}).code, 0);
-  // Another volume of that name: its tasks go together, but not with the first one.
-  std::filesystem::remove(folder / "a.nrrd");
-  ASSERT_EQ(run(folder.path(), {"generate", "box", "--size", "24", "--type", "uint8", "-o", "a.nrrd"}).code, 0);
-  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", "1"}).code, 0);
-  const Result work = run(folder.path(), {"work", "tasks", "--quiet"});
-  expect_failed(work, 3, "tasks/0.rest: belongs to another mesh");
+  // The result of a task of another mesh.
+  ASSERT_EQ(run(folder.path(), {"generate", "box", "--size", "24", "--type", "uint8", "-o", "b.nrrd"}).code, 0);
+  ASSERT_EQ(run(folder.path(), {"plan", "b.nrrd", "--iso", "127.5", "--blocks", "16", "-o", "others"}).code, 0);
+  std::filesystem::copy(folder / "tasks/0.rest", folder / "others/0.rest");
+  expect_failed(run(folder.path(), {"work", "others", "--quiet"}), 3, "others/0.rest: belongs to another mesh");
   files::write_bytes(folder / "tasks/plan.json", "{}");
   expect_failed(run(folder.path(), {"status", "tasks"}), 3, "tasks/plan.json");
+}
+
+// Replaces the samples of a volume whose tasks are done, and puts them back as they were.
+void expect_changes_refused(const files::Folder& folder, const std::string& volume, const std::string& samples) {
+  ASSERT_EQ(run(folder.path(), {"plan", volume, "--iso", "127.5", "--blocks", "16", "-o", "tasks", "--quiet"}).code, 0);
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  const std::string bytes = files::read_bytes(folder / samples);
+  const auto changed = std::filesystem::last_write_time(folder / samples);
+  std::string others = bytes;
+  others.back() = '\x7f';
+  files::write_bytes(folder / samples, others);
+  std::filesystem::last_write_time(folder / samples, changed + std::chrono::seconds(1));
+  const std::string says = volume + ": changed since it was planned in tasks/plan.json: expected ";
+  for (const Words& words : {Words{"work", "tasks"}, Words{"work", "tasks", "--task", "0"}, Words{"status", "tasks"},
+                             Words{"collect", "tasks", "-o", "a.ply"}}) {
+    expect_failed(run(folder.path(), words), 3, says);
+  }
+  files::write_bytes(folder / samples, bytes);
+  std::filesystem::last_write_time(folder / samples, changed);
+  ASSERT_EQ(run(folder.path(), {"collect", "tasks", "-o", "a.ply", "--quiet"}).code, 0);
+}
+
+TEST(CliTasks, OfAVolumeThatHasChangedAreNotDone) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", "24", "--type", "uint8", "-o", "a.nrrd"}).code, 0);
+  expect_changes_refused(folder, "a.nrrd", "a.nrrd");
+}
+
+TEST(CliTasks, OfAHeaderWhoseSamplesHaveChangedAreNotDone) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", "24", "--type", "uint8", "-o", "a.raw"}).code, 0);
+  files::write_bytes(folder / "a.nhdr",
+                     "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\ndata file: a.raw\n");
+  expect_changes_refused(folder, "a.nhdr", "a.raw");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "files.hpp"
 #include "volume/axes.hpp"
 
 namespace isoweave::testing::run_identity_test {
@@ -76,6 +77,20 @@ TEST(RunIdentity, OneLengthIsOneLength) {
   MeshOptions options;
   options.error = Length::units(0.2 * cube_root(0.5));
   EXPECT_EQ(text(identity(options)), text(identity({})));
+}
+
+// The samples beside a header, in one file or in a series of them.
+TEST(RunIdentity, FilesOfSamplesCount) {
+  const files::Folder folder;
+  for (const std::string name : {"0", "1"}) files::write_bytes(folder / name, "ab");
+  for (const std::vector<std::string>& names : {std::vector{folder / "1"}, std::vector{folder / "0", folder / "1"}}) {
+    VolumeInfo volume = some_volume();
+    volume.data_files = names;
+    const std::string before = volume_text(volume);
+    EXPECT_EQ(volume_text(volume), before);
+    files::write_bytes(folder / "1", files::read_bytes(folder / "1") + "c");
+    EXPECT_NE(volume_text(volume), before);
+  }
 }
 
 }  // namespace

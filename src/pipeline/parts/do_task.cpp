@@ -1,6 +1,7 @@
 // One task of a mesh in blocks: from files to files.
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,8 @@ TaskList list_tasks(const TaskMesh& mesh) {
   const Task task = resolve_blocks(RunKind::kProcesses, *mesh.open(), mesh.options, mesh.blocks, {}, {0, 0, 0});
   return BlockStages(task, mesh.blocks).tasks();
 }
+
+std::string facts_of_volume(const VolumeInfo& volume) { return volume_text(volume); }
 
 TaskEnd do_task(const TaskMesh& mesh, std::uint64_t task, const RunControl& control) {
   const StandardFloats floats;
