@@ -50,7 +50,7 @@ void run_collect(const CollectArguments& arguments) {
   const std::vector<OutputOptions> outputs = level_outputs(arguments.output, plan.arguments.stop);
   for (const OutputOptions& output : outputs) {
     check_different({plan.arguments.input.path, output.path, arguments.report});
-    check_absent(arguments.no_clobber, {output.path});
+    check_absent(arguments.no_clobber, {output.path, arguments.report});
   }
   Evidence evidence(run, {});
   const std::vector<StopOptions> stops = stop_levels(plan.arguments.stop);
@@ -80,7 +80,7 @@ void add_collect_verb(CLI::App& app) {
   verb->get_option("--output")->required();
   verb->add_option("--threads", arguments->threads, "Number of threads, or all")->capture_default_str();
   verb->add_option("--report", arguments->report, "Write the report of the run as JSON");
-  verb->add_flag("--no-clobber", arguments->no_clobber, "Refuse to replace a file");
+  add_clobber_option(*verb, arguments->no_clobber);
   verb->add_flag("--allow-empty", arguments->allow_empty, "Write a mesh without triangles, too");
   verb->add_flag("--quiet", arguments->quiet, "Print errors alone");
   verb->footer(kCollectExamples);

@@ -265,6 +265,19 @@ void expect_changes_refused(const files::Folder& folder, const std::string& volu
   ASSERT_EQ(run(folder.path(), {"collect", "tasks", "-o", "a.ply", "--quiet"}).code, 0);
 }
 
+TEST(CliTasks, AreCollectedOverNoFileThatIsToBeKept) {
+  const files::Folder folder;
+  ASSERT_EQ(run(folder.path(), {"plan", "generate:sphere:16x16x16", "--iso", "0", "-o", "tasks", "--quiet"}).code, 0);
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  const Words collect{"collect", "tasks", "-o", "a.ply", "--report", "a.json", "--no-clobber", "--quiet"};
+  for (const std::string name : {"a.ply", "a.json"}) {
+    files::write_bytes(folder / name, "kept");
+    expect_failed(run(folder.path(), collect), 4, name + ": exists, and --no-clobber keeps it");
+    std::filesystem::remove(folder / name);
+  }
+  EXPECT_EQ(run(folder.path(), collect).code, 0);
+}
+
 TEST(CliTasks, OfAVolumeThatHasChangedAreNotDone) {
   const files::Folder folder;
   ASSERT_EQ(run(folder.path(), {"generate", "sphere", "--size", "24", "--type", "uint8", "-o", "a.nrrd"}).code, 0);
