@@ -45,6 +45,8 @@ std::vector<std::string> progress_parts(const Progress& progress, double seconds
   const double fraction = fraction_done(progress);
   std::vector<std::string> parts{fmt::format("{:.0f} %", std::floor(100 * fraction))};
   if (fraction > 0 && fraction < 1) parts.push_back(time_text(seconds * (1 - fraction) / fraction) + " left");
+  // Files are put together after the last layer, and that of a packed mesh takes as long as its sweep.
+  if (fraction == 1) parts.emplace_back("finishing the output");
   parts.push_back(fmt::format("layer {} of {}", progress.layer, progress.layers));
   if (seconds > 0)
     parts.push_back(fmt::format("{:.1f} Mvoxel/s", static_cast<double>(progress.voxels) * 1e-6 / seconds));

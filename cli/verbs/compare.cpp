@@ -25,7 +25,10 @@ namespace {
 constexpr const char* kCompareExamples = R"(
 Examples:
   isoweave compare bone.ply full.ply
-  isoweave compare bone.ply full.ply --distances colours.ply --histogram 20)";
+  isoweave compare bone.ply full.ply --distances colours.ply --histogram 20
+
+Distances are measured from random points of one mesh to the other. max is the
+largest of these: between them a mesh may be farther away.)";
 
 constexpr std::int64_t kMostBins = 1'000'000;
 
@@ -131,6 +134,7 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.json) {
     std::string text = distances_text(distance, 1, a.unit.empty() ? "distance" : "distance in " + a.unit);
     if (voxel > 0) text += distances_text(distance, voxel, "in voxels");
+    text += fmt::format("max: of {} random points on each mesh\n", grouped(options.samples));
     if (options.bins > 0) {
       text += histogram_text(distance.a_to_b, distance.max, "A to B");
       text += histogram_text(distance.b_to_a, distance.max, "B to A");
@@ -161,7 +165,7 @@ void add_compare_verb(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
   verb->add_option("A", arguments->a, "Mesh")->required();
   verb->add_option("B", arguments->b, "Mesh")->required();
-  verb->add_option("--samples", arguments->samples, "Points on each mesh")->capture_default_str();
+  verb->add_option("--samples", arguments->samples, "Random points on each mesh")->capture_default_str();
   verb->add_option("--voxel", arguments->voxel,
                    "Length of a voxel, in the unit of A or in mm, um, ...: prints distances in voxels, too");
   verb->add_option("--histogram", arguments->histogram, "Counts the distances in so many equal parts, both ways");

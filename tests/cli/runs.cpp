@@ -252,7 +252,7 @@ TEST(CliMesh, ProgressGoesToStandardErrorWhenAskedFor) {
   std::vector<std::string> always = arguments;
   always.insert(always.end(), {"--progress", "always"});
   const Result result = succeed(folder, always);
-  EXPECT_NE(result.err.find("isoweave: 100 %, layer "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("isoweave: 100 %, finishing the output, layer "), std::string::npos) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
 }
@@ -318,6 +318,7 @@ TEST(CliCompare, WritesDistancesAsNumbersOfVertices) {
   const Result result = succeed(
       folder, {"compare", "small.ply", "full.ply", "--samples", "500", "--histogram", "5", "--distances", "d.ply"});
   EXPECT_NE(result.out.find("B to A (bars"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nmax: of 500 random points on each mesh\n"), std::string::npos) << result.out;
   const std::string header = files::read_bytes(folder / "d.ply").substr(0, 400);
   EXPECT_NE(header.find("property float quality\nelement face"), std::string::npos) << header;
   const auto digest = [&](const std::string& mesh) {
