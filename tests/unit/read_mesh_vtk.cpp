@@ -287,6 +287,28 @@ TEST(ReadLegacyVtk, ReadsFlatCellsOfUnstructuredGrids) {
 }
 
 // Cut off at 84 bytes, a file of zeros is as long as a binary STL without triangles.
+TEST(ReadLegacyVtk, LeavesGhostCellsOut) {
+  const auto polygons = [](const std::string& ghosts) {
+    return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n"
+           "VERTICES 1 2\n1 0\nPOLYGONS 2 8\n3 0 1 2\n3 0 2 3\nTRIANGLE_STRIPS 2 8\n3 0 1 3\n3 3 1 2\nCELL_DATA " +
+           ghosts;
+  };
+  const std::string field = "5\nFIELD FieldData 1\nvtkGhostType 1 5 unsigned_char\n";
+  const TriangleMesh mesh = parse("a.vtk", polygons(field + "1 0 1 32 2\n"));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 1, 2}}));
+  EXPECT_TRUE(has_note(mesh, "2 ghost cells"));
+  EXPECT_FALSE(has_note(mesh, "not kept"));
+  EXPECT_EQ(parse("a.vtk", polygons(field + "0 0 0 0 0\n")).triangles.size(), 4U);
+  EXPECT_TRUE(contains(failure("a.vtk", polygons("2\nFIELD FieldData 1\nvtkGhostType 1 2 unsigned_char\n0 1\n")),
+                       "expected a number in 'vtkGhostType' for each of 5 cells, found 2"));
+  const TriangleMesh grid =
+      parse("a.vtk",
+            "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n"
+            "CELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 2\n5 5\nCELL_DATA 2\nFIELD FieldData 1\nvtkGhostType 1 2 "
+            "unsigned_char\n1 0\n");
+  EXPECT_EQ(grid.triangles, (std::vector<Triangle>{{0, 2, 3}}));
+}
+
 TEST(ReadLegacyVtk, IsNotTakenForStlWhereItIsCutOff) {
   std::string cut = "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n";
   cut.resize(84, '\0');

@@ -1,6 +1,9 @@
 // Legacy VTK files with polygons: points, polygons and strips of PolyData, and the flat cells of an unstructured grid.
+#include <algorithm>
+
 #include "files/quoted.hpp"
 #include "mesh/read/mesh_input.hpp"
+#include "mesh/read/vtk_ghosts.hpp"
 #include "mesh/read/vtk_mesh.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/vtk/vtk_legacy_file.hpp"
@@ -18,6 +21,12 @@ struct Cells {
   }
 };
 
+// Polygons or strips, as they stand in one place of a file.
+struct Section {
+  Cells cells;
+  bool are_strips;
+};
+
 class VtkReader {
  public:
   explicit VtkReader(MeshInput& input) : input_(input), file_(input.file()), mesh_(input) {}
@@ -26,9 +35,11 @@ class VtkReader {
     for (auto words = file_.next_words(); !words.empty(); words = file_.next_words()) take_line(words);
     if (!has_points_) input_.fail("expected POINTS of PolyData, found none");
     if (grid_ && types_.size() != grid_->ends.size()) input_.fail("expected a type for each cell, found others");
-    for (std::size_t n = 0; grid_ && n < types_.size(); ++n) mesh_.add_cell(types_[n], (*grid_)[n]);
+    add_flat_cells();
     for (const LegacyArray& array : file_.points.all) read_point_data(array);
-    for (const LegacyArray& array : file_.cells.all) mesh_.leftovers.not_kept("cell array '" + array.name + "'");
+    for (const LegacyArray& array : file_.cells.all) {
+      if (!is_list_of_ghosts(array)) mesh_.leftovers.not_kept("cell array '" + array.name + "'");
+    }
     return mesh_.finish({});
   }
 
@@ -40,13 +51,14 @@ class VtkReader {
     } else if (key == "POINTS") {
       take_points(words);
     } else if (key == "POLYGONS") {
-      const Cells cells = read_cells(words);
-      for (std::size_t n = 0; n < cells.ends.size(); ++n) mesh_.add_polygon(cells[n]);
+      sections_.push_back({read_cells(words), false});
+      polygons_ += sections_.back().cells.ends.size();
     } else if (key == "TRIANGLE_STRIPS") {
-      const Cells cells = read_cells(words);
-      for (std::size_t n = 0; n < cells.ends.size(); ++n) mesh_.add_strip(cells[n]);
+      sections_.push_back({read_cells(words), true});
     } else if (key == "VERTICES" || key == "LINES") {
-      mesh_.leftovers.left_out(read_cells(words).ends.size(), key == "LINES" ? kLineCells : kPointCells);
+      const std::uint64_t count = read_cells(words).ends.size();
+      no_area_ += count;
+      mesh_.leftovers.left_out(count, key == "LINES" ? kLineCells : kPointCells);
     } else if (key == "CELLS") {
       grid_ = read_cells(words);
     } else if (key == "CELL_TYPES") {
@@ -54,6 +66,41 @@ class VtkReader {
     } else if (!file_.take_arrays(words)) {
       input_.fail("expected a part of PolyData, found '" + words[0].substr(0, 40) + "'");
     }
+  }
+
+  // Adds the cells that have an area, but for ghosts, which are known only at the end of the file. VTK numbers the
+  // cells of PolyData in the order vertices, lines, polygons, strips.
+  void add_flat_cells() {
+    VtkGhosts ghosts = read_ghosts();
+    std::uint64_t polygon = no_area_, strip = no_area_ + polygons_;
+    for (const auto& [cells, are_strips] : sections_) {
+      std::uint64_t& number = are_strips ? strip : polygon;
+      for (std::size_t n = 0; n < cells.ends.size(); ++n) {
+        if (ghosts.leave_out(number++)) continue;
+        are_strips ? mesh_.add_strip(cells[n]) : mesh_.add_polygon(cells[n]);
+      }
+    }
+    for (std::size_t n = 0; grid_ && n < types_.size(); ++n) {
+      if (!ghosts.leave_out(n)) mesh_.add_cell(types_[n], (*grid_)[n]);
+    }
+    mesh_.leftovers.left_out(ghosts.left_out(), kGhostCells);
+  }
+
+  static bool is_list_of_ghosts(const LegacyArray& array) {
+    return array.components == 1 && VtkGhosts::are_in(array.name, array.type);
+  }
+
+  VtkGhosts read_ghosts() {
+    const auto found = std::find_if(file_.cells.all.begin(), file_.cells.all.end(), is_list_of_ghosts);
+    if (found == file_.cells.all.end()) return {};
+    std::uint64_t cells = no_area_ + types_.size();
+    for (const Section& section : sections_) cells += section.cells.ends.size();
+    if (found->tuples != cells) {
+      input_.fail("expected a number in '" + found->name + "' for each of " + std::to_string(cells) + " cells, found " +
+                  std::to_string(found->tuples));
+    }
+    VtkNumbers numbers = open(*found);
+    return {numbers, cells};
   }
 
   void check_kind(const std::string& kind) const {
@@ -161,6 +208,8 @@ class VtkReader {
   LegacyFile file_;
   VtkMesh mesh_;
   bool has_points_ = false, has_normals_ = false, has_values_ = false;
+  std::vector<Section> sections_;
+  std::uint64_t no_area_ = 0, polygons_ = 0;  // cells of PolyData
   std::optional<Cells> grid_;
   std::vector<std::uint64_t> types_;
 };

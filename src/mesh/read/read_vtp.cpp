@@ -5,6 +5,7 @@
 
 #include "files/xml_tag.hpp"
 #include "mesh/read/mesh_input.hpp"
+#include "mesh/read/vtk_ghosts.hpp"
 #include "mesh/read/vtk_mesh.hpp"
 #include "volume/formats/formats.hpp"
 #include "volume/formats/vtk/vtk_xml.hpp"
@@ -184,44 +185,32 @@ class VtpReader {
   // polygons, strips.
   void read_flat_cells(const VtpPiece& piece) {
     using Corners = std::span<const std::uint64_t>;
-    const std::vector<bool> ghosts = ghosts_of(piece);
-    std::uint64_t left_out = 0;
-    const auto is_ghost = [&](std::uint64_t cell) {
-      const bool found = cell < ghosts.size() && ghosts[static_cast<std::size_t>(cell)];
-      left_out += found ? 1 : 0;
-      return found;
-    };
+    VtkGhosts ghosts = ghosts_of(piece);
     const std::uint64_t polys = piece.verts + piece.lines, strips = polys + piece.polys;
     read_cells(piece, "Polys", piece.polys, [&](std::size_t n, Corners corners) {
-      if (!is_ghost(polys + n)) mesh_.add_polygon(corners);
+      if (!ghosts.leave_out(polys + n)) mesh_.add_polygon(corners);
     });
     read_cells(piece, "Strips", piece.strips, [&](std::size_t n, Corners corners) {
-      if (!is_ghost(strips + n)) mesh_.add_strip(corners);
+      if (!ghosts.leave_out(strips + n)) mesh_.add_strip(corners);
     });
     const std::vector<std::uint64_t> kinds = kinds_of(piece);
     read_cells(piece, "Cells", piece.cells, [&](std::size_t n, Corners corners) {
-      if (!is_ghost(n)) mesh_.add_cell(kinds[n], corners);
+      if (!ghosts.leave_out(n)) mesh_.add_cell(kinds[n], corners);
     });
-    mesh_.leftovers.left_out(left_out, "ghost cells");
+    mesh_.leftovers.left_out(ghosts.left_out(), kGhostCells);
   }
 
   static bool is_list_of_ghosts(const VtkArray& array) {
-    return array.name == "vtkGhostType" && array.type == "UInt8" && array.components == 1;
+    return array.components == 1 && VtkGhosts::are_in(array.name, array.type);
   }
 
-  // Whether a cell is a ghost: a copy of one of another piece, or one that is refined or hidden. Empty where none is.
-  std::vector<bool> ghosts_of(const VtpPiece& piece) {
-    constexpr std::uint64_t kDuplicate = 1, kRefined = 8, kHidden = 32;
+  VtkGhosts ghosts_of(const VtpPiece& piece) {
     const Arrays& arrays = arrays_of(piece, "CellData");
     const auto found = std::find_if(arrays.begin(), arrays.end(), is_list_of_ghosts);
     if (found == arrays.end()) return {};
     const std::uint64_t cells = piece.verts + piece.lines + piece.polys + piece.strips + piece.cells;
     VtkNumbers numbers = open(*found, cells);
-    std::vector<bool> ghosts;
-    for (std::uint64_t n = 0; n < cells; ++n) {
-      ghosts.push_back((numbers.index() & (kDuplicate | kRefined | kHidden)) != 0);
-    }
-    return ghosts;
+    return {numbers, cells};
   }
 
   // The kinds of the cells of an unstructured grid.

@@ -17,6 +17,7 @@ namespace isoweave::mesh_io {
 
 inline constexpr std::string_view kPointCells = "cells that are points";
 inline constexpr std::string_view kLineCells = "lines";
+inline constexpr std::string_view kGhostCells = "ghost cells";
 
 // All failures are BadInput of the input.
 class VtkMesh {
