@@ -301,7 +301,7 @@ TEST(DicomMosaic, IsNoSlice) {
   EXPECT_TRUE(contains(refusal(folder.put("a", dicom(fields, slice(0)))), expected));
   folder.put("b", dicom(fields, slice(1)));
   EXPECT_TRUE(contains(refusal(folder / ""), expected));
-  // One that was cut up lies in several places.
+  // The slices of a mosaic that was cut up lie in several places, and may still be called one.
   const TempFolder cut;
   put_series(cut, fields);
   EXPECT_EQ(read_file<std::uint16_t>(cut / ""), kSamples);
@@ -325,16 +325,16 @@ TEST(DicomSegmentation, IsNotInterpolatedWhereFramesAreLeftOut) {
     std::string samples;
     for (std::size_t n = 0; n < frames.size(); ++n) samples += slice(n);
     std::string file = enhanced(frames, samples);
-    const std::string before = element(2, 2, "UI", image), after = element(2, 2, "UI", segmentation);
+    const std::string before = element(8, 0x16, "UI", image);
     const std::size_t place = file.find(before);
-    file.replace(place, before.size(), after);
-    auto group = static_cast<unsigned char>(file[place - 4]);
-    file[place - 4] = static_cast<char>(group + after.size() - before.size());
+    file.replace(place, before.size(), element(8, 0x16, "UI", segmentation));
+    folder.put("bare", file.substr(place));
     return folder.put("a", file);
   };
   EXPECT_EQ(open_volume(of_class({frame_at(0), frame_at(2), frame_at(4)}))->info().dims[2], 3);
   const std::string gap = of_class({frame_at(0), frame_at(2), frame_at(8)});
   EXPECT_TRUE(contains(refusal(gap), "expected a segmentation with all its slices, also the empty ones, found 3 of 5"));
+  EXPECT_TRUE(contains(refusal(folder / "bare"), "found 3 of 5")) << "without a meta group";
   OpenOptions options;
   options.uneven_slices = UnevenSlices::kMean;
   EXPECT_EQ(open_volume(gap, options)->info().dims[2], 3);

@@ -50,12 +50,6 @@ bool is_real(const PlyProperty& property) {
   return property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
 }
 
-// The rest of a line as one name, in which blanks may stand: programs give properties the names of their arrays.
-std::string_view name_in(std::string_view rest) {
-  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
-  return rest;
-}
-
 // Whether a property is a part of a place, direction or colour: such a number says nothing on its own.
 bool is_part_of_more(std::string_view name) {
   for (const char* known :
@@ -183,7 +177,7 @@ class HeaderReader {
       type = take_word(rest);
     }
     property.type = read_type(type);
-    property.name = name_in(rest);
+    property.name = trimmed(rest);  // with blanks: programs give properties the names of their arrays
     if (property.name.empty()) fail_at_line("'property TYPE NAME'");
     PlyElement& element = header_.elements.back();
     if (find_property(element, property.name)) fail("property '" + property.name + "' is given twice");

@@ -68,7 +68,8 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
     std::uint32_t tag;
     std::string DicomSlice::*field;
   };
-  static constexpr std::array<Known, 15> kKnown{{{0x00080018, &DicomSlice::image},
+  static constexpr std::array<Known, 16> kKnown{{{0x00080018, &DicomSlice::image},
+                                                 {0x00080016, &DicomSlice::media},
                                                  {0x00020002, &DicomSlice::media},
                                                  {0x00020010, &DicomSlice::syntax},
                                                  {0x00080008, &DicomSlice::image_type},

@@ -19,7 +19,7 @@ struct DicomSlice {
   std::string file;
   std::string path;    // of the file, for messages; with the number of the frame where there are several
   std::string syntax;  // Transfer Syntax UID
-  std::string media;   // SOP class of the file, by its first group
+  std::string media;   // SOP class, by the first group of the file or by the image
   std::string image;   // SOP Instance UID
   std::string series;  // Series Instance UID; programs that hide patients may drop it
   std::string description;
