@@ -1,8 +1,10 @@
-// Closing the gaps in an array, in place: every block closes its own, then the blocks move together.
+// Closing the gaps in an array, in place. Every element moves once: the fewer are left, the more blocks move side by
+// side.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -39,25 +41,21 @@ class Compaction {
   // Moves the elements; change(element) is called for each that is kept.
   template <class Container, class Change>
   void apply(Container& array, const Change& change) const {
-    using T = std::remove_reference_t<decltype(array[0])>;
-    static_assert(std::is_trivially_copyable_v<T>);
-    blocks(array.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      std::size_t next = begin;
-      for (std::size_t n = begin; n < end; ++n) {
+    static_assert(std::is_trivially_copyable_v<std::remove_reference_t<decltype(array[0])>>);
+    const auto move_block = [&](std::size_t block) {
+      std::size_t next = start_[block];
+      for (std::size_t n = block * kBlock; n < std::min((block + 1) * kBlock, array.size()); ++n) {
         if (within_[n] == kDropped) continue;
         if (next != n) array[next] = array[n];
         change(array[next++]);
       }
-    });
+    };
     // Side by side go blocks that end up below the first of them.
-    for (std::size_t block = 1; block * kBlock < array.size();) {
+    for (std::size_t block = 0; block * kBlock < array.size();) {
       std::size_t end = block + 1;
       while (end * kBlock < array.size() && start_[end + 1] <= block * kBlock) ++end;
-      executor_.for_each(static_cast<std::int64_t>(end - block), 1, [&](std::int64_t n) {
-        const std::size_t own = block + static_cast<std::size_t>(n);
-        std::memmove(array.data() + start_[own], array.data() + own * kBlock,
-                     (start_[own + 1] - start_[own]) * sizeof(T));
-      });
+      executor_.for_each(static_cast<std::int64_t>(end - block), 1,
+                         [&](std::int64_t n) { move_block(block + static_cast<std::size_t>(n)); });
       block = end;
     }
     array.resize(kept());
