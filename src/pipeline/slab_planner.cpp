@@ -41,12 +41,15 @@ void SlabPlanner::note_extracted(const SlabCounts& slab) {
   recent_triangles_ = slab.triangles;
 }
 
-// Compares the zone with the formula, a fit: surfaces with more vertices, or more kept beside triangles, take more.
+// Compares the zone with the formula, a fit: surfaces with more vertices, or more kept beside triangles, take more. The
+// zone has room for the most triangles that it has held, as it never shrinks. The larger it is, the more the comparison
+// tells: small ones are rounded up to whole pages.
 void SlabPlanner::weigh_zone(const SlabRecord& record, const Held& held) {
   constexpr std::uint64_t kEnough = 20'000;  // triangles; with fewer the fixed part weighs too much
-  if (cap_ == 0 || record.live_triangles < kEnough) return;
-  const double expected = memory_model(held, 1).zone(static_cast<double>(record.live_triangles));
-  if (expected > 0) heavier_ = std::max(heavier_, static_cast<double>(held.zone_bytes) / expected);
+  most_held_ = std::max(most_held_, record.live_triangles);
+  if (cap_ == 0 || most_held_ < kEnough) return;
+  const double expected = memory_model(held, 1).zone(static_cast<double>(most_held_));
+  if (expected > 0) heavier_ = std::max(static_cast<double>(held.zone_bytes) / expected, 1.0);
 }
 
 void SlabPlanner::serialize(StateWriter& state) const {

@@ -60,7 +60,8 @@ class SlabPlanner {
   const std::uint64_t reader_;
   const std::string folder_;  // of states; empty: none are saved
   const std::int64_t layers_;
-  double heavier_ = 1;  // MemoryModel's
+  double heavier_ = 1;           // MemoryModel's
+  std::uint64_t most_held_ = 0;  // triangles
   std::int64_t recent_layers_ = 0;
   std::uint64_t recent_triangles_ = 0;
 };

@@ -265,5 +265,23 @@ TEST(CliMemory, AnArrayWithoutChunksIsAnsweredUnderACap) {
   EXPECT_GT(named_cap(run(folder.path(), capped)), 200U);
 }
 
+// The zone keeps the room of its thickest slab. Slabs that follow are thinner, which says nothing about a triangle.
+TEST(CliMemory, ThinnerSlabsDoNotMakeARunOutOfACapThatIsEnough) {
+  if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
+  const files::Folder folder;
+  const std::vector<std::string> noise{
+      "mesh", "generate:noise:96x96x200:uint8", "-o", "out.ply", "--iso", "127.5", "--open", "--report", "out.json"};
+  ASSERT_EQ(run(folder.path(), noise).code, 0);
+  const Json free_run = report(folder);
+  for (const char* cap : {"52M", "53M"}) {
+    std::vector<std::string> capped = noise;
+    capped.insert(capped.end(), {"--memory", cap, "--threads", "1"});
+    const Result result = run(folder.path(), capped);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(report(folder).at("digest"), free_run.at("digest"));
+    EXPECT_LT(report(folder).at("memory").at("peak_bytes"), 52'000'000) << cap;
+  }
+}
+
 }  // namespace
 }  // namespace isoweave::testing::cli_memory_test
