@@ -9,6 +9,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "help/help_text.hpp"
 #include "help/manual.hpp"
 #include "help/option_table.hpp"
@@ -159,9 +163,18 @@ int run(const std::vector<std::string>& given) {
   return 0;
 }
 
+// glibc takes larger and larger blocks from its heaps, once such blocks have been freed. The lists of a slab have other
+// sizes than those of the last one, so parts of the heaps stay unused. With a fixed bound, blocks above it go back.
+void give_back_large_blocks() {
+#ifdef __GLIBC__
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  give_back_large_blocks();
   ignore_write_signals();
   occupy_standard_streams();
   try {
