@@ -23,7 +23,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::array<std::uint64_t, 2> kNumbers{0, 1};
-constexpr std::string_view kFormat = "isoweave state 14\n";  // the number changes with fields and rules
+constexpr std::string_view kFormat = "isoweave state 15\n";  // the number changes with fields and rules
 
 constexpr std::uint64_t kMostMarks = 1000;  // the most marks of a state file, which anyone may have written
 

@@ -40,6 +40,10 @@ std::vector<double> level_errors(const SimplifyOptions& options, double error, d
   if (!options.levels.empty() && options.triangles > 0) {
     throw std::invalid_argument("levels of detail: expected errors alone, found a number of triangles as well");
   }
+  if (options.levels.size() > kMostLevels) {
+    throw std::invalid_argument("levels of detail: expected at most " + std::to_string(kMostLevels) +
+                                " finer ones, found " + std::to_string(options.levels.size()));
+  }
   for (const Length& level : options.levels) {
     const double length = length_in(level, side);
     if (!(length >= 0 && length < error && (errors.empty() || length > errors.back()))) {

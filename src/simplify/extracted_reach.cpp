@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "simplify/extracted_surface.hpp"
+#include "simplify/point_distance.hpp"
 #include "simplify/prism.hpp"
 #include "simplify/projected_surface.hpp"
 
@@ -16,13 +17,17 @@ using measure::dot;
 using measure::Vector;
 using measure::vector_of;
 
-constexpr double kUsualReach = 1;     // of the distance, beyond the largest triangle: longer parts are seldom near one
-constexpr double kFinest = 1.0 / 16;  // of the distance
-constexpr double kSmall = 1.0 / 4;    // of the distance: a part for which all that is near is looked at
-constexpr double kSeenHeight = 0.93;  // of the distance: a part that lies as high is within it however it is looked at
-constexpr double kWide = 8;           // distances: the radius of a part that is worth seeing the surface around it
-constexpr double kNarrow = 3;         // distances: the radius of a part that takes no longer to cut
+constexpr double kUsualReach = 1;      // of the distance, beyond the largest triangle: longer parts are seldom near one
+constexpr double kFinest = 1.0 / 16;   // of the distance
+constexpr double kSmall = 1.0 / 4;     // of the distance: a part for which all that is near is looked at
+constexpr double kSeen = 0.93;         // of the distance: within kSure, also when it is rounded up to a whole bound
+constexpr double kLeastSeen = 0.5;     // of the distance: what is nearer is not told apart
+constexpr double kWide = 3;            // distances: the radius of a part that is worth seeing the surface around it
+constexpr int kMostNear = 4;           // triangles of a cell, of which the nearest is taken
+constexpr double kPlainly = 1 + 1e-9;  // distances: farther away than rounding goes
 constexpr double kMostSeenCells = 1024;  // of a grid, around a part
+
+static_assert(kSeen < ExtractedSurface::kSure && ExtractedSurface::kSure < 1 - kFinest);
 
 // Puts the longest side first.
 void turn_longest_side_first(ExtractedSurface::Corners& t) {
@@ -57,8 +62,8 @@ class TriangleSet {
 
 }  // namespace
 
-ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, double most, std::uint64_t* looks) {
-  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), {}, 0, most, looks};
+ExtractedSurface::Part ExtractedSurface::part_of(const Corners& corners, double most) {
+  Part part{corners, (1.0 / 3) * (corners[0] + corners[1] + corners[2]), {}, 0, most};
   for (std::size_t n = 0; n < 4; ++n) {
     const Vector& p = n < 3 ? corners[n] : part.centre;
     part.points.x[n] = p[0];
@@ -86,21 +91,43 @@ ExtractedSurface::Found ExtractedSurface::find_near(const Part& part, const Piec
   constexpr unsigned kCorners = 7;
   constexpr unsigned kCentre = 8;
   const auto& [a, b, c] = piece.triangles[number];
+  if (part.looks != nullptr) ++*part.looks;
   const unsigned near = kernels_.points_within(part.most * part.most, part.points,
                                                {&piece.positions[a], &piece.positions[b], &piece.positions[c]});
-  if ((near & kCorners) == kCorners) return Found::kAll;
+  if ((near & kCorners) == kCorners) {
+    if (part.last != nullptr) *part.last = {&piece, number};
+    if (part.nearest != nullptr) measure_corners(part, {piece.positions[a], piece.positions[b], piece.positions[c]});
+    return Found::kAll;
+  }
   return (near & kCentre) != 0 ? std::max(known, Found::kCentre) : known;
 }
 
+// Lowers the part's least distance to that of its corners from a triangle.
+void ExtractedSurface::measure_corners(const Part& part, const std::array<Vec3, 3>& triangle) {
+  double farthest = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    farthest = std::max(farthest, distance({part.points.x[n], part.points.y[n], part.points.z[n]}, triangle));
+  }
+  *part.nearest = std::min(*part.nearest, farthest);
+}
+
+// Looks at the triangles of a cell up to one that the part is near. Their order depends on slabs; so where the nearest
+// is asked for, all are looked at, or so many that the part is near that nobody asks any more.
 ExtractedSurface::Found ExtractedSurface::find_in_cell(const Part& part, std::uint64_t key,
                                                        std::span<const Piece> pieces) const {
   Found found = Found::kNothing;
+  int near = 0;
   for (const Piece& piece : pieces) {
     const Slot& slot = piece.slots[slot_of(piece, key)];
     for (const std::uint32_t number : std::span(piece.listed.data() + slot.first, slot.count)) {
-      if (part.looks != nullptr) ++*part.looks;
-      found = find_near(part, piece, number, found);
-      if (found == Found::kAll) return found;
+      const Found one = find_near(part, piece, number, found);
+      found = std::max(found, one);
+      if (one != Found::kAll) continue;
+      if (part.nearest == nullptr) return found;
+      if (++near > kMostNear) {
+        *part.nearest = std::numeric_limits<double>::infinity();
+        return found;
+      }
     }
   }
   return found;
@@ -159,6 +186,10 @@ ExtractedSurface::Found ExtractedSurface::find_above(const Part& part, std::span
 // Looks into the cells around the centre, ring by ring. For a part that can be cut some more, the search ends at the
 // first ring that is near: the surface farther away will do no better.
 ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
+  if (part.last != nullptr && part.last->piece != nullptr &&
+      find_near(part, *part.last->piece, part.last->triangle, Found::kNothing) == Found::kAll) {
+    return Found::kAll;
+  }
   const std::span<const Piece> pieces = pieces_between(part.centre[2] - part.most, part.centre[2] + part.most);
   if (pieces.empty()) return Found::kNothing;
   Found found = find_above(part, pieces);
@@ -175,17 +206,19 @@ ExtractedSurface::Found ExtractedSurface::find(const Part& part) const {
 // A look at a face. Its parts are cut in depth: one sibling waits for each cut.
 class ExtractedSurface::Look {
  public:
-  Look(const ExtractedSurface& surface, const Corners& face, double most, std::uint64_t* looks)
-      : surface_(surface), most_(most), looks_(looks), has_normal_(seen_.look_at(face)) {
+  Look(const ExtractedSurface& surface, const Corners& face, double most)
+      : surface_(surface), most_(most), has_normal_(seen_.look_at(face)) {
     open_[count_++] = {face, false};
   }
 
   Reach reach() {
     for (int looked_at = 0; count_ > 0; ++looked_at) {
       Open next = open_[--count_];
-      Part part = part_of(next.corners, most_, looks_);
-      if (is_seen_covered(part, next.is_seen)) continue;
-      const Found found = surface_.is_long(part) ? Found::kCentre : surface_.find(part);
+      const Part part = part_of(next.corners, most_);
+      const Seen seen = see(part, next.is_seen);
+      if (seen == Seen::kCovered) continue;
+      if (seen == Seen::kBeyond) return Reach::kBeyond;
+      const Found found = surface_.is_long(part) ? Found::kCentre : find(part);
       if (found == Found::kAll) continue;
       if (found == Found::kNothing || part.is_below(kFinest * most_)) return Reach::kBeyond;
       if (count_ + 2 > open_.size() || looked_at == kMostParts) return Reach::kBeyond;
@@ -194,17 +227,46 @@ class ExtractedSurface::Look {
     return Reach::kWithin;
   }
 
+  const Looked& looked() const { return looked_; }
+
  private:
   struct Open {
     Corners corners;
     bool is_seen;  // the surface around this part, and maybe more
   };
 
-  // Whether a wide part, or one that was cut from one, is seen to lie near the surface.
-  bool is_seen_covered(const Part& part, bool& is_seen) {
-    if (!has_normal_ || part.is_below((is_seen ? kNarrow : kWide) * most_)) return false;
-    is_seen = is_seen || see_around(part);
-    return is_seen && seen_.covers(part.corners, kSeenHeight * most_);
+  enum class Seen : std::uint8_t { kNothing, kCovered, kBeyond };
+
+  // Whether a part is seen to lie near the surface, where it is a wide one, or was cut from one.
+  Seen see(const Part& part, bool& is_seen) {
+    if (!has_normal_) return Seen::kNothing;
+    if (is_seen) return seen_.covers(part.corners) ? Seen::kCovered : Seen::kNothing;
+    if (part.is_below(kWide * most_)) return Seen::kNothing;
+    is_seen = see_around(part);
+    if (!is_seen) return Seen::kNothing;
+    double farthest = kLeastSeen * most_;
+    const bool covered = seen_.survey(part.corners, kSeen * most_, farthest);
+    note_distance(farthest);
+    if (covered) return Seen::kCovered;
+    return seen_.far_point() && surface_.is_beyond(*seen_.far_point(), kPlainly * most_) ? Seen::kBeyond
+                                                                                         : Seen::kNothing;
+  }
+
+  // Notes how far a part is. What is not within kSeen may be as far as is allowed.
+  void note_distance(double distance) {
+    looked_.farthest = distance <= kSeen * most_ ? std::max(looked_.farthest, distance) : most_;
+  }
+
+  // Finds a triangle that a part is near: the nearest one, as long as all parts so far are within kSeen.
+  Found find(Part part) {
+    double nearest = std::numeric_limits<double>::infinity();
+    const bool asks_for_nearest = looked_.farthest <= kSeen * most_;
+    part.looks = &looked_.comparisons;
+    part.nearest = asks_for_nearest ? &nearest : nullptr;
+    part.last = asks_for_nearest ? nullptr : &last_;
+    const Found found = surface_.find(part);
+    if (asks_for_nearest && found == Found::kAll) note_distance(nearest);
+    return found;
   }
 
   struct Box {
@@ -213,7 +275,7 @@ class ExtractedSurface::Look {
 
   // Gathers the triangles that come near a part. Returns false where they are too many.
   bool see_around(const Part& part) {
-    const double height = kSeenHeight * most_;
+    const double height = kSeen * most_;
     Box around;
     for (std::size_t n = 0; n < 3; ++n) {
       const auto [low, high] = std::minmax({part.corners[0][n], part.corners[1][n], part.corners[2][n]});
@@ -274,21 +336,28 @@ class ExtractedSurface::Look {
 
   const ExtractedSurface& surface_;
   double most_;
-  std::uint64_t* looks_;
   ProjectedSurface seen_;
   bool has_normal_;
+  Looked looked_;
+  Named last_;
   std::array<Open, 128> open_;
   std::size_t count_ = 0;
 };
 
-Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks) const {
+Reach ExtractedSurface::reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, Looked* looked) const {
   if (std::max({a.z, b.z, c.z}) + most > complete_below_) return Reach::kUnknown;
-  return Look(*this, {vector_of(a), vector_of(b), vector_of(c)}, most, looks).reach();
+  Look look(*this, {vector_of(a), vector_of(b), vector_of(c)}, most);
+  const Reach answer = look.reach();
+  if (looked != nullptr) *looked = look.looked();
+  return answer;
 }
 
 bool ExtractedSurface::is_beyond(const Vec3& p, double most) const {
-  const Vector at = vector_of(p);
-  return p.z + most <= complete_below_ && find(part_of({at, at, at}, most, nullptr)) != Found::kAll;
+  return p.z + most <= complete_below_ && is_beyond(vector_of(p), most);
+}
+
+bool ExtractedSurface::is_beyond(const Vector& p, double most) const {
+  return find(part_of({p, p, p}, most)) != Found::kAll;
 }
 
 }  // namespace isoweave

@@ -27,6 +27,12 @@ class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
 
+  // What a look at a triangle has told besides its answer.
+  struct Looked {
+    std::uint64_t comparisons = 0;  // of a part with a triangle
+    double farthest = 0;            // where it is within the distance: the distance of all its points, or more
+  };
+
   // most: the distance, above 0. cell: lengths of a box in which there are a few triangles. largest: lengths of a box
   // that no triangle exceeds.
   ExtractedSurface(double most, const Vec3& cell, const Vec3& largest);
@@ -44,12 +50,12 @@ class ExtractedSurface {
   // Whether all of a triangle lies within a distance, which must be no larger, but for rounding, than the one that was
   // named first; unknown where later pieces may come within it. The triangle is cut at its longest side until the
   // corners of each part are within the distance of one and the same triangle of the surface. The points within the
-  // distance of a triangle form a convex set, so all of the part is within it then. A wide part is not cut where the
-  // surface is seen to lie above or below all of it within 0.93 of the distance (ProjectedSurface). Parts smaller than
-  // a sixteenth of the distance are not cut again. So a triangle within 15/16 of the distance is always found to be
-  // within it, unless that takes more parts than kMostParts. A triangle beyond the distance never is. May be called by
-  // several threads at the same time. looks: unless null, counts the comparisons of a part with a triangle.
-  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, std::uint64_t* looks = nullptr) const;
+  // distance of a triangle form a convex set, so all of the part is within it then. Parts smaller than a sixteenth of
+  // the distance are not cut again. So a triangle that is within kSure of the distance is always found to be within it,
+  // unless that takes more parts than kMostParts. A triangle beyond the distance never is. A wide part is not cut where
+  // the surface is seen to lie above or below all of it within kSure of the distance (ProjectedSurface). May be called
+  // by several threads at the same time. looked: unless null, what there is to know besides.
+  Reach reach(const Vec3& a, const Vec3& b, const Vec3& c, double most, Looked* looked = nullptr) const;
 
   // Whether a point is known to lie beyond a distance, as for reach().
   bool is_beyond(const Vec3& p, double most) const;
@@ -60,6 +66,9 @@ class ExtractedSurface {
   // away from 0 than `farthest` along an axis.
   void serialize(StateWriter& state) const;
   void serialize(StateReader& state, const Vec3& farthest);
+
+  // The share of a distance within which all is sure to be found near.
+  static constexpr double kSure = 0.937;
 
  private:
   using Cell = std::array<std::int64_t, 3>;
@@ -96,14 +105,22 @@ class ExtractedSurface {
     double lowest = std::numeric_limits<double>::infinity();    // of this piece and of all behind it
   };
 
+  // A triangle of some piece, or none.
+  struct Named {
+    const Piece* piece = nullptr;
+    std::uint32_t triangle = 0;
+  };
+
   // A part of the triangle that is asked about.
   struct Part {
     Corners corners;
     measure::Vector centre;
-    FourPoints points;     // the corners and the centre
-    double radius;         // of the ball around the centre that holds it, squared
-    double most;           // distance
-    std::uint64_t* looks;  // to be counted, or null
+    FourPoints points;               // the corners and the centre
+    double radius;                   // of the ball around the centre that holds it, squared
+    double most;                     // distance
+    std::uint64_t* looks = nullptr;  // counts comparisons, where given
+    double* nearest = nullptr;       // the least distance that all corners have from a triangle, where asked for
+    Named* last = nullptr;  // the triangle that an earlier part was near, or none, and then the one of this part
 
     bool is_below(double length) const { return radius <= length * length; }
   };
@@ -133,7 +150,7 @@ class ExtractedSurface {
     }
   }
 
-  static Part part_of(const Corners& corners, double most, std::uint64_t* looks);
+  static Part part_of(const Corners& corners, double most);
   bool is_long(const Part& part) const;
   double length(int level, std::size_t axis) const { return lengths_[static_cast<std::size_t>(level)][axis]; }
   Cell cell_of(const measure::Vector& p, int level) const;
@@ -150,10 +167,12 @@ class ExtractedSurface {
   void push_piece(Piece&& piece);
   std::span<const Piece> pieces_between(double low, double high) const;
   Found find(const Part& part) const;
+  bool is_beyond(const measure::Vector& p, double most) const;
   Found find_above(const Part& part, std::span<const Piece> pieces) const;
   Found find_in_ring(const Part& part, const Cell& centre, std::int64_t ring, std::span<const Piece> pieces) const;
   Found find_in_cell(const Part& part, std::uint64_t key, std::span<const Piece> pieces) const;
   static Corners corners_of(const Piece& piece, std::uint32_t number);
+  static void measure_corners(const Part& part, const std::array<Vec3, 3>& triangle);
   Found find_near(const Part& part, const Piece& piece, std::uint32_t number, Found known) const;
 
   const Kernels& kernels_ = kernels();

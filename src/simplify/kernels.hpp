@@ -37,6 +37,9 @@ struct FaceSums {
 // Rounding, in terms of lengths and areas that are seen from above: what touches a side or a face counts as inside.
 inline constexpr double kTouching = 1e-9;
 
+// The least weight of a corner at a point, for quotients. A bound that would have to be larger is of no use.
+inline constexpr double kLeastWeight = 1e-6;
+
 // Sides of faces as they are seen from above: two coordinates across, and the height.
 struct alignas(64) SeenSides {
   static constexpr std::size_t kRoom = 64;
@@ -44,10 +47,11 @@ struct alignas(64) SeenSides {
 
   double x[kRoom], y[kRoom], z[kRoom];                    // where a side begins
   double along_x[kRoom], along_y[kRoom], along_z[kRoom];  // from there to its end
-  double bound[kRoom];                                    // of the faces beside it
+  double bound[kRoom], along_bound[kRoom];                // of the faces beside it, where it begins, and from there
   std::size_t count = 0;
 
-  void add(const Vec3& from, const Vec3& to, double bound_beside) {
+  // bound_from, bound_to: the larger ones of the faces beside it.
+  void add(const Vec3& from, const Vec3& to, double bound_from, double bound_to) {
     const Vec3 along = to - from;
     x[count] = from.x;
     y[count] = from.y;
@@ -55,12 +59,13 @@ struct alignas(64) SeenSides {
     along_x[count] = along.x;
     along_y[count] = along.y;
     along_z[count] = along.z;
-    bound[count++] = bound_beside;
+    bound[count] = bound_from;
+    along_bound[count++] = bound_to - bound_from;
   }
 
   // Fills the last vectors with sides that cross nothing.
   void pad() {
-    while (count % kLanes != 0) add({}, {}, 0);
+    while (count % kLanes != 0) add({}, {}, 0, 0);
   }
 };
 
@@ -71,10 +76,11 @@ struct alignas(64) SeenTriangles {
   double x[3][kRoom], y[3][kRoom], height[3][kRoom];  // of the corners
   std::size_t count = 0;
 
-  // Fills the last vectors, of which nobody asks, with numbers.
+  // Fills the last vectors with triangles that lie over no point, as they have no area.
   void pad() {
     for (std::size_t n = count; n % SeenSides::kLanes != 0; ++n) {
       for (std::size_t corner = 0; corner < 3; ++corner) x[corner][n] = y[corner][n] = height[corner][n] = 0;
+      x[1][n] = 1;
     }
   }
 };
@@ -107,10 +113,8 @@ struct SeenPart {
 
 // How a triangle lies over a part of a face, in bits.
 namespace seen {
-inline constexpr std::int64_t kTouches = 1;       // its first side touches the part; 2 and 4: its other sides
-inline constexpr std::int64_t kOverCentre = 8;    // it lies over the part's centre
-inline constexpr std::int64_t kFacesUp = 16;      // the centre is to the left of its first side
-inline constexpr std::int64_t kNowhereHigh = 32;  // its corners are all within the height
+inline constexpr std::int64_t kTouches = 1;     // its first side touches the part; 2 and 4: its other sides
+inline constexpr std::int64_t kOverCentre = 8;  // it lies over the part's centre
 }  // namespace seen
 
 // Four points, by coordinates.
@@ -137,9 +141,10 @@ struct Kernels {
   // numbers that a does not have.
   int (*count_common)(std::span<const Index> a, const Index* b, std::size_t count);
 
-  // The largest sum, where a side from the origin crosses others, of the height between the two and the bound beside
-  // the other one. 0 where it crosses none.
-  double (*height_of_crossings)(const Vec3& to, const SeenSides& sides);
+  // The least bound at the origin, of a side from there to a point with a bound of its own, that makes the side's bound
+  // no smaller, wherever it crosses others, than the height between the two and the other one's bound together. 0 where
+  // it crosses none.
+  double (*bound_of_crossings)(const Vec3& to, double bound, const SeenSides& sides);
 
   // Which of four points are within a distance of a triangle: bit n is for point n. most: the distance, squared.
   unsigned (*points_within)(double most, const FourPoints& points, const std::array<const Vec3*, 3>& triangle);
@@ -147,6 +152,9 @@ struct Kernels {
   // How each of some triangles lies over a part of a face, in bits of `seen`: 0 where it lies beside the part, or all
   // above or all below what is allowed.
   void (*lie_over)(const SeenTriangles& triangles, const SeenPart& part, std::uint8_t* bits);
+
+  // How many triangles that face up lie over a point, less those that face down.
+  int (*count_over)(const SeenTriangles& triangles, double x, double y);
 };
 
 // The best kernels for this processor.

@@ -13,7 +13,8 @@ template <std::size_t N>
 class KernelsInLanes {
  public:
   static constexpr Kernels table() {
-    return {edge_costs, measure, sum_faces, keeps_sides, count_common, height_of_crossings, points_within, lie_over};
+    return {edge_costs,         measure,       sum_faces, keeps_sides, count_common,
+            bound_of_crossings, points_within, lie_over,  count_over};
   }
 
  private:
@@ -150,7 +151,7 @@ class KernelsInLanes {
     return common;
   }
 
-  static double height_of_crossings(const Vec3& to, const SeenSides& sides) {
+  static double bound_of_crossings(const Vec3& to, double bound, const SeenSides& sides) {
     Real most = 0;
     for (std::size_t n = 0; n < sides.count; n += N) {
       const Real x = Real::load(sides.x + n);
@@ -161,13 +162,16 @@ class KernelsInLanes {
       const Real s = (x * along_y - y * along_x) / turn;
       const Real t = (x * to.y - y * to.x) / turn;
       const Real difference = s * to.z - (Real::load(sides.z + n) + t * Real::load(sides.along_z + n));
-      const Real height = select<N>(difference > 0, difference, -difference) + Real::load(sides.bound + n);
+      const Real other = Real::load(sides.bound + n) + t * Real::load(sides.along_bound + n);
+      const Real rest = absolute(difference) + other - s * bound - kBoundRounding;
+      const Real weight = select<N>(1 - s > kLeastWeight, 1 - s, kLeastWeight);
+      const Real least = rest / weight;
       const auto inside = (s > -kTouching) & (1 + kTouching > s) & (t > -kTouching) & (1 + kTouching > t);
-      most = select<N>(inside & (height > most), height, most);
+      most = select<N>(inside & (least > most), least, most);
     }
-    double heights[N];
-    most.store(heights);
-    return *std::max_element(heights, heights + N);
+    double bounds[N];
+    most.store(bounds);
+    return *std::max_element(bounds, bounds + N);
   }
 
   static constexpr std::size_t kFew = std::min<std::size_t>(N, 4);  // lanes for four points
@@ -237,28 +241,37 @@ class KernelsInLanes {
 
   static Real absolute(const Real& a) { return select<N>(a > 0, a, -a); }
 
+  // The line through two corners, which are taken in an order of their own, so that the triangle beyond gets the same
+  // answer.
+  struct SideLine {
+    Mask turned;
+    Real left_x, left_y, from;
+
+    [[gnu::always_inline]] SideLine(const Real& ax, const Real& ay, const Real& bx, const Real& by)
+        : turned((ax > bx) | ((ax >= bx) & (bx >= ax) & (ay > by))) {
+      const Real from_x = select<N>(turned, bx, ax);
+      const Real from_y = select<N>(turned, by, ay);
+      left_x = from_y - select<N>(turned, ay, by);
+      left_y = select<N>(turned, ax, bx) - from_x;
+      from = left_x * from_x + left_y * from_y;
+    }
+
+    // Whether a point is to the left of the way from the first corner to the second.
+    Mask has_to_its_left(double x, double y) const { return (left_x * x + left_y * y >= from) ^ turned; }
+  };
+
   // Whether the side between two corners touches the part. It does not where a line parts the two: a side of the part,
-  // or the side itself, whose ends are taken in an order of their own, so that the triangle beyond gets the same
-  // answer. left: whether the centre is to the left of the side.
+  // or the side itself. left: whether the centre is to the left of the side.
   template <std::size_t kFrom, std::size_t kTo>
   [[gnu::always_inline]] static Mask touches(const SeenLanes& corners, const SeenPart& part, Mask& left) {
-    const Real& ax = corners.x[kFrom];
-    const Real& ay = corners.y[kFrom];
-    const Real& bx = corners.x[kTo];
-    const Real& by = corners.y[kTo];
-    const Mask turned = (ax > bx) | ((ax >= bx) & (bx >= ax) & (ay > by));
-    const Real from_x = select<N>(turned, bx, ax);
-    const Real from_y = select<N>(turned, by, ay);
-    const Real left_x = from_y - select<N>(turned, ay, by);
-    const Real left_y = select<N>(turned, ax, bx) - from_x;
-    const Real from = left_x * from_x + left_y * from_y;
-    const Real reach = Real(part.slack) * (absolute(left_x) + absolute(left_y));
-    left = (left_x * part.centre_x + left_y * part.centre_y >= from) ^ turned;
+    const SideLine line(corners.x[kFrom], corners.y[kFrom], corners.x[kTo], corners.y[kTo]);
+    const Real reach = Real(part.slack) * (absolute(line.left_x) + absolute(line.left_y));
+    left = line.has_to_its_left(part.centre_x, part.centre_y);
     Mask parted{};
     Mask all_left = ~Mask{};
     Mask all_right = ~Mask{};
     unrolled<3>([&](auto n) {
-      const Real side = left_x * part.x[n] + left_y * part.y[n] - from;
+      const Real side = line.left_x * part.x[n] + line.left_y * part.y[n] - line.from;
       all_left &= side > reach;
       all_right &= -reach > side;
       parted |= corners.beside[n][kFrom] & corners.beside[n][kTo];
@@ -272,18 +285,13 @@ class KernelsInLanes {
                 (touches<1, 2>(corners, part, left[1]) & (2 * seen::kTouches)) |
                 (touches<2, 0>(corners, part, left[2]) & (4 * seen::kTouches));
     bits |= ~(left[0] ^ left[1]) & ~(left[1] ^ left[2]) & seen::kOverCentre;
-    Mask inside = ~Mask{};
     Mask above = ~Mask{};
     Mask below = ~Mask{};
     unrolled<3>([&](auto n) {
-      const Mask is_above = corners.height[n] > part.most;
-      const Mask is_below = -corners.height[n] > part.most;
-      inside &= ~(is_above | is_below);
-      above &= is_above;
-      below &= is_below;
+      above &= corners.height[n] > part.most;
+      below &= -corners.height[n] > part.most;
     });
-    const Mask is_of_use = (bits != Mask{}) & ~above & ~below;
-    return (bits | (left[0] & seen::kFacesUp) | (inside & seen::kNowhereHigh)) & is_of_use;
+    return bits & ~above & ~below;
   }
 
   static void lie_over(const SeenTriangles& triangles, const SeenPart& part, std::uint8_t* bits) {
@@ -295,6 +303,24 @@ class KernelsInLanes {
       const Mask out = all<N>(beside) ? Mask{} : bits_over(corners, part) & ~beside;
       unrolled<N>([&](auto n) { bits[begin + n] = static_cast<std::uint8_t>(out[n.value]); });
     }
+  }
+
+  static int count_over(const SeenTriangles& triangles, double px, double py) {
+    Mask sum{};
+    for (std::size_t begin = 0; begin < triangles.count; begin += N) {
+      Real x[3], y[3];
+      unrolled<3>([&](auto n) {
+        x[n] = Real::load(triangles.x[n] + begin);
+        y[n] = Real::load(triangles.y[n] + begin);
+      });
+      const Mask ab = SideLine(x[0], y[0], x[1], y[1]).has_to_its_left(px, py);
+      const Mask bc = SideLine(x[1], y[1], x[2], y[2]).has_to_its_left(px, py);
+      const Mask ca = SideLine(x[2], y[2], x[0], y[0]).has_to_its_left(px, py);
+      sum += ~(ab | bc | ca) - (ab & bc & ca);
+    }
+    std::int64_t total = 0;
+    unrolled<N>([&](auto n) { total += sum[n.value]; });
+    return static_cast<int>(total);
   }
 };
 

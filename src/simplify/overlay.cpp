@@ -7,7 +7,6 @@ namespace isoweave {
 namespace {
 
 constexpr double kLeastArea = 1e-6;  // of a face that is seen, in terms of the mean new one
-constexpr double kRounding = 1e-6;   // units of bounds, so that heights of 0 do not add up
 constexpr int kTurns = 8;            // of the direction
 constexpr double kLeastCosine = 1.0 / 16;
 constexpr double kTurnedCosine = 1.0 / 4;
@@ -22,9 +21,7 @@ struct Weights {
   double a, b, c;
 
   bool are_inside() const { return std::min({a, b, c}) >= -kTouching * (a + b + c); }
-  double height(const Vec3& at_a, const Vec3& at_b, const Vec3& at_c) const {
-    return (a * at_a.z + b * at_b.z + c * at_c.z) / (a + b + c);
-  }
+  double mean(double at_a, double at_b, double at_c) const { return (a * at_a + b * at_b + c * at_c) / (a + b + c); }
 };
 
 }  // namespace
@@ -42,10 +39,13 @@ Overlay::Overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3&
 
 void Overlay::list_old_faces(const ZoneView& zone, const Star& u, const Star& v) {
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c, Index side) {
-    const double bound = zone.triangles[side >> 2].bound;
-    old_faces_[old_count_++] = {a, b, c, bound};
-    for (const std::size_t corner : {a, b, c}) {
-      if (corner >= at_u()) end_bounds_[corner - at_u()] = std::max(end_bounds_[corner - at_u()], bound);
+    OldFace& face = old_faces_[old_count_++];
+    face.corners = {a, b, c};
+    for (const Index h : {side, next(side), previous(side)}) {
+      const auto n = static_cast<std::size_t>(h == side ? 0 : h == next(side) ? 1 : 2);
+      face.bounds[n] = bound_at(zone, h);
+      double& bound = bounds_[face.corners[n]];
+      bound = std::max(bound, face.bounds[n]);
     }
   };
   for (std::size_t n = 0; n < u_faces_; ++n) {
@@ -88,7 +88,8 @@ bool Overlay::new_faces_face_up() {
 
 bool Overlay::old_faces_face_up() const {
   return std::all_of(old_faces_.begin(), old_faces_.begin() + old_count_, [&](const OldFace& face) {
-    return turn(seen_[face.b] - seen_[face.a], seen_[face.c] - seen_[face.a]) > least_area_;
+    const auto& [a, b, c] = face.corners;
+    return turn(seen_[b] - seen_[a], seen_[c] - seen_[a]) > least_area_;
   });
 }
 
@@ -110,26 +111,30 @@ void Overlay::list_normals() {
     normals_[normal_count_++] = dot(normal, normal) > 0 ? unit(normal) : normal;
   };
   for (const OldFace& face : std::span(old_faces_.data(), old_count_)) {
-    add(cross(places_[face.b] - places_[face.a], places_[face.c] - places_[face.a]));
+    const auto& [a, b, c] = face.corners;
+    add(cross(places_[b] - places_[a], places_[c] - places_[a]));
   }
   for (std::size_t n = 0; n < count_; ++n) add(cross(places_[n], places_[after(n)]));
 }
 
 bool Overlay::see_merged_vertex() {
   for (const OldFace& face : std::span(old_faces_.data(), old_count_)) {
-    const Vec3& a = seen_[face.a];
-    const Vec3& b = seen_[face.b];
-    const Vec3& c = seen_[face.c];
+    const Vec3& a = seen_[face.corners[0]];
+    const Vec3& b = seen_[face.corners[1]];
+    const Vec3& c = seen_[face.corners[2]];
     const Weights weights{turn(b, c), turn(c, a), turn(a, b)};
-    if (weights.are_inside()) merged_ = std::max(merged_, std::abs(weights.height(a, b, c)) + face.bound);
+    if (!weights.are_inside()) continue;
+    const double bound = weights.mean(face.bounds[0], face.bounds[1], face.bounds[2]);
+    merged_ = std::max(merged_, std::abs(weights.mean(a.z, b.z, c.z)) + bound);
   }
   return merged_ >= 0;
 }
 
-// Lists the sides of the old faces that end at one of the two, with the larger bound of the faces beside each.
+// Lists the sides of the old faces that end at one of the two.
 void Overlay::list_old_sides() {
   const auto add = [&](std::size_t from, std::size_t to, const OldFace& one, const OldFace& other) {
-    old_sides_.add(seen_[from], seen_[to], std::max(one.bound, other.bound));
+    const auto at = [&](std::size_t corner) { return std::max(one.bound_at(corner), other.bound_at(corner)); };
+    old_sides_.add(seen_[from], seen_[to], at(from), at(to));
   };
   for (std::size_t n = 0; n < u_faces_; ++n) {
     add(at_u(), around_u(n), old_faces_[n], old_faces_[n > 0 ? n - 1 : u_faces_ - 1]);
@@ -142,34 +147,36 @@ void Overlay::list_old_sides() {
   old_sides_.pad();
 }
 
-// Takes the greatest height, and bound, of all corners of a new face's parts. Those on the ring need no look: the
-// height is 0 there, and no part has others only.
+// Takes the least bound at the merged vertex that holds at all corners of a new face's parts.
 bool Overlay::see_new_faces(FaceBounds& bounds) {
   list_old_sides();
   std::array<double, kRoom> crossings;
   const Kernels& best = kernels();
-  for (std::size_t n = 0; n < count_; ++n) crossings[n] = best.height_of_crossings(seen_[n], old_sides_);
+  for (std::size_t n = 0; n < count_; ++n) crossings[n] = best.bound_of_crossings(seen_[n], bounds_[n], old_sides_);
   bool u_seen = false;
   bool v_seen = false;
   for (std::size_t n = 0; n < count_; ++n) {
     const std::size_t next = after(n);
-    double most = std::max({merged_, crossings[n], crossings[next]});
-    u_seen |= see_old_vertex(at_u(), n, most);
-    v_seen |= see_old_vertex(at_v(), n, most);
-    bounds[n] = most <= kMostBound ? static_cast<FaceBound>(std::ceil(most - kRounding)) : kUnbounded;
+    double merged = std::max({merged_, crossings[n], crossings[next]});
+    u_seen |= see_old_vertex(at_u(), n, merged);
+    v_seen |= see_old_vertex(at_v(), n, merged);
+    bounds[n] = {merged, bounds_[n], bounds_[next]};
   }
   return u_seen && v_seen;
 }
 
-bool Overlay::see_old_vertex(std::size_t old, std::size_t face, double& most) const {
+bool Overlay::see_old_vertex(std::size_t old, std::size_t face, double& merged) const {
   const Vec3& p = seen_[old];
+  const std::size_t next = after(face);
   const Vec3& a = seen_[face];
-  const Vec3& b = seen_[after(face)];
+  const Vec3& b = seen_[next];
   const double of_a = turn(p, b);
   const double of_b = turn(a, p);
   const Weights weights{areas_[face] - of_a - of_b, of_a, of_b};
   if (!weights.are_inside()) return false;
-  most = std::max(most, std::abs(p.z - weights.height({}, a, b)) + end_bounds_[old - at_u()]);
+  const double least = std::abs(p.z - weights.mean(0, a.z, b.z)) + bounds_[old];
+  const double rest = least - weights.mean(0, bounds_[face], bounds_[next]) - kBoundRounding;
+  merged = std::max(merged, rest / std::max(weights.a / areas_[face], kLeastWeight));
   return true;
 }
 

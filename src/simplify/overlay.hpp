@@ -12,24 +12,28 @@
 namespace isoweave {
 
 // Both triangulations of the ring around two vertices that merge, seen along a direction from which all their faces
-// face up. In each part of their overlay the height of one above the other is linear. So it is greatest at a corner of
-// a part: at a vertex of one that lies over a face of the other, where two sides cross, or on the ring, where it is 0
-// (Bajaj and Schikore, 1996). Places are measured from the merged vertex.
+// face up. In each part of their overlay the height of one above the other is linear (Bajaj and Schikore, 1996), and so
+// are the bounds of the old faces. So a linear bound holds for a new face where it holds at the corners of these parts:
+// at a vertex of one that lies over a face of the other, where two sides cross, and on the ring, where the height is 0.
+// There a new face keeps the largest bound of the old ones. Places are measured from the merged vertex.
 class Overlay {
  public:
   // No end may be on a border. The zone and the stars must outlive this.
   Overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place);
 
-  // Bounds the new faces. A bound that is too high to be of use is kUnbounded. Returns false where no such direction is
-  // found: then nothing is known.
+  // Bounds the new faces. Returns false where no such direction is found: then nothing is known.
   bool bound(FaceBounds& bounds);
 
  private:
   static constexpr std::size_t kRoom = Star::kRoom;
 
   struct OldFace {
-    std::size_t a, b, c;
-    double bound;
+    std::array<std::size_t, 3> corners;
+    std::array<double, 3> bounds;  // there
+
+    double bound_at(std::size_t corner) const {
+      return bounds[corner == corners[0] ? 0 : corner == corners[1] ? 1 : 2];
+    }
   };
 
   std::size_t at_u() const { return count_; }
@@ -46,20 +50,20 @@ class Overlay {
   bool see_merged_vertex();
   void list_old_sides();
   bool see_new_faces(FaceBounds& bounds);
-  bool see_old_vertex(std::size_t old, std::size_t face, double& most) const;
+  bool see_old_vertex(std::size_t old, std::size_t face, double& merged) const;
 
   double units_;  // of bounds, in a length
   std::size_t u_faces_, v_faces_;
   std::size_t count_;                      // of the ring's vertices, and of the new faces
   std::array<Vec3, kRoom> places_, seen_;  // of the ring and of both ends; seen: two coordinates across, and the height
-  std::array<double, 2> end_bounds_{};     // the largest of the old faces at each end
+  std::array<double, kRoom> bounds_{};     // the largest of the old faces there
   std::array<OldFace, kRoom> old_faces_;
   std::size_t old_count_ = 0;
   std::array<Vec3, kRoom> normals_;  // of the old faces and the new ones
   std::size_t normal_count_ = 0;
   std::array<double, kRoom> areas_;  // of the new faces, as they are seen
   double least_area_ = 0;
-  double merged_ = -1;  // height and bound at the merged vertex
+  double merged_ = -1;  // the bound at the merged vertex
   SeenSides old_sides_;
 };
 

@@ -4,10 +4,13 @@
 #include <bit>
 #include <cmath>
 
+#include "simplify/point_distance.hpp"
+
 namespace isoweave {
 namespace {
 
 using measure::operator-;
+using measure::operator+;
 using measure::operator*;
 using measure::cross;
 using measure::dot;
@@ -74,27 +77,70 @@ ProjectedSurface::Polygon ProjectedSurface::Polygon::left_of(std::size_t side) c
     const double t = at_a / (at_a - at_b);
     Corner between;
     for (std::size_t k = 0; k < 3; ++k) between.left[k] = a.left[k] + t * (b.left[k] - a.left[k]);
+    between.x = a.x + t * (b.x - a.x);
+    between.y = a.y + t * (b.y - a.y);
     between.height = a.height + t * (b.height - a.height);
     cut.add(between);
   }
   return cut;
 }
 
-// Whether a triangle, some of whose corners are within the height and others are not, is beyond it somewhere over the
-// part.
-bool ProjectedSurface::is_high(std::size_t triangle, const SeenPart& part) const {
+double ProjectedSurface::highest(std::size_t triangle) const {
+  double most = 0;
+  for (const auto& height : triangles_.height) most = std::max(most, std::abs(height[triangle]));
+  return most;
+}
+
+ProjectedSurface::Polygon ProjectedSurface::polygon_over(std::size_t triangle, const SeenPart& part) const {
   Polygon polygon;
   for (std::size_t n = 0; n < 3; ++n) {
     Corner corner;
-    for (std::size_t side = 0; side < 3; ++side) {
-      corner.left[side] = part.left_of(side, triangles_.x[n][triangle], triangles_.y[n][triangle]);
-    }
+    corner.x = triangles_.x[n][triangle];
+    corner.y = triangles_.y[n][triangle];
     corner.height = triangles_.height[n][triangle];
+    for (std::size_t side = 0; side < 3; ++side) corner.left[side] = part.left_of(side, corner.x, corner.y);
     polygon.add(corner);
   }
   for (std::size_t side = 0; side < 3; ++side) polygon = polygon.left_of(side);
-  return std::any_of(polygon.corners.begin(), polygon.corners.begin() + polygon.count,
-                     [&](const Corner& corner) { return !(std::abs(corner.height) <= part.most); });
+  return polygon;
+}
+
+// Whether all of the part that a triangle lies over is near the triangle. The points near a triangle form a convex set,
+// so the corners tell. What is not farther than others is not looked at, so the answer does not depend on the order.
+bool ProjectedSurface::is_near(std::size_t triangle, const SeenPart& part, double& farthest) {
+  if (highest(triangle) <= farthest) return true;
+  const auto corner = [&](std::size_t n) {
+    return Vec3{triangles_.x[n][triangle], triangles_.y[n][triangle], triangles_.height[n][triangle]};
+  };
+  const std::array<Vec3, 3> corners{corner(0), corner(1), corner(2)};
+  const Polygon polygon = polygon_over(triangle, part);
+  double most = farthest;
+  for (std::size_t n = 0; n < polygon.count; ++n) {
+    const Corner& at = polygon.corners[n];
+    if (std::abs(at.height) <= most) continue;
+    most = std::max(most, distance({at.x, at.y, 0}, corners));
+    if (most <= part.most) continue;
+    far_point_ = origin_ + at.x * across_ + at.y * along_;
+    return false;
+  }
+  farthest = most;
+  return true;
+}
+
+// Drops the triangles that do not lie over the part, and those that are not near it.
+void ProjectedSurface::keep_near(const SeenPart& part, std::uint8_t* bits, double& farthest) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles_.count; ++t) {
+    if (bits[t] == 0 || !is_near(t, part, farthest)) continue;
+    for (std::size_t n = 0; n < 3; ++n) {
+      triangles_.x[n][kept] = triangles_.x[n][t];
+      triangles_.y[n][kept] = triangles_.y[n][t];
+      triangles_.height[n][kept] = triangles_.height[n][t];
+    }
+    bits[kept++] = bits[t];
+  }
+  triangles_.count = kept;
+  triangles_.pad();
 }
 
 // Counts a side, which cancels one in the other direction.
@@ -114,24 +160,50 @@ void ProjectedSurface::add_side(std::size_t triangle, std::size_t from, std::siz
   open_[open_count_++] = {from_x, from_y, to_x, to_y};
 }
 
-bool ProjectedSurface::covers(const Corners& corners, double most) {
-  const SeenPart part = seen_part(corners, most);
-  triangles_.pad();
-  std::array<std::uint8_t, SeenTriangles::kRoom> bits;
-  kernels_.lie_over(triangles_, part, bits.data());
-  for (std::size_t t = 0; t < triangles_.count; ++t) {
-    if (bits[t] != 0 && (bits[t] & seen::kNowhereHigh) == 0 && is_high(t, part)) return false;
-  }
+void ProjectedSurface::list_open_sides(const std::uint8_t* bits) {
   open_count_ = 0;
-  int over_centre = 0;
   for (std::size_t t = 0; t < triangles_.count; ++t) {
-    if (bits[t] == 0) continue;
-    if ((bits[t] & seen::kOverCentre) != 0) over_centre += (bits[t] & seen::kFacesUp) != 0 ? 1 : -1;
     for (std::size_t n = 0; n < 3; ++n) {
       if ((bits[t] & (seen::kTouches << n)) != 0) add_side(t, n, (n + 1) % 3);
     }
   }
-  return open_count_ == 0 && over_centre != 0;
+}
+
+bool ProjectedSurface::survey(const Corners& corners, double most, double& farthest) {
+  const SeenPart part = seen_part(corners, most);
+  far_point_.reset();
+  triangles_.pad();
+  std::array<std::uint8_t, SeenTriangles::kRoom> bits;
+  kernels_.lie_over(triangles_, part, bits.data());
+  keep_near(part, bits.data(), farthest);
+  list_open_sides(bits.data());
+  return open_count_ == 0 && kernels_.count_over(triangles_, part.centre_x, part.centre_y) != 0;
+}
+
+// Whether a side touches a part: no side of the part, nor the side itself, parts the two.
+bool ProjectedSurface::touches(const Side& side, const SeenPart& part) {
+  const auto [ax, ay, bx, by] = std::bit_cast<std::array<double, 4>>(side);
+  const double left_x = ay - by;
+  const double left_y = bx - ax;
+  const double reach = part.slack * (std::abs(left_x) + std::abs(left_y));
+  bool all_left = true;
+  bool all_right = true;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double beside = -part.slack * (std::abs(part.left_x[n]) + std::abs(part.left_y[n]));
+    if (part.left_of(n, ax, ay) < beside && part.left_of(n, bx, by) < beside) return false;
+    const double left = left_x * (part.x[n] - ax) + left_y * (part.y[n] - ay);
+    all_left &= left > reach;
+    all_right &= left < -reach;
+  }
+  return !all_left && !all_right;
+}
+
+bool ProjectedSurface::covers(const Corners& corners) const {
+  const SeenPart part = seen_part(corners, 0);
+  for (std::size_t n = 0; n < open_count_; ++n) {
+    if (touches(open_[n], part)) return false;
+  }
+  return kernels_.count_over(triangles_, part.centre_x, part.centre_y) != 0;
 }
 
 }  // namespace isoweave

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "lattice/triangles.hpp"
 #include "lattice/vec3.hpp"
@@ -13,11 +14,11 @@ namespace isoweave {
 
 // Extracted triangles around a face, as they lie above and below it.
 //
-// Why covers() can tell that a part of the face is covered without cutting it into the parts over each triangle: take
-// the triangles that lie over the part within a height, count each side of them as +1 in one direction and -1 in the
-// other, and drop those that do not touch the part. If all sums are 0, the triangles that lie over a point, those that
-// face down counted as -1, are as many over every point of the part: the number changes only where a side of one is
-// passed whose count is not 0 (the degree of a map, Milnor, 1965). So it suffices to count them over one point.
+// Why they can tell that a part of the face is covered without a look at each: take triangles all of which are near
+// what they lie over, count each side of them as +1 in one direction and -1 in the other, and drop those that do not
+// touch the part. If all sums are 0, the triangles that lie over a point, those that face down counted as -1, are as
+// many over every point of the part: the number changes only where a side of one is passed whose count is not 0 (the
+// degree of a map, Milnor, 1965). So it suffices to count them over one point.
 class ProjectedSurface {
  public:
   using Corners = measure::TriangleCorners;
@@ -31,10 +32,18 @@ class ProjectedSurface {
   // Adds a triangle. Returns false where there is no more room.
   bool add(const Vec3& a, const Vec3& b, const Vec3& c);
 
-  // Whether each point of a part of the face is seen to have a point of some triangle no farther above or below it than
-  // `most`. The corners of the part must go around it as those of the face do. All triangles must have been added that
-  // come within that height of the part, once. More do not change the answer, nor does their order.
-  bool covers(const Corners& part, double most);
+  // Keeps the triangles that lie over a part of the face, and all of whose points there are within the distance `most`
+  // of the part's points below or above them. Returns whether each point of the part has one of them. The corners of
+  // the part must go around it as those of the face do. All triangles must have been added that come within that height
+  // of the part, once. More do not change the answer, nor does their order. farthest: raised to the greatest such
+  // distance, which bounds that of all points that have a triangle.
+  bool survey(const Corners& part, double most, double& farthest);
+
+  // Whether each point of a smaller part, of the one that was surveyed, has one of these triangles.
+  bool covers(const Corners& part) const;
+
+  // A point of the surveyed part that is not within the distance of a triangle over it, where there is one.
+  const std::optional<measure::Vector>& far_point() const { return far_point_; }
 
  private:
   // The bits of two coordinates of one end and of the other.
@@ -42,7 +51,7 @@ class ProjectedSurface {
 
   struct Corner {
     std::array<double, 3> left{};  // how far it is to the left of each side of a part
-    double height = 0;
+    double x = 0, y = 0, height = 0;
   };
 
   // A triangle, or what of it lies over a part.
@@ -58,12 +67,18 @@ class ProjectedSurface {
   };
 
   SeenPart seen_part(const Corners& corners, double most) const;
-  bool is_high(std::size_t triangle, const SeenPart& part) const;
+  double highest(std::size_t triangle) const;
+  Polygon polygon_over(std::size_t triangle, const SeenPart& part) const;
+  bool is_near(std::size_t triangle, const SeenPart& part, double& farthest);
+  void keep_near(const SeenPart& part, std::uint8_t* bits, double& farthest);
+  void list_open_sides(const std::uint8_t* bits);
   void add_side(std::size_t triangle, std::size_t from, std::size_t to);
+  static bool touches(const Side& side, const SeenPart& part);
 
   const Kernels& kernels_ = kernels();
   measure::Vector origin_{}, across_{}, along_{}, up_{};
   SeenTriangles triangles_;
+  std::optional<measure::Vector> far_point_;
   std::size_t open_count_ = 0;
   std::array<Side, 3 * SeenTriangles::kRoom> open_;  // sides with no counterpart in the other direction
 };

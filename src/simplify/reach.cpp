@@ -1,6 +1,7 @@
 #include "simplify/reach.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "simplify/extracted_surface.hpp"
@@ -26,12 +27,14 @@ bool stays_in_layers(const ZoneView& zone, const Star& u, const Star& v, const V
   return layer >= extracted.layer_of(low) && layer <= extracted.layer_of(high);
 }
 
-// Bounds the faces by the overlay with those that they replace. Returns whether that is known to lie above them.
-bool bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, FaceBounds& bounds) {
-  if (!u.border && !v.border && Overlay(zone, u, v, place).bound(bounds)) return true;
-  bounds.fill(kUnbounded);
-  return false;
+// Bounds the faces by those that they replace, where these are known to lie above each other.
+void bound_by_overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, FaceBounds& bounds) {
+  if (!u.border && !v.border && Overlay(zone, u, v, place).bound(bounds)) return;
+  bounds.fill({std::numeric_limits<double>::infinity(), kBoundUnits, kBoundUnits});
 }
+
+// Whether a look at a face with such a bound would find it within the distance.
+bool is_sure(const FaceBound& bound) { return bound.most() <= ExtractedSurface::kSure * kBoundUnits; }
 
 // Whether some point of a face of which nothing is known is beyond the distance: a few are looked at, by which most
 // faces that are refused are found out. They are farther beyond than rounding goes, so a look at the whole face would
@@ -45,7 +48,7 @@ bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const
   bool is_first = true;
   std::size_t n = 0;
   each_staying_face(u, v, [&](Index, Index from, Index to) {
-    if (bounds[n++] != kUnbounded) return true;
+    if (is_sure(bounds[n++])) return true;
     const Vec3& a = zone.vertices[from].position;
     const Vec3& b = zone.vertices[to].position;
     beyond = (std::exchange(is_first, false) && is_beyond(place)) || is_beyond((1.0 / 3) * (place + a + b)) ||
@@ -55,13 +58,13 @@ bool is_plainly_beyond(const ZoneView& zone, const Star& u, const Star& v, const
   return beyond;
 }
 
-// Looks at a face around a place. Where no overlay has said anything, it is asked first whether the face is within half
-// of the distance, so that what comes after it has a bound to begin with.
-Reach look_at_face(const ZoneView& zone, const Vec3 (&corners)[3], bool overlaid, FaceBound& bound) {
-  const auto look = [&](double most) { return zone.extracted->reach(corners[0], corners[1], corners[2], most); };
-  const Reach half = overlaid ? Reach::kBeyond : look(zone.options.most_distance / 2);
-  if (half == Reach::kWithin) bound = kHalfBound;
-  return half == Reach::kBeyond ? look(zone.options.most_distance) : half;
+// Looks at a face. bound: where it is within the distance, a bound for all of it.
+Reach look_at_face(const ZoneView& zone, const Vec3& a, const Vec3& b, const Vec3& c, FaceBound& bound) {
+  ExtractedSurface::Looked looked;
+  const Reach reach = zone.extracted->reach(a, b, c, zone.options.most_distance, &looked);
+  const double farthest = looked.farthest / zone.options.most_distance * kBoundUnits;
+  bound = {farthest, farthest, farthest};
+  return reach;
 }
 
 }  // namespace
@@ -69,16 +72,15 @@ Reach look_at_face(const ZoneView& zone, const Vec3 (&corners)[3], bool overlaid
 Reach reach_of_collapse(const ZoneView& zone, const Star& u, const Star& v, const Vec3& place, CostBits cost,
                         FaceBounds& bounds) {
   if (!stays_in_layers(zone, u, v, place)) return Reach::kBeyond;
-  const bool overlaid = bound_by_overlay(zone, u, v, place, bounds);
+  bound_by_overlay(zone, u, v, place, bounds);
   const bool is_doubtful = cost > to_cost(zone.options.most_distance * zone.options.most_distance / zone.options.a0);
   if (is_doubtful && is_plainly_beyond(zone, u, v, place, bounds)) return Reach::kBeyond;
   Reach all = Reach::kWithin;
   std::size_t n = 0;
   each_staying_face(u, v, [&](Index, Index a, Index b) {
     FaceBound& bound = bounds[n++];
-    if (bound != kUnbounded) return true;
-    const Reach face =
-        look_at_face(zone, {place, zone.vertices[a].position, zone.vertices[b].position}, overlaid, bound);
+    if (is_sure(bound)) return true;
+    const Reach face = look_at_face(zone, place, zone.vertices[a].position, zone.vertices[b].position, bound);
     all = std::max(all, face);
     return face != Reach::kBeyond;
   });

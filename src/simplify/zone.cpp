@@ -312,7 +312,7 @@ void Zone::settle_edges(TriangleRange range, std::vector<Index>& unkeyed) {
   EdgeBatch batch;
   for (Index t = range.begin; t < range.end; ++t) {
     triangles[t].levels = 0;
-    triangles[t].bound = 0;
+    triangles[t].bounds = {};
     if (t + kAhead < range.end) prefetch_corners(t + kAhead);
     // The sides that represent their edges cannot be predicted. So every side is written, and the next one overwrites
     // it if it does not represent its edge.

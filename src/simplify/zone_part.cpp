@@ -101,7 +101,7 @@ bool all_finite(const NormalQuadric& q) {
 
 bool all_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
-using LevelsAndBound = std::array<std::uint16_t, 2>;
+using LevelsAndBounds = std::array<std::uint8_t, 4>;
 
 // Reads the fields of a part, each of which is checked by itself.
 class PartReader {
@@ -208,10 +208,10 @@ class PartReader {
       state_.require(written < 8, "bits for three sides");
       for (std::size_t c = 0; c < 3; ++c) side(t, c).twin = (written >> c & 1) != 0 ? kWritten : kNone;
     });
-    state_.each<LevelsAndBound>(count, [&](std::size_t t, const LevelsAndBound& of) {
+    state_.each<LevelsAndBounds>(count, [&](std::size_t t, const LevelsAndBounds& of) {
       state_.require(of[0] < shape_.ends.size(), "triangles of the levels of the run");
       part_.triangles[t].levels = of[0];
-      part_.triangles[t].bound = of[1];
+      part_.triangles[t].bounds = {of[1], of[2], of[3]};
     });
   }
 
@@ -285,7 +285,9 @@ void write_part(StateWriter& state, const ZoneView& zone, std::span<const Array<
   });
   each_triangle([&](const Sides& sides) {
     const Triangle& triangle = zone.triangles[sides[0] >> 2];
-    return LevelsAndBound{triangle.levels, triangle.bound};
+    LevelsAndBounds of{triangle.levels};
+    for (std::size_t c = 0; c < 3; ++c) of[c + 1] = triangle.bounds[sides[c] & 3];
+    return of;
   });
   state.value(static_cast<std::uint64_t>(front.size()));
   state.each(front.size(), [&](std::size_t n) { return order.place(front[n]); });

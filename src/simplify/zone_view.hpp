@@ -64,13 +64,12 @@ inline constexpr Key kNoTurn = Key{kRetiredCost} << 32;
 
 ISOWEAVE_HD inline CostBits cost_of(Key key) { return static_cast<CostBits>(key >> 32); }
 
-// A bound on the distance of every point of a face from the extracted surface.
-using FaceBound = std::uint16_t;
+inline constexpr std::size_t kMostLevels = 255;  // finer than the last one
 
-inline constexpr double kBoundUnits = 65536;  // in the distance that is allowed
-inline constexpr FaceBound kHalfBound = 32768;
-inline constexpr FaceBound kMostBound = 65534;
-inline constexpr FaceBound kUnbounded = 65535;  // nothing is known but that it is allowed
+// A bound on the distance of a face from the extracted surface, at one of its corners. In between bounds are linear.
+using CornerBound = std::uint8_t;
+
+inline constexpr CornerBound kBoundUnits = 255;  // in the distance that is allowed, beyond which no face lies
 
 struct HalfEdge {
   Index vertex = kNone;  // where it starts
@@ -83,8 +82,8 @@ struct HalfEdge {
 struct alignas(64) Triangle {
   std::array<HalfEdge, 3> sides;
   std::array<std::uint32_t, 3> tie_low{};  // lower halves of the ties, for keys that are equal
-  std::uint16_t levels = 0;                // meshes of finer levels that have it
-  FaceBound bound = 0;  // of its distance from the extracted surface, where such distances are bounded
+  std::uint8_t levels = 0;                 // meshes of finer levels that have it
+  std::array<CornerBound, 3> bounds{};     // where distances from the extracted surface are bounded
 };
 
 static_assert(sizeof(HalfEdge) == 16 && sizeof(Triangle) == 64);

@@ -20,6 +20,13 @@ using program::run;
 constexpr const char* kSmall = "generate:sphere:16x16x16";
 constexpr const char* kEndless = "generate:smooth:64x64x2000000:uint8";
 
+// One more than there may be: 256 besides the last.
+std::string many_levels() {
+  std::string list = "1vox";
+  for (int n = 2; n <= 257; ++n) list += "," + std::to_string(n) + "vox";
+  return list;
+}
+
 std::vector<std::string> mesh(const std::string& volume, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments{"mesh", volume, "-o", "out.ply", "--iso", "0"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -72,6 +79,7 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
       {mesh(kSmall, {"--error", "-1vox"}), "-1vox"},
       {mesh(kSmall, {"--error", "nan"}), "nan"},
       {mesh(kSmall, {"--lods", "0.3,0.2"}), "levels of detail: expected ascending errors"},
+      {mesh(kSmall, {"--lods", many_levels()}), "levels of detail: expected at most 255 finer ones, found 256"},
       {mesh(kSmall, {"--quality", "superb"}), "superb"},
       {mesh(kSmall, {"--specks", "maybe"}), "maybe"},
       {mesh(kSmall, {"--step", "0"}), "--step"},

@@ -3,6 +3,11 @@
 // Threads: Volumes/Distances.EverySchedule*/noiseClosed
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "measure/triangle_tree.hpp"
 #include "oracle.hpp"
 
 namespace isoweave::testing::distances_test {
@@ -84,6 +89,48 @@ TEST_P(Distances, NoPointIsFartherThanWasGuaranteed) {
     EXPECT_EQ(check.euler, check_mesh(full.mesh).euler);
   }
   EXPECT_GT(unbounded, 0.1) << "nothing to guarantee";
+}
+
+// Of the whole surface at once, before any of it is handed over. Bounds spare looks, so a wrong one would let a face
+// pass.
+TEST_P(Distances, NoPointOfAFaceIsFartherThanItsBounds) {
+  SurfaceCase surface = this->surface();
+  surface.error = 0;
+  const SurfaceRun full = sweep(surface, Schedule::kLocal, 2, 6);
+  const Executor executor(1);
+  const measure::TriangleTree tree(full.mesh, executor);
+  surface.error = 0.8;
+  for (const double distance : {0.2, 0.6}) {
+    surface.max_distance = distance;
+    Simplifier simplifier({surface.zone(), Schedule::kLocal}, executor, nullptr);
+    std::mt19937 random(7);
+    int bounded = 0;
+    int held = 0;
+    sweep(surface, kWholeVolume, executor, simplifier, [&] {
+      simplifier.decide();
+      const Zone& zone = simplifier.zone();
+      for (const Triangle& triangle : zone.triangles) {
+        if (triangle.sides[0].vertex == kNone) continue;
+        ++held;
+        bounded += static_cast<int>(std::ranges::max(triangle.bounds) < kBoundUnits);
+        for (int point = 0; point < 20; ++point) {
+          const double a = std::sqrt(std::uniform_real_distribution<double>(0, 1)(random));
+          const double b = a * std::uniform_real_distribution<double>(0, 1)(random);
+          const double weights[3] = {1 - a, a - b, b};
+          Vec3 p{};
+          double bound = 0;
+          for (std::size_t c = 0; c < 3; ++c) {
+            p = p + weights[c] * zone.vertices[triangle.sides[c].vertex].position;
+            bound += weights[c] * triangle.bounds[c];
+          }
+          std::size_t hint = measure::TriangleTree::kNoHint;
+          const double away = std::sqrt(tree.squared_distance_from({p.x, p.y, p.z}, hint));
+          ASSERT_LE(away, bound / kBoundUnits * zone.options.most_distance + 1e-5) << distance;
+        }
+      }
+    });
+    EXPECT_GT(bounded, held / 4);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumes, Distances,

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <random>
-#include <set>
 
 #include "conformance/plain_scenes.hpp"
 #include "plain_rules/volume_surface.hpp"
@@ -186,33 +184,6 @@ TEST(PlainRules, DistancesThatAreBounded) {
       if (distance < 0.2) {
         EXPECT_GT(postponed, unbounded) << name_of(scene);
       }
-    }
-  }
-}
-
-// Of the whole surface at once, before any of it is handed over.
-TEST(PlainRules, BoundsOfFaces) {
-  for (const bool closed : {true, false}) {
-    for (const char* kind : {"noise", "gyroid", "box"}) {
-      SurfaceCase surface{{kind, {11, 9, 12}, SampleType::kUint8, {0.7, 0.9, 1.4}, 9}, closed, 0.8};
-      surface.max_distance = 0.5;
-      Scene scene = generated(surface.volume);
-      scene.options.closed = closed;
-      scene.options.error.value = surface.error;
-      scene.options.max_distance = Length::voxels(surface.max_distance);
-      const plain::Outcome plain = plain_run(scene, extracted_surface(scene));
-      const Executor executor(1);
-      Simplifier simplifier({surface.zone(), Schedule::kLocal}, executor, nullptr);
-      std::map<std::set<std::uint64_t>, unsigned> bounds;
-      sweep(surface, kWholeVolume, executor, simplifier, [&] {
-        simplifier.decide();
-        const Zone& zone = simplifier.zone();
-        for (const Triangle& triangle : zone.triangles) {
-          const auto id = [&](std::size_t c) { return zone.vertices[triangle.sides[c].vertex].id; };
-          if (triangle.sides[0].vertex != kNone) bounds[{id(0), id(1), id(2)}] = triangle.bound;
-        }
-      });
-      EXPECT_TRUE(bounds == plain.bounds) << kind << (closed ? " closed" : " open");
     }
   }
 }

@@ -54,8 +54,8 @@ Distances::Distances(const Surface& surface, double most) : most_(most) {
   }
 }
 
-bool Distances::is_near(const Vector& p, const Triangle& triangle, double most) {
-  return squared_to_triangle(p, triangle) <= most * most;
+bool Distances::is_near(const Vector& p, const Triangle& triangle) const {
+  return squared_to_triangle(p, triangle) <= most_ * most_;
 }
 
 // Triangles whose boxes come near the box of a part: the other ones would take most of the time.
@@ -72,7 +72,7 @@ Distances::List Distances::near_box(const Triangle& part, const List& triangles)
   return list;
 }
 
-bool Distances::holds(const Triangle& face, double most) const {
+bool Distances::holds(const Triangle& face) const {
   List all;
   for (const Triangle& t : triangles_) all.push_back(&t);
   const List near_face = near_box(face, all);
@@ -82,14 +82,14 @@ bool Distances::holds(const Triangle& face, double most) const {
     parts.pop_back();
     const List near_part = near_box(part, near_face);
     const bool all_near_one = std::ranges::any_of(near_part, [&](const Triangle* t) {
-      return std::ranges::all_of(part, [&](const Vector& corner) { return is_near(corner, *t, most); });
+      return std::ranges::all_of(part, [&](const Vector& corner) { return is_near(corner, *t); });
     });
     if (all_near_one) continue;
     const Vector centre = (1.0 / 3) * (part[0] + part[1] + part[2]);
     double radius = 0;
     for (const Vector& corner : part) radius = std::max(radius, length(corner - centre));
-    const bool near = std::ranges::any_of(near_part, [&](const Triangle* t) { return is_near(centre, *t, most); });
-    if (!near || radius <= most / 16) return false;
+    const bool near = std::ranges::any_of(near_part, [&](const Triangle* t) { return is_near(centre, *t); });
+    if (!near || radius <= most_ / 16) return false;
     for (const Triangle& half : halves(part)) parts.push_back(half);
   }
   return true;

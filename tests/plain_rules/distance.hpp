@@ -16,13 +16,13 @@ class Distances {
  public:
   Distances(const Surface& surface, double most);
 
-  // Whether all of a triangle is within the distance of the surface, or a smaller one.
-  bool holds(const Triangle& face, double most) const;
+  // Whether all of a triangle is within the distance of the surface.
+  bool holds(const Triangle& face) const;
 
  private:
   using List = std::vector<const Triangle*>;
 
-  static bool is_near(const Vector& p, const Triangle& triangle, double most);
+  bool is_near(const Vector& p, const Triangle& triangle) const;
   List near_box(const Triangle& part, const List& triangles) const;
 
   double most_;

@@ -1,7 +1,6 @@
 #include "plain_rules/simplifier.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -10,7 +9,6 @@
 #include "plain_rules/connectivity.hpp"
 #include "plain_rules/distance.hpp"
 #include "plain_rules/edge_queue.hpp"
-#include "plain_rules/overlay.hpp"
 #include "plain_rules/riders.hpp"
 
 namespace isoweave::plain {
@@ -335,58 +333,10 @@ class Simplifier {
     return faces;
   }
 
-  static std::set<std::size_t> corners_of(std::size_t a, std::size_t b, std::size_t c) { return {a, b, c}; }
-
-  unsigned bound_of(std::size_t a, std::size_t b, std::size_t c) const {
-    const auto found = bounds_.find(corners_of(a, b, c));
-    return found == bounds_.end() ? 0 : found->second;
-  }
-
-  Overlaid overlaid(const Vector& to) const {
-    Overlaid before;
-    std::map<std::size_t, std::size_t> numbers;
-    const auto add = [&](std::size_t corner) {
-      numbers.emplace(corner, before.places.size());
-      before.places.push_back(place(corner) - to);
-    };
-    for (const auto& [a, b] : staying()) add(a);
-    add(u_);
-    add(v_);
-    for (std::size_t n = 0; n < u_ring_.faces(); ++n) {
-      const std::size_t a = u_ring_.around[n];
-      const std::size_t b = u_ring_.after(n);
-      before.faces.push_back({{numbers[u_], numbers[a], numbers[b]}, bound_of(u_, a, b)});
-    }
-    for (std::size_t n = 0; n < v_ring_.faces(); ++n) {
-      const std::size_t a = v_ring_.around[n];
-      const std::size_t b = v_ring_.after(n);
-      if (a != u_ && b != u_) before.faces.push_back({{numbers[v_], numbers[a], numbers[b]}, bound_of(v_, a, b)});
-    }
-    return before;
-  }
-
-  // Gives the new faces their bounds, from which those are known that need no look at the extracted surface.
-  bool stays_near(const Vector& to) {
-    const bool closed = !u_ring_.open && !v_ring_.open;
-    const auto overlay = closed ? new_bounds(overlaid(to), options_.most_distance) : std::nullopt;
-    const auto faces = staying();
-    new_bounds_ = overlay.value_or(std::vector<unsigned>(faces.size(), kNoBound));
-    for (std::size_t n = 0; n < faces.size(); ++n) {
-      if (new_bounds_[n] != kNoBound) continue;
-      const Triangle face{to, place(faces[n][0]), place(faces[n][1])};
-      if (!overlay && extracted_->holds(face, options_.most_distance / 2)) {
-        new_bounds_[n] = kHalfBound;
-      } else if (!extracted_->holds(face, options_.most_distance)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  void keep_bounds() {
-    const auto faces = staying();
-    for (const auto& [a, b] : faces) bounds_.erase(corners_of(v_, a, b));
-    for (std::size_t n = 0; n < faces.size(); ++n) bounds_[corners_of(u_, faces[n][0], faces[n][1])] = new_bounds_[n];
+  bool stays_near(const Vector& to) const {
+    return std::ranges::all_of(staying(), [&](const std::array<std::size_t, 2>& face) {
+      return extracted_->holds({to, place(face[0]), place(face[1])});
+    });
   }
 
   // The best place, or else the cheapest of both ends and the middle that is allowed.
@@ -406,7 +356,6 @@ class Simplifier {
 
   // Merges both ends into u.
   void collapse(const Edge& edge, const Vector& x) {
-    if (extracted_) keep_bounds();
     queue_.forget(edge);
     for (const std::size_t w : v_ring_.around) {
       if (w == u_) continue;
@@ -449,9 +398,6 @@ class Simplifier {
   Outcome outcome() {
     outcome_.dearest = dearest_ > kLeastCost ? std::sqrt(surface_.face) * std::sqrt(double{dearest_}) : 0;
     outcome_.surface.triangles = connectivity_.triangles();
-    for (const auto& [a, b, c] : outcome_.surface.triangles) {
-      if (extracted_) outcome_.bounds[{id(a), id(b), id(c)}] = bound_of(a, b, c);
-    }
     outcome_.surface.corners = std::move(surface_.corners);
     return std::move(outcome_);
   }
@@ -467,8 +413,6 @@ class Simplifier {
   std::vector<Quadric> quadrics_;
   std::vector<NormalQuadric> normal_quadrics_;
   std::optional<Distances> extracted_;
-  std::map<std::set<std::size_t>, unsigned> bounds_;  // of faces, by their corners; 0 as they were extracted
-  std::vector<unsigned> new_bounds_;                  // of the faces around the place that was tried last
   std::size_t u_ = 0, v_ = 0;  // the ends of the edge in question, that with the smaller id first
   Ring u_ring_, v_ring_;       // an open one begins at its border, a closed one at the other end
   Vector along_{};             // from u to v

@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <map>
-#include <set>
 #include <vector>
 
 #include "isoweave/mesh.hpp"
@@ -44,8 +42,6 @@ struct Outcome {
   Surface surface{};
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, specks = 0, locked = 0;
   double dearest = 0;  // length: of the collapses as they were made
-  std::map<std::set<std::uint64_t>, unsigned>
-      bounds{};  // of faces by the ids of their corners, where distances are bounded
 };
 
 Outcome simplify(const Surface& surface, const Options& options);

@@ -100,6 +100,32 @@ Reach reach(const ExtractedSurface& surface, const Corners& t, double most) {
   return surface.reach(vec(t[0]), vec(t[1]), vec(t[2]), most);
 }
 
+// The answer for a triangle, and how far it is at most where it is within the distance, in one piece and in many: it
+// must not depend on the pieces, nor on their order.
+class AnyPieces {
+ public:
+  AnyPieces(const std::vector<Corners>& triangles, double most, const Vec3& cell)
+      : most_(most), whole_(most, cell, largest_of(triangles)), pieces_(most, cell, largest_of(triangles)) {
+    append(whole_, triangles, kAll);
+    for (std::size_t n = triangles.size(); n > 0; --n) append(pieces_, std::span(&triangles[n - 1], 1), kAll);
+  }
+
+  Reach reach(const Corners& t, double& farthest) const {
+    ExtractedSurface::Looked one, many;
+    const Reach found = whole_.reach(vec(t[0]), vec(t[1]), vec(t[2]), most_, &one);
+    EXPECT_EQ(pieces_.reach(vec(t[0]), vec(t[1]), vec(t[2]), most_, &many), found);
+    if (found == Reach::kWithin) {
+      EXPECT_EQ(one.farthest, many.farthest);
+    }
+    farthest = one.farthest;
+    return found;
+  }
+
+ private:
+  double most_;
+  ExtractedSurface whole_, pieces_;
+};
+
 Corners random_triangle(Random& random) {
   const Vector first = random.point(1, 5);
   const double size = random.number(0.05, 2.5);
@@ -110,26 +136,30 @@ TEST(ExtractedSurface, SaysWhatDistancesSay) {
   for (const double most : {0.1, 0.4, 1.0}) {
     if (testing::kSanitized && most != 0.4) continue;
     const std::vector<Corners> triangles = sheet(1);
-    ExtractedSurface surface(most, {0.5, 0.5, 0.7}, largest_of(triangles));
-    append(surface, triangles, kAll);
+    const AnyPieces surface(triangles, most, {0.5, 0.5, 0.7});
     Random random(2);
     int within = 0;
+    int bounded = 0;
     int beyond = 0;
     for (int trial = 0; trial < 400; ++trial) {
       const Corners triangle = random_triangle(random);
       const double distance = farthest(triangles, triangle);
-      const Reach found = reach(surface, triangle, most);
+      double known = 0;
+      const Reach found = surface.reach(triangle, known);
       ASSERT_NE(found, Reach::kUnknown);
       if (found == Reach::kWithin) {
         ++within;
-        EXPECT_LE(distance, most * (1 + 1e-9)) << "trial " << trial << ", within " << most;
+        bounded += static_cast<int>(known < most);
+        EXPECT_LE(known, most);
+        EXPECT_LE(distance, known * (1 + 1e-9)) << "trial " << trial << ", within " << most;
       } else {
         ++beyond;
         // The points tried are less than a 24th of a side apart.
         EXPECT_GT(distance, most * 15 / 16 - 0.15) << "trial " << trial << ", within " << most;
       }
     }
-    EXPECT_GT(within, 0);
+    EXPECT_GT(bounded, 0);
+    EXPECT_GT(within, bounded);
     EXPECT_GT(beyond, 0);
   }
 }
@@ -165,10 +195,7 @@ TEST(ExtractedSurface, SaysOfWideFacesWhatDistancesSay) {
     for (Vector& p : t) p[2] = 0.1 * p[2];
   }
   constexpr double kMost = 0.06;
-  ExtractedSurface whole(kMost, {0.5, 0.5, 0.1}, largest_of(triangles));
-  append(whole, triangles, kAll);
-  ExtractedSurface pieces(kMost, {0.5, 0.5, 0.1}, largest_of(triangles));
-  for (const Corners& t : triangles) append(pieces, std::span(&t, 1), kAll);
+  const AnyPieces surface(triangles, kMost, {0.5, 0.5, 0.1});
   Random random(12);
   int within = 0;
   int beyond = 0;
@@ -177,12 +204,12 @@ TEST(ExtractedSurface, SaysOfWideFacesWhatDistancesSay) {
       return Vector{random.number(0.2, 5.8), random.number(0.2, 5.8), random.number(0.28, 0.32)};
     };
     const Corners face{corner(), corner(), corner()};
-    const Reach found = reach(whole, face, kMost);
-    EXPECT_EQ(reach(pieces, face, kMost), found) << trial;
+    double known = 0;
+    const Reach found = surface.reach(face, known);
     const double distance = farthest(triangles, face);
     if (found == Reach::kWithin) {
       ++within;
-      EXPECT_LE(distance, kMost * (1 + 1e-9)) << trial;
+      EXPECT_LE(distance, known * (1 + 1e-9)) << trial;
     } else {
       ++beyond;
       EXPECT_GT(distance, kMost * 15 / 16 - 0.02) << trial;
@@ -206,13 +233,15 @@ TEST(ExtractedSurface, FindsThatTheWidestFacesAreNear) {
   constexpr double kMost = 0.2;
   ExtractedSurface surface(kMost, {1.3, 1.3, 1}, {1, 1, 0});
   append(surface, flat, kAll);
-  std::uint64_t looks = 0;
+  ExtractedSurface::Looked looked;
   const auto at = [&](double z) {
-    return surface.reach({1.2, 1.3, z}, {198.1, 3.4, z}, {90.1, 197.2, z}, kMost, &looks);
+    return surface.reach({1.2, 1.3, z}, {198.1, 3.4, z}, {90.1, 197.2, z}, kMost, &looked);
   };
-  EXPECT_EQ(at(0), Reach::kWithin);
-  EXPECT_EQ(at(0.9 * kMost), Reach::kWithin);
-  EXPECT_EQ(looks, 0) << "the surface is seen above all of the face";
+  for (const double z : {0.0, 0.9 * kMost}) {
+    EXPECT_EQ(at(z), Reach::kWithin);
+    EXPECT_EQ(looked.comparisons, 0) << "the surface is seen above all of the face";
+    EXPECT_DOUBLE_EQ(looked.farthest, std::max(z, kMost / 2)) << "what is nearer is not told apart";
+  }
   EXPECT_EQ(at(-1.01 * kMost), Reach::kBeyond);
 }
 
@@ -234,9 +263,9 @@ TEST(ExtractedSurface, CutsAFaceAsOftenWhateverElseAPieceHolds) {
   const auto looks_of = [&](std::span<const std::vector<Corners>> pieces) {
     ExtractedSurface surface(0.2, {2, 2, 20}, {1, 1, 0});
     for (const std::vector<Corners>& piece : pieces) append(surface, piece, kAll);
-    std::uint64_t looks = 0;
-    EXPECT_EQ(surface.reach({0.5, 0.5, 0.1}, {7.5, 0.6, 0.1}, {0.6, 7.5, 0.1}, 0.2, &looks), Reach::kWithin);
-    return looks;
+    ExtractedSurface::Looked looked;
+    EXPECT_EQ(surface.reach({0.5, 0.5, 0.1}, {7.5, 0.6, 0.1}, {0.6, 7.5, 0.1}, 0.2, &looked), Reach::kWithin);
+    return looked.comparisons;
   };
   const std::vector<std::vector<Corners>> two{flat, far};
   std::vector<std::vector<Corners>> one{flat};
@@ -342,7 +371,9 @@ double looks_per_face(const std::vector<Corners>& needles, double most) {
   int faces = 0;
   for (std::size_t n = 0; n + 2 < needles.size(); n += 16, ++faces) {
     const Corners& from = needles[n];
-    EXPECT_EQ(surface.reach(vec(from[0]), vec(from[1]), vec(needles[n + 2][2]), most, &looks), Reach::kWithin);
+    ExtractedSurface::Looked looked;
+    EXPECT_EQ(surface.reach(vec(from[0]), vec(from[1]), vec(needles[n + 2][2]), most, &looked), Reach::kWithin);
+    looks += looked.comparisons;
   }
   return static_cast<double>(looks) / faces;
 }

@@ -118,25 +118,29 @@ TEST_P(EachSet, OneTurnedFaceIsSeenWhereverItIs) {
 }
 
 // Against doubles one after the other: the bits are those of the rules.
-TEST_P(EachSet, FindsTheHighestCrossing) {
+TEST_P(EachSet, BoundsASideByWhatItCrosses) {
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 to = vector();
+    const double bound = std::abs(real());
     SeenSides sides;
     double most = 0;
     for (int n = 0; n < 1 + trial % 27; ++n) {
       const Vec3 from = n == 3 ? Vec3{} : vector();
       const Vec3 end = n == 5 ? to : vector();
-      const double bound = std::abs(real());
-      sides.add(from, end, bound);
+      const double from_bound = std::abs(real());
+      const double end_bound = std::abs(real());
+      sides.add(from, end, from_bound, end_bound);
       const Vec3 along = end - from;
       const double turn = to.x * along.y - to.y * along.x;
       const double s = (from.x * along.y - from.y * along.x) / turn;
       const double t = (from.x * to.y - from.y * to.x) / turn;
       if (!(s > -1e-9 && s < 1 + 1e-9 && t > -1e-9 && t < 1 + 1e-9)) continue;
-      most = std::max(most, std::abs(s * to.z - (from.z + t * along.z)) + bound);
+      const double other = from_bound + t * (end_bound - from_bound);
+      const double rest = std::abs(s * to.z - (from.z + t * along.z)) + other - s * bound - kBoundRounding;
+      most = std::max(most, rest / (1 - s > kLeastWeight ? 1 - s : kLeastWeight));
     }
     sides.pad();
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(kernels().height_of_crossings(to, sides)),
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(kernels().bound_of_crossings(to, bound, sides)),
               std::bit_cast<std::uint64_t>(most));
   }
 }
@@ -210,11 +214,11 @@ std::uint8_t bits_over(const SeenTriangles& triangles, std::size_t t, const Seen
     if (is_beside(0, k) && is_beside(1, k) && is_beside(2, k)) return 0;
   }
   if (bits == 0 || above == 3 || below == 3) return 0;
-  return static_cast<std::uint8_t>(bits | (left[0] ? 16U : 0U) | (above + below == 0 ? 32U : 0U));
+  return static_cast<std::uint8_t>(bits);
 }
 
 TEST_P(EachSet, TellsHowTrianglesLieOverAPart) {
-  std::array<int, 64> seen{};
+  std::array<int, 16> seen{};
   for (std::size_t trial = 0; trial < 200; ++trial) {
     const auto place = [&] { return trial % 3 == 0 ? std::round(real()) : real(); };  // rounded: much touches
     SeenTriangles triangles;
@@ -242,7 +246,45 @@ TEST_P(EachSet, TellsHowTrianglesLieOverAPart) {
       ++seen[bits[t]];
     }
   }
-  EXPECT_GT(std::ranges::count_if(seen, [](int count) { return count > 0; }), 30) << "of the cases are met";
+  EXPECT_GT(std::ranges::count_if(seen, [](int count) { return count > 0; }), 9) << "of the cases are met";
+}
+
+// How often the triangles go around a point, by angles.
+int rounds_about(const SeenTriangles& triangles, double x, double y) {
+  int rounds = 0;
+  for (std::size_t t = 0; t < triangles.count; ++t) {
+    double angle = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const double ax = triangles.x[n][t] - x;
+      const double ay = triangles.y[n][t] - y;
+      const double bx = triangles.x[(n + 1) % 3][t] - x;
+      const double by = triangles.y[(n + 1) % 3][t] - y;
+      angle += std::atan2(ax * by - ay * bx, ax * bx + ay * by);
+    }
+    rounds += static_cast<int>(std::lround(angle / (2 * 3.14159265358979)));
+  }
+  return rounds;
+}
+
+TEST_P(EachSet, CountsTrianglesOverAPoint) {
+  std::array<int, 9> met{};
+  for (std::size_t trial = 0; trial < 500; ++trial) {
+    SeenTriangles triangles;
+    triangles.count = trial % 41;
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t t = 0; t < triangles.count; ++t) {
+        triangles.x[n][t] = real();
+        triangles.y[n][t] = real();
+      }
+    }
+    triangles.pad();
+    const double x = real();
+    const double y = real();
+    const int expected = rounds_about(triangles, x, y);
+    EXPECT_EQ(kernels().count_over(triangles, x, y), expected) << trial;
+    ++met[static_cast<std::size_t>(std::clamp(expected + 4, 0, 8))];
+  }
+  EXPECT_GT(std::ranges::count_if(met, [](int count) { return count > 0; }), 6) << "of the counts are met";
 }
 
 TEST_P(EachSet, CountsCommonNumbers) {

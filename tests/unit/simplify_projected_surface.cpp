@@ -1,10 +1,11 @@
-// Whether a surface lies over a part of a face everywhere, against heights that are measured point by point.
+// Whether a surface lies over a part of a face everywhere, against distances that are measured point by point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 #include <random>
 
+#include "measure/triangle_tree.hpp"
 #include "sanitized.hpp"
 #include "simplify/projected_surface.hpp"
 
@@ -54,11 +55,25 @@ std::vector<Corners> sheet(Random& random, double across, double up) {
 
 Vec3 vec(const Vector& p) { return {p[0], p[1], p[2]}; }
 
-bool covers(const std::vector<Corners>& triangles, const Corners& face, const Corners& part, double most) {
+struct Answer {
+  bool covered;
+  double farthest;  // where it is covered
+
+  bool operator==(const Answer&) const = default;
+};
+
+// Surveys a part of a face.
+Answer survey(const std::vector<Corners>& triangles, const Corners& face, const Corners& part, double most) {
   ProjectedSurface surface;
   EXPECT_TRUE(surface.look_at(face));
   for (const Corners& t : triangles) EXPECT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
-  return surface.covers(part, most);
+  double farthest = 0;
+  const bool covered = surface.survey(part, most, farthest);
+  return {covered, covered ? farthest : 0};
+}
+
+bool covers(const std::vector<Corners>& triangles, const Corners& face, const Corners& part, double most) {
+  return survey(triangles, face, part, most).covered;
 }
 
 // How far a triangle is from a point along a direction, where a line through the point meets it.
@@ -74,24 +89,43 @@ std::optional<double> height(const Corners& t, const Vector& p, const Vector& up
   return measure::dot(t[0] + b * ab + c * ac - p, up);
 }
 
-// The greatest height, over points of a part, of the nearest triangle there.
-double highest(const std::vector<Corners>& triangles, const Corners& part) {
+// Calls visit(p) for points of a part.
+template <class Visit>
+void each_point(const Corners& part, const Visit& visit) {
   constexpr int kSteps = 20;
-  const Vector normal = measure::cross(part[1] - part[0], part[2] - part[0]);
-  const Vector up = (1 / std::sqrt(measure::dot(normal, normal))) * normal;
-  double most = 0;
   for (int u = 0; u <= kSteps; ++u) {
     for (int v = 0; v + u <= kSteps; ++v) {
       const double a = static_cast<double>(u) / kSteps;
       const double b = static_cast<double>(v) / kSteps;
-      double nearest = 1e300;
-      for (const Corners& t : triangles) {
-        const auto at = height(t, a * part[0] + b * part[1] + (1 - a - b) * part[2], up);
-        if (at) nearest = std::min(nearest, std::abs(*at));
-      }
-      most = std::max(most, nearest);
+      visit(a * part[0] + b * part[1] + (1 - a - b) * part[2]);
     }
   }
+}
+
+// The greatest height, over points of a part, of the nearest triangle there.
+double highest(const std::vector<Corners>& triangles, const Corners& part) {
+  const Vector normal = measure::cross(part[1] - part[0], part[2] - part[0]);
+  const Vector up = (1 / std::sqrt(measure::dot(normal, normal))) * normal;
+  double most = 0;
+  each_point(part, [&](const Vector& p) {
+    double nearest = 1e300;
+    for (const Corners& t : triangles) {
+      const auto at = height(t, p, up);
+      if (at) nearest = std::min(nearest, std::abs(*at));
+    }
+    most = std::max(most, nearest);
+  });
+  return most;
+}
+
+// The greatest distance of points of a part from the nearest triangle.
+double farthest(const std::vector<Corners>& triangles, const Corners& part) {
+  double most = 0;
+  each_point(part, [&](const Vector& p) {
+    double nearest = 1e300;
+    for (const Corners& t : triangles) nearest = std::min(nearest, measure::squared_distance(p, t));
+    most = std::max(most, std::sqrt(nearest));
+  });
   return most;
 }
 
@@ -113,7 +147,7 @@ Corners random_part(Random& random, const Corners& face) {
 }
 
 // Sheets that are flat, rough, and so much so that they fold over.
-TEST(ProjectedSurface, CoversNothingThatIsHigherSomewhere) {
+TEST(ProjectedSurface, CoversNothingThatIsFartherSomewhere) {
   Random random(3);
   for (const auto& [across, up] : {std::pair{0.2, 0.1}, std::pair{0.3, 0.3}, std::pair{1.2, 0.3}}) {
     int covered = 0;
@@ -122,9 +156,11 @@ TEST(ProjectedSurface, CoversNothingThatIsHigherSomewhere) {
       const std::vector<Corners> triangles = sheet(random, across, up);
       const Corners face = random_face(random);
       const Corners part = random_part(random, face);
-      if (covers(triangles, face, part, kMost)) {
+      const Answer answer = survey(triangles, face, part, kMost);
+      if (answer.covered) {
         ++covered;
-        EXPECT_LE(highest(triangles, part), kMost * (1 + 1e-9)) << trial << ", " << across;
+        EXPECT_LE(farthest(triangles, part), answer.farthest * (1 + 1e-9)) << trial << ", " << across;
+        EXPECT_LE(answer.farthest, kMost);
       } else {
         ++uncovered;
       }
@@ -132,6 +168,54 @@ TEST(ProjectedSurface, CoversNothingThatIsHigherSomewhere) {
     EXPECT_GT(covered, 0) << across;
     EXPECT_GT(uncovered, 0) << across;
   }
+}
+
+// Halves of a part that was surveyed, and halves of these: each is covered only where all its points are near the
+// surface. Some are of parts that are not covered as a whole.
+TEST(ProjectedSurface, CoversPartsOfWhatItHasSurveyed) {
+  Random random(11);
+  int covered = 0;
+  for (int trial = 0; trial < (testing::kSanitized ? 4 : 60); ++trial) {
+    const std::vector<Corners> triangles = sheet(random, 0.3, 0.25);
+    const Corners face = random_face(random);
+    ProjectedSurface surface;
+    ASSERT_TRUE(surface.look_at(face));
+    for (const Corners& t : triangles) ASSERT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+    double known = 0;
+    const bool whole = surface.survey(face, kMost, known);
+    std::vector<Corners> parts{face};
+    for (std::size_t n = 0; n < 31; ++n) {
+      const auto [a, b, c] = parts[n];
+      const Vector middle = 0.5 * (a + b);
+      parts.push_back({c, a, middle});
+      parts.push_back({b, c, middle});
+      const bool is_covered = surface.covers(parts[n]);
+      EXPECT_TRUE(is_covered || !whole) << trial;
+      if (!is_covered) continue;
+      covered += static_cast<int>(!whole);
+      EXPECT_LE(farthest(triangles, parts[n]), known * (1 + 1e-9)) << trial << ", part " << n;
+    }
+  }
+  EXPECT_GT(covered, testing::kSanitized ? 3 : 50);
+}
+
+// A point that is named lies in the part, and not near the triangle over it.
+TEST(ProjectedSurface, NamesAPointThatIsNotNear) {
+  Random random(13);
+  std::vector<Corners> triangles = sheet(random, 0, 0);
+  const Corners face{Vector{2.2, 2.1, 0}, Vector{7.9, 2.4, 0}, Vector{3.3, 7.7, 0}};
+  for (Corners& t : triangles) {
+    for (Vector& p : t) p[2] = p == Vector{4, 4, 0} ? 0.8 : 0;  // a peak
+  }
+  ProjectedSurface surface;
+  ASSERT_TRUE(surface.look_at(face));
+  for (const Corners& t : triangles) ASSERT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+  double known = 0;
+  EXPECT_FALSE(surface.survey(face, kMost, known));
+  ASSERT_TRUE(surface.far_point());
+  EXPECT_NEAR((*surface.far_point())[0], 4, 1);
+  EXPECT_NEAR((*surface.far_point())[1], 4, 1);
+  EXPECT_NEAR((*surface.far_point())[2], 0, 1e-12);
 }
 
 // A sheet without folds that is near enough covers all that it lies over: also where triangles stand on their heads.
@@ -174,15 +258,15 @@ TEST(ProjectedSurface, MoreTrianglesInAnyOrderGiveTheSameAnswer) {
   for (int trial = 0; trial < (testing::kSanitized ? 10 : 100); ++trial) {
     const std::vector<Corners> triangles = sheet(random, 0.3, 0.15);
     const Corners face = random_face(random);
-    const bool answer = covers(triangles, face, face, kMost);
-    covered += answer;
+    const Answer answer = survey(triangles, face, face, kMost);
+    covered += static_cast<int>(answer.covered);
     std::vector<Corners> more = triangles;
     for (int n = 0; n < 40; ++n) {
       const Vector place = Vector{5, 5, trial % 2 == 0 ? 9.0 : -9.0} + random.point(4);
       more.push_back({place, place + random.point(2), place + random.point(2)});
     }
     random.shuffle(more);
-    EXPECT_EQ(covers(more, face, face, kMost), answer) << trial;
+    EXPECT_EQ(survey(more, face, face, kMost), answer) << trial;
   }
   EXPECT_GT(covered, 0);
 }

@@ -7,7 +7,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6b73617465766f77;  // "wovetask", little-endian
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint64_t kLeastPiece = 48;  // bytes: the lengths of five lists, and a count
 
 void require_same(const StateReader& state, const char* what, const std::string& found, const std::string& expected) {
