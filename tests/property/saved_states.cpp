@@ -183,7 +183,7 @@ TEST_F(SavedState, OfARunThatMeasuredNothingIsRefusedByOneThatDoes) {
 
 TEST_F(SavedState, OfAnotherVersionIsRefused) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 14\n"));
+  writer.list(std::string("isoweave state 15\n"));
   writer.list(std::string("0.0.0"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
@@ -197,7 +197,7 @@ TEST_F(SavedState, OfAnotherVersionIsRefused) {
 
 TEST_F(SavedState, WhatAStateSaysOfItselfStaysOnOneLine) {
   StateWriter writer(folder_ / "state-0");
-  writer.list(std::string("isoweave state 14\n"));
+  writer.list(std::string("isoweave state 15\n"));
   writer.list(std::string("1\n2"));
   writer.commit();
   std::filesystem::remove(folder_ / "state-1");
