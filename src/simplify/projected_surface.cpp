@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "simplify/point_distance.hpp"
 
@@ -143,29 +144,43 @@ void ProjectedSurface::keep_near(const SeenPart& part, std::uint8_t* bits, doubl
   triangles_.pad();
 }
 
-// Counts a side, which cancels one in the other direction.
-void ProjectedSurface::add_side(std::size_t triangle, std::size_t from, std::size_t to) {
-  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  const std::uint64_t from_x = bits(triangles_.x[from][triangle]);
-  const std::uint64_t from_y = bits(triangles_.y[from][triangle]);
-  const std::uint64_t to_x = bits(triangles_.x[to][triangle]);
-  const std::uint64_t to_y = bits(triangles_.y[to][triangle]);
-  for (std::size_t n = open_count_; n > 0; --n) {
-    const Side& other = open_[n - 1];
-    if (((other[0] ^ to_x) | (other[1] ^ to_y) | (other[2] ^ from_x) | (other[3] ^ from_y)) == 0) {
-      open_[n - 1] = open_[--open_count_];
-      return;
-    }
+// The number of a side, which is a new one where it has not been met.
+std::size_t ProjectedSurface::number_of(const Side& side) {
+  const std::uint64_t mixed = (side[0] ^ (side[1] << 1) ^ (side[2] << 2) ^ (side[3] << 3)) * 0x9e3779b97f4a7c15U;
+  std::size_t slot = mixed >> (64 - kSlotBits);
+  for (; slots_[slot] != 0; slot = (slot + 1) % slots_.size()) {
+    if (sides_[slots_[slot] - 1U] == side) return slots_[slot] - 1U;
   }
-  open_[open_count_++] = {from_x, from_y, to_x, to_y};
+  sides_[side_count_] = side;
+  counts_[side_count_++] = 0;
+  slots_[slot] = static_cast<std::uint16_t>(side_count_);
+  return side_count_ - 1;
+}
+
+// Counts a side: +1 in one direction, -1 in the other.
+void ProjectedSurface::count_side(std::size_t triangle, std::size_t from, std::size_t to) {
+  const auto end = [&](std::size_t corner) {
+    return std::array{std::bit_cast<std::uint64_t>(triangles_.x[corner][triangle]),
+                      std::bit_cast<std::uint64_t>(triangles_.y[corner][triangle])};
+  };
+  auto a = end(from);
+  auto b = end(to);
+  const bool turned = b < a;
+  if (turned) std::swap(a, b);
+  counts_[number_of({a[0], a[1], b[0], b[1]})] += turned ? -1 : 1;
 }
 
 void ProjectedSurface::list_open_sides(const std::uint8_t* bits) {
-  open_count_ = 0;
+  side_count_ = 0;
+  slots_.fill(0);
   for (std::size_t t = 0; t < triangles_.count; ++t) {
     for (std::size_t n = 0; n < 3; ++n) {
-      if ((bits[t] & (seen::kTouches << n)) != 0) add_side(t, n, (n + 1) % 3);
+      if ((bits[t] & (seen::kTouches << n)) != 0) count_side(t, n, (n + 1) % 3);
     }
+  }
+  open_count_ = 0;
+  for (std::size_t n = 0; n < side_count_; ++n) {
+    if (counts_[n] != 0) sides_[open_count_++] = sides_[n];
   }
 }
 
@@ -201,7 +216,7 @@ bool ProjectedSurface::touches(const Side& side, const SeenPart& part) {
 bool ProjectedSurface::covers(const Corners& corners) const {
   const SeenPart part = seen_part(corners, 0);
   for (std::size_t n = 0; n < open_count_; ++n) {
-    if (touches(open_[n], part)) return false;
+    if (touches(sides_[n], part)) return false;
   }
   return kernels_.count_over(triangles_, part.centre_x, part.centre_y) != 0;
 }

@@ -46,7 +46,7 @@ class ProjectedSurface {
   const std::optional<measure::Vector>& far_point() const { return far_point_; }
 
  private:
-  // The bits of two coordinates of one end and of the other.
+  // The bits of two coordinates of one end and of the other, the smaller bits first.
   using Side = std::array<std::uint64_t, 4>;
 
   struct Corner {
@@ -72,15 +72,22 @@ class ProjectedSurface {
   bool is_near(std::size_t triangle, const SeenPart& part, double& farthest);
   void keep_near(const SeenPart& part, std::uint8_t* bits, double& farthest);
   void list_open_sides(const std::uint8_t* bits);
-  void add_side(std::size_t triangle, std::size_t from, std::size_t to);
+  std::size_t number_of(const Side& side);
+  void count_side(std::size_t triangle, std::size_t from, std::size_t to);
   static bool touches(const Side& side, const SeenPart& part);
 
   const Kernels& kernels_ = kernels();
   measure::Vector origin_{}, across_{}, along_{}, up_{};
   SeenTriangles triangles_;
   std::optional<measure::Vector> far_point_;
-  std::size_t open_count_ = 0;
-  std::array<Side, 3 * SeenTriangles::kRoom> open_;  // sides with no counterpart in the other direction
+  static constexpr std::size_t kMostSides = 3 * SeenTriangles::kRoom;
+  static constexpr int kSlotBits = 10;
+  static_assert(std::size_t{1} << kSlotBits > kMostSides, "some slots stay free");
+  std::array<Side, kMostSides> sides_;
+  std::array<int, kMostSides> counts_;  // in one direction, less those in the other
+  std::size_t side_count_ = 0;
+  std::array<std::uint16_t, std::size_t{1} << kSlotBits> slots_;  // a hash table: the number of a side and 1, or 0
+  std::size_t open_count_ = 0;                                    // sides whose counts are not 0, which come first
 };
 
 }  // namespace isoweave
