@@ -38,20 +38,19 @@ Overlay::Overlay(const ZoneView& zone, const Star& u, const Star& v, const Vec3&
 }
 
 void Overlay::list_old_faces(const ZoneView& zone, const Star& u, const Star& v) {
-  const auto add = [&](std::size_t a, std::size_t b, std::size_t c, Index side) {
+  const auto add = [&](const std::array<std::size_t, 3>& corners, Index side) {
+    const std::array<Index, 3> halves{side, next(side), previous(side)};
     OldFace& face = old_faces_[old_count_++];
-    face.corners = {a, b, c};
-    for (const Index h : {side, next(side), previous(side)}) {
-      const auto n = static_cast<std::size_t>(h == side ? 0 : h == next(side) ? 1 : 2);
-      face.bounds[n] = bound_at(zone, h);
-      double& bound = bounds_[face.corners[n]];
-      bound = std::max(bound, face.bounds[n]);
+    face.corners = corners;
+    for (std::size_t n = 0; n < 3; ++n) {
+      face.bounds[n] = bound_at(zone, halves[n]);
+      bounds_[corners[n]] = std::max(bounds_[corners[n]], face.bounds[n]);
     }
   };
   for (std::size_t n = 0; n < u_faces_; ++n) {
-    add(at_u(), around_u(n), n + 1 < u_faces_ ? around_u(n + 1) : at_v(), u.out[n]);
+    add({at_u(), around_u(n), n + 1 < u_faces_ ? around_u(n + 1) : at_v()}, u.out[n]);
   }
-  for (std::size_t n = 1; n + 1 < v_faces_; ++n) add(at_v(), around_v(n), around_v(n + 1), v.out[n]);
+  for (std::size_t n = 1; n + 1 < v_faces_; ++n) add({at_v(), around_v(n), around_v(n + 1)}, v.out[n]);
 }
 
 bool Overlay::bound(FaceBounds& bounds) {

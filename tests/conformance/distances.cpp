@@ -91,6 +91,26 @@ TEST_P(Distances, NoPointIsFartherThanWasGuaranteed) {
   EXPECT_GT(unbounded, 0.1) << "nothing to guarantee";
 }
 
+// A point of a face, and what the face's bounds say of it: a length.
+struct BoundedPoint {
+  measure::Vector point{};
+  double bound = 0;
+};
+
+BoundedPoint random_point(const Zone& zone, const Triangle& triangle, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(0, 1);
+  const double a = std::sqrt(number(random));
+  const double b = a * number(random);
+  const double weights[3] = {1 - a, a - b, b};
+  BoundedPoint found;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec3 p = weights[c] * zone.vertices[triangle.sides[c].vertex].position;
+    found.point = {found.point[0] + p.x, found.point[1] + p.y, found.point[2] + p.z};
+    found.bound += weights[c] * triangle.bounds[c] / kBoundUnits * zone.options.most_distance;
+  }
+  return found;
+}
+
 // Of the whole surface at once, before any of it is handed over. Bounds spare looks, so a wrong one would let a face
 // pass.
 TEST_P(Distances, NoPointOfAFaceIsFartherThanItsBounds) {
@@ -100,32 +120,22 @@ TEST_P(Distances, NoPointOfAFaceIsFartherThanItsBounds) {
   const Executor executor(1);
   const measure::TriangleTree tree(full.mesh, executor);
   surface.error = 0.8;
+  std::mt19937 random(7);
   for (const double distance : {0.2, 0.6}) {
     surface.max_distance = distance;
     Simplifier simplifier({surface.zone(), Schedule::kLocal}, executor, nullptr);
-    std::mt19937 random(7);
     int bounded = 0;
     int held = 0;
     sweep(surface, kWholeVolume, executor, simplifier, [&] {
       simplifier.decide();
-      const Zone& zone = simplifier.zone();
-      for (const Triangle& triangle : zone.triangles) {
+      for (const Triangle& triangle : simplifier.zone().triangles) {
         if (triangle.sides[0].vertex == kNone) continue;
         ++held;
         bounded += static_cast<int>(std::ranges::max(triangle.bounds) < kBoundUnits);
-        for (int point = 0; point < 20; ++point) {
-          const double a = std::sqrt(std::uniform_real_distribution<double>(0, 1)(random));
-          const double b = a * std::uniform_real_distribution<double>(0, 1)(random);
-          const double weights[3] = {1 - a, a - b, b};
-          Vec3 p{};
-          double bound = 0;
-          for (std::size_t c = 0; c < 3; ++c) {
-            p = p + weights[c] * zone.vertices[triangle.sides[c].vertex].position;
-            bound += weights[c] * triangle.bounds[c];
-          }
+        for (int n = 0; n < 20; ++n) {
+          const auto [point, bound] = random_point(simplifier.zone(), triangle, random);
           std::size_t hint = measure::TriangleTree::kNoHint;
-          const double away = std::sqrt(tree.squared_distance_from({p.x, p.y, p.z}, hint));
-          ASSERT_LE(away, bound / kBoundUnits * zone.options.most_distance + 1e-5) << distance;
+          ASSERT_LE(std::sqrt(tree.squared_distance_from(point, hint)), bound + 1e-5) << distance;
         }
       }
     });
