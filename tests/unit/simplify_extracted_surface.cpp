@@ -342,6 +342,22 @@ TEST(ExtractedSurface, SaysWhatDistancesSayAmongNeedles) {
   EXPECT_EQ(reach(surface, longest, kMost), Reach::kWithin) << "a triangle is near itself";
 }
 
+// Sheets above each other in one cell, which come in one piece and in many: with few that are near the nearest counts,
+// with many none does, in whatever order they are met.
+TEST(ExtractedSurface, TheNearestOfFewCounts) {
+  for (const int sheets : {1, 2, 4, 5, 12}) {
+    std::vector<Corners> triangles;
+    for (int n = 1; n <= sheets; ++n) {
+      const double z = 0.01 * n;
+      triangles.push_back({Vector{0.1, 0.1, z}, Vector{0.9, 0.1, z}, Vector{0.1, 0.9, z}});
+    }
+    const AnyPieces surface(triangles, 0.2, {1, 1, 1});
+    double known = 0;
+    EXPECT_EQ(surface.reach({Vector{0.2, 0.2, 0}, Vector{0.5, 0.2, 0}, Vector{0.2, 0.5, 0}}, known), Reach::kWithin);
+    EXPECT_DOUBLE_EQ(known, sheets <= 4 ? 0.01 : 0.2) << sheets;
+  }
+}
+
 // A strip of 4,000 needles side by side, 100 long and 0.02 wide, that lies oblique to all axes; `turn`: of the strip in
 // its plane, `lift`: above it.
 std::vector<Corners> strip(double turn, double lift) {

@@ -231,18 +231,25 @@ TEST(Overlay, WhatIsNotKnownSpreadsNoFartherThanItsFace) {
   for (std::size_t n = 0; n < ring.new_faces(); ++n) EXPECT_EQ(to_bound(bounds[n].most()) > 0, n <= 2) << n;
 }
 
-// A bound at a vertex of the ring stays there.
+// A bound that one of the faces at a vertex of the ring has stays there.
 TEST(Overlay, ABoundOnTheRingStaysThere) {
   const auto flat = ring_of(
       5, 9, [] { return 2.0; }, [] { return 0.0; });
-  Ring ring({-0.5, 0, 0}, {0.5, 0, 0}, flat, 5);
-  ring.set_bounds(2, {0, 50, 0});  // at the second vertex of the ring
-  FaceBounds bounds;
-  ASSERT_TRUE(ring.bound({-0.5, 0, 0}, bounds));
-  for (std::size_t n = 0; n < ring.new_faces(); ++n) {
-    EXPECT_EQ(to_bound(bounds[n].merged), 0) << n;
-    EXPECT_EQ(bounds[n].a, n == 1 ? 50 : 0) << n;
-    EXPECT_EQ(bounds[n].b, n == 0 ? 50 : 0) << n;
+  for (const bool is_after : {true, false}) {
+    Ring ring({-0.5, 0, 0}, {0.5, 0, 0}, flat, 5);
+    // At the second vertex of the ring: of the face that follows it around u, and of the one before.
+    if (is_after) {
+      ring.set_bounds(2, {0, 50, 0});
+    } else {
+      ring.set_bounds(1, {0, 0, 50});
+    }
+    FaceBounds bounds;
+    ASSERT_TRUE(ring.bound({-0.5, 0, 0}, bounds));
+    for (std::size_t n = 0; n < ring.new_faces(); ++n) {
+      EXPECT_EQ(to_bound(bounds[n].merged), 0) << n;
+      EXPECT_EQ(bounds[n].a, n == 1 ? 50 : 0) << n;
+      EXPECT_EQ(bounds[n].b, n == 0 ? 50 : 0) << n;
+    }
   }
 }
 
