@@ -218,7 +218,8 @@ typedef struct iw_simplify_options {
   size_t struct_size;
   const char* error;         // NULL: "0.2vox" for volumes, unless one of the next four is given; "inf" beside
                              // max_distance, triangles or ratio
-  const char* levels;        // errors of several meshes, ascending: "0.1vox,0.3vox,1vox"; one output for each
+  const char* levels;        // errors of several meshes, ascending: "0.1vox,0.3vox,1vox"; one output for each,
+                             // 256 at most
   const char* max_distance;  // a guarantee; NULL: none
   uint64_t triangles;        // stop at this number; 0: no such number
   double ratio;              // stop at this part of the full surface's triangles; 0: no such part

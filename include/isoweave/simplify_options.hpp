@@ -31,7 +31,7 @@ struct SimplifyOptions {
   // error. Without this option every component stays, and topology with it.
   bool drop_specks = false;
   // Errors of finer meshes from the same sweep, ascending, all below `error`. Each mesh is that of a run with that
-  // error. Not with a number of triangles.
+  // error. At most 255; not with a number of triangles.
   std::vector<Length> levels{};
 };
 
