@@ -27,7 +27,7 @@ class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
 
-  // What a look at a triangle has told besides its answer.
+  // What reach() finds out about a triangle besides its answer.
   struct Looked {
     std::uint64_t comparisons = 0;  // of a part with a triangle
     double farthest = 0;            // where it is within the distance: the distance of all its points, or more

@@ -39,7 +39,7 @@ class Ring {
     zone_.options.most_distance = kMost;
   }
 
-  // Those at the end, and at the two corners after it.
+  // Sets an old face's bounds: at the end that it belongs to, and at the two corners after that.
   void set_bounds(std::size_t old_face, const std::array<CornerBound, 3>& bounds) {
     triangles_[old_face].bounds = bounds;
   }

@@ -62,11 +62,16 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
+// Looks along the normal of a face at all of the triangles.
+void look_at(ProjectedSurface& surface, const Corners& face, const std::vector<Corners>& triangles) {
+  ASSERT_TRUE(surface.look_at(face));
+  for (const Corners& t : triangles) ASSERT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+}
+
 // Surveys a part of a face.
 Answer survey(const std::vector<Corners>& triangles, const Corners& face, const Corners& part, double most) {
   ProjectedSurface surface;
-  EXPECT_TRUE(surface.look_at(face));
-  for (const Corners& t : triangles) EXPECT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+  look_at(surface, face, triangles);
   double farthest = 0;
   const bool covered = surface.survey(part, most, farthest);
   return {covered, covered ? farthest : 0};
@@ -179,8 +184,7 @@ TEST(ProjectedSurface, CoversPartsOfWhatItHasSurveyed) {
     const std::vector<Corners> triangles = sheet(random, 0.3, 0.25);
     const Corners face = random_face(random);
     ProjectedSurface surface;
-    ASSERT_TRUE(surface.look_at(face));
-    for (const Corners& t : triangles) ASSERT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+    look_at(surface, face, triangles);
     double known = 0;
     const bool whole = surface.survey(face, kMost, known);
     std::vector<Corners> parts{face};
@@ -208,8 +212,7 @@ TEST(ProjectedSurface, NamesAPointThatIsNotNear) {
     for (Vector& p : t) p[2] = p == Vector{4, 4, 0} ? 0.8 : 0;  // a peak
   }
   ProjectedSurface surface;
-  ASSERT_TRUE(surface.look_at(face));
-  for (const Corners& t : triangles) ASSERT_TRUE(surface.add(vec(t[0]), vec(t[1]), vec(t[2])));
+  look_at(surface, face, triangles);
   double known = 0;
   EXPECT_FALSE(surface.survey(face, kMost, known));
   ASSERT_TRUE(surface.far_point());
