@@ -53,7 +53,7 @@ enum class TaskEnd : std::uint8_t { kDone, kDoneBefore, kElsewhere, kTooEarly };
 // @cost As one block of mesh_in_blocks, and the final triangles of a block in memory.
 TaskEnd do_task(const TaskMesh& mesh, std::uint64_t task, const RunControl& control = {});
 
-// Whether a task is done.
+// Whether a task is done: both of its files are there.
 bool is_done(const TaskMesh& mesh, std::uint64_t task);
 
 // Puts the results of all tasks together into sinks, one for each level and one more, and finishes the sinks.

@@ -28,9 +28,9 @@ BlockRun collect(const BlockScene& scene, const TaskMesh& mesh) {
   return run_into_memory(scene, [&](std::span<MeshSink* const> sinks) { return collect_tasks(mesh, sinks); });
 }
 
-// Undoes a task, as if its process had been killed before its second file was there.
-void undo(const TaskMesh& mesh, std::uint64_t task) {
-  std::filesystem::remove(mesh.folder + "/" + std::to_string(task) + ".rest");
+// Undoes a task: without the second file its process seems to have been killed, without the first it was lost.
+void undo(const TaskMesh& mesh, std::uint64_t task, const std::string& file = ".rest") {
+  std::filesystem::remove(mesh.folder + "/" + std::to_string(task) + file);
 }
 
 // Does all tasks in a random order, those that come too early later, and some of them twice.
@@ -53,7 +53,7 @@ void do_all(const TaskMesh& mesh, std::mt19937_64& random) {
     EXPECT_TRUE(is_done(mesh, left.back()));
     EXPECT_EQ(do_task(mesh, left.back(), control), TaskEnd::kDoneBefore);
     if (random() % 5 == 0 && left.size() > 1) {
-      undo(mesh, left.back());
+      undo(mesh, left.back(), random() % 2 == 0 ? ".rest" : ".final");
     } else {
       left.pop_back();
     }
@@ -156,6 +156,24 @@ TEST(TaskFolder, DamagedAndForeignFilesAreRefusedByName) {
   const std::uint64_t later = list_tasks(mesh).first_of(1);
   undo(mesh, later);
   EXPECT_NE(message_of([&] { do_task(mesh, later); }).find(rest + ": belongs to another mesh"), std::string::npos);
+}
+
+TEST(TaskFolder, ATaskThatLacksAFileIsUndone) {
+  const files::Folder folder;
+  const TaskMesh mesh = mesh_of(noise_scene(), folder.path(), 24);
+  std::mt19937_64 random(1);
+  do_all(mesh, random);
+  const std::uint64_t later = list_tasks(mesh).first_of(1);
+  for (const char* const file : {".final", ".rest"}) {
+    undo(mesh, 0, file);
+    EXPECT_FALSE(is_done(mesh, 0));
+    EXPECT_NE(message_of([&] { collect(noise_scene(), mesh); }).find("found task 0 undone"), std::string::npos);
+    undo(mesh, later, file);
+    EXPECT_EQ(do_task(mesh, later), TaskEnd::kTooEarly);
+    EXPECT_EQ(do_task(mesh, 0), TaskEnd::kDone);
+    EXPECT_EQ(do_task(mesh, later), TaskEnd::kDone);
+    expect_same(collect(noise_scene(), mesh), run_sweep(noise_scene()));
+  }
 }
 
 TEST(TaskFolder, FilesOfTwoRunsOfATaskDoNotFitTogether) {

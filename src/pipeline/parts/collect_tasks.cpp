@@ -41,7 +41,7 @@ class CollectRun {
 
  private:
   TaskFacts facts_of(std::uint64_t task, std::uint64_t count) const {
-    if (has_rest(mesh_.folder, task)) {
+    if (has_result(mesh_.folder, task)) {
       return read_facts(mesh_.folder, identity_, task, task_.simplify.level_costs.size() + 1);
     }
     throw BadInput(mesh_.folder + ": expected all " + std::to_string(count) + " tasks to be done, found task " +

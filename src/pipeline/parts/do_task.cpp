@@ -29,7 +29,7 @@ class TaskRun {
         executor_(control.threads) {}
 
   TaskEnd run() {
-    const auto is_done = [&](std::uint64_t giver) { return has_rest(mesh_.folder, giver); };
+    const auto is_done = [&](std::uint64_t giver) { return has_result(mesh_.folder, giver); };
     if (!std::all_of(givers_.begin(), givers_.end(), is_done)) return TaskEnd::kTooEarly;
     TaskResult result = work();
     require_unchanged(task_, identity_.run);
@@ -71,13 +71,13 @@ std::string facts_of_volume(const VolumeInfo& volume) { return volume_text(volum
 TaskEnd do_task(const TaskMesh& mesh, std::uint64_t task, const RunControl& control) {
   const StandardFloats floats;
   // A worker that waits for others asks again and again. So the volume is opened only once the task is to be worked on.
-  if (has_rest(mesh.folder, task)) return TaskEnd::kDoneBefore;
+  if (has_result(mesh.folder, task)) return TaskEnd::kDoneBefore;
   const std::optional<FileLock> lock = FileLock::take(mesh.folder + "/" + std::to_string(task) + ".lock");
   if (!lock) return TaskEnd::kElsewhere;
-  if (has_rest(mesh.folder, task)) return TaskEnd::kDoneBefore;
+  if (has_result(mesh.folder, task)) return TaskEnd::kDoneBefore;
   return TaskRun(mesh, task, control).run();
 }
 
-bool is_done(const TaskMesh& mesh, std::uint64_t task) { return has_rest(mesh.folder, task); }
+bool is_done(const TaskMesh& mesh, std::uint64_t task) { return has_result(mesh.folder, task); }
 
 }  // namespace isoweave

@@ -77,8 +77,8 @@ std::string rest_file(const std::string& folder, std::uint64_t task) {
   return folder + "/" + std::to_string(task) + ".rest";
 }
 
-bool has_rest(const std::string& folder, std::uint64_t task) {
-  return system::facts_of_file(rest_file(folder, task)).has_value();
+bool has_result(const std::string& folder, std::uint64_t task) {
+  return system::facts_of_file(final_file(folder, task)) && system::facts_of_file(rest_file(folder, task));
 }
 
 namespace {

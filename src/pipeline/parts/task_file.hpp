@@ -71,7 +71,8 @@ struct TaskFacts {
 
 std::string final_file(const std::string& folder, std::uint64_t task);
 std::string rest_file(const std::string& folder, std::uint64_t task);
-bool has_rest(const std::string& folder, std::uint64_t task);
+// Whether both files of a task are there.
+bool has_result(const std::string& folder, std::uint64_t task);
 
 // The pieces of final triangles of a level.
 void write_final_pieces(StateWriter& state, const std::vector<FinalPiece>& pieces);

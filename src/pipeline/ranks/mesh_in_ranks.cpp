@@ -119,7 +119,7 @@ class RanksRun {
     hand_in(task, result.facts, std::move(result.pieces));
   }
 
-  bool is_kept(std::uint64_t task) const { return !options_.results.empty() && has_rest(options_.results, task); }
+  bool is_kept(std::uint64_t task) const { return !options_.results.empty() && has_result(options_.results, task); }
 
   TaskResult kept_result(std::uint64_t task) {
     parts_.erase(task);
