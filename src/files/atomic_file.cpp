@@ -102,6 +102,12 @@ std::string name_of(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
+void require_replaceable(const std::string& path, FileStatus::Kind kind) {
+  if (kind == FileStatus::Kind::kFolder) throw CannotWrite(path + ": is a folder, expected a file name");
+  if (kind != FileStatus::Kind::kRegular) throw CannotWrite(path + ": exists and is not a regular file");
+  if (!system::may_write(path)) cannot_write(path, "exists and cannot be replaced", errno);
+}
+
 // Refuses targets that a rename would destroy or fail on, and returns the name to rename to.
 std::string checked_target(const std::string& path) {
   if (path.empty()) throw CannotWrite("the name of the output file is empty");
@@ -109,14 +115,8 @@ std::string checked_target(const std::string& path) {
   if (name.empty() || name == "." || name == "..") throw CannotWrite(path + ": is a folder, expected a file name");
   const std::optional<FileStatus> status = system::status_of(path);
   if (!status && errno != ENOENT) cannot_write(path, "cannot be looked up", errno);
-  if (!status) return path;
-  if (status->kind == FileStatus::Kind::kFolder) throw CannotWrite(path + ": is a folder, expected a file name");
-  if (status->kind != FileStatus::Kind::kRegular) throw CannotWrite(path + ": exists and is not a regular file");
-  if (!system::may_write(path)) cannot_write(path, "exists and cannot be replaced", errno);
-  if (!system::is_link(path)) return path;
-  std::string target = system::resolve_links(path);
-  if (target.empty()) cannot_write(path, "cannot resolve the link", errno);
-  return target;
+  if (status) require_replaceable(path, status->kind);
+  return system::follow_links(path);
 }
 
 }  // namespace

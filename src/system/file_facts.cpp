@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <memory>
+#include <filesystem>
+#include <system_error>
 
 namespace isoweave::system {
 namespace {
@@ -51,14 +51,14 @@ std::optional<FileStatus> status_of(const std::string& path) {
   return status_from(status);
 }
 
-bool is_link(const std::string& path) {
-  struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
-}
-
-std::string resolve_links(const std::string& path) {
-  const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr), &std::free);
-  return real ? real.get() : std::string();
+std::string follow_links(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
+  std::error_code error;
+  std::filesystem::path target = path;
+  for (int links = 0; std::filesystem::is_symlink(target, error) && links < kMostLinks; ++links) {
+    target = target.parent_path() / std::filesystem::read_symlink(target, error);
+  }
+  return target.string();
 }
 
 bool may_write(const std::string& path) { return ::access(path.c_str(), W_OK) == 0; }

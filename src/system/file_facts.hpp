@@ -32,11 +32,8 @@ struct FileStatus {
 std::optional<FileStatus> status_of(int descriptor);
 std::optional<FileStatus> status_of(const std::string& path);
 
-// Whether the name itself is that of a symbolic link.
-bool is_link(const std::string& path);
-
-// The name that symbolic links lead to; empty on failure, with the reason in errno.
-std::string resolve_links(const std::string& path);
+// The name that symbolic links lead to, whether or not there is a file of that name.
+std::string follow_links(const std::string& path);
 
 // Whether a file may be written; false on failure, with the reason in errno.
 bool may_write(const std::string& path);

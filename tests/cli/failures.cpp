@@ -88,7 +88,12 @@ TEST(CliUsage, EveryWrongCommandLineIsRefused) {
       {mesh(kSmall, {"--roi", "0:4,0:4,2:900"}), "2:900"},
       {mesh(kSmall, {"--slab", "0"}), "--slab"},
       {mesh(kSmall, {"--threads", "0"}), "--threads"},
-      {mesh(kSmall, {"--threads", "two"}), "two"},
+      {mesh(kSmall, {"--threads", "two"}), "--threads: expected a whole number of at least 1, such as 8, or all"},
+      {mesh(kSmall, {"--smooth=1.5"}), "--smooth: expected a whole number of at least 1, found '1.5'"},
+      {mesh(kSmall, {"--preview=-1vox"}), "--preview: expected a length above 0 such as 0.2vox"},
+      {mesh(kSmall, {"--iso", "1"}), "--iso: expected once, as in --iso 300,1200, found more often"},
+      {mesh(kSmall, {"-o", "b.ply"}), "--output: expected once, found more often"},
+      {mesh(kSmall, {"--error"}), "--error: expected a value, found none"},
       {mesh(kSmall, {"--threads", "99999999999999999999"}), "--threads"},
       {mesh(kSmall, {"--schedule", "later"}), "later"},
       {mesh(kSmall, {"--inside", "out"}), "--inside"},
@@ -151,6 +156,26 @@ TEST(CliUsage, InputsAreNeverWrittenOver) {
     expect_failure(folder, {"simplify", "out.ply", "-o", output, "--error", "1"}, 2, "different files");
   }
   expect_failure(folder, mesh(kSmall, {"--report", "./out.ply"}), 2, "different files");
+}
+
+TEST(CliUsage, ALinkStaysALinkWhetherOrNotItsFileIsThere) {
+  const files::Folder folder;
+  std::filesystem::create_directory(folder / "kept");
+  std::filesystem::create_symlink("kept/second.ply", folder / "out.ply");
+  std::filesystem::create_symlink("last.ply", folder / "kept/second.ply");
+  for (int time = 0; time < 2; ++time) {
+    const Result result = run(folder.path(), mesh(kSmall));
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "out.ply"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "kept/second.ply"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / "kept/last.ply")));
+  }
+  for (const auto& [target, says] : {std::pair("nowhere/out.ply", "out.ply: cannot create a file in 'nowhere'"),
+                                     std::pair("out.ply", "out.ply: cannot be looked up")}) {
+    std::filesystem::remove(folder / "out.ply");
+    std::filesystem::create_symlink(target, folder / "out.ply");
+    expect_failure(folder, mesh(kSmall), 4, says);
+  }
 }
 
 TEST(CliBadInput, NothingThereAndNoFile) {
