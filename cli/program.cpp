@@ -139,6 +139,8 @@ void parse(CLI::App& app, const std::vector<std::string>& arguments) {
   } catch (const CLI::ExtrasError& error) {
     const std::string extra = extra_text(verb, arguments);
     refuse(app, arguments, extra.empty() ? error.what() : extra);
+  } catch (const CLI::ArgumentMismatch& error) {
+    refuse(app, arguments, mismatch_text(error.what()));
   } catch (const CLI::ParseError& error) {
     refuse(app, arguments, missing_text(error.what()));
   }

@@ -103,6 +103,18 @@ std::string extra_text(const CLI::App& verb, const std::vector<std::string>& arg
   return fmt::format("'{}' is one argument too many", extra.front());
 }
 
+std::string mismatch_text(const std::string& message) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kLists{
+      {{"--iso", "300,1200"}, {"--labels", "1,3-5"}, {"--lods", "0.5vox,2vox"}}};
+  const std::string option = message.substr(0, message.find(": "));
+  if (message.ends_with("missing")) return option + ": expected a value, found none";
+  if (message.find(": At Most 1 required") == std::string::npos) return message;
+  for (const auto& [name, example] : kLists) {
+    if (option == name) return fmt::format("{0}: expected once, as in {0} {1}, found more often", name, example);
+  }
+  return option + ": expected once, found more often";
+}
+
 std::string missing_text(const std::string& message) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kHints{
       {{"--iso is required", "a number, or auto; isoweave info VOLUME suggests some"},

@@ -17,6 +17,9 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
 // The advice about arguments that a verb has no place for.
 std::string extra_text(const CLI::App& verb, const std::vector<std::string>& arguments);
 
+// The message about an option that has too many values or none, out of CLI11's.
+std::string mismatch_text(const std::string& message);
+
 // CLI11's message about a missing option or value, with an example of what to give.
 std::string missing_text(const std::string& message);
 

@@ -171,7 +171,7 @@ std::unique_ptr<SliceSource> open_input(const InputOptions& input) {
     volume = crop_volume(std::move(volume), region);
   }
   if (input.step.empty()) return volume;
-  const std::int64_t step = parse_count("--step", input.step);
+  const std::int64_t step = parse_count("--step", input.step, "2");
   return input.holds_labels ? thin_label_map(std::move(volume), step) : downsample_volume(std::move(volume), step);
 }
 

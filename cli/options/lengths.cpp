@@ -27,6 +27,20 @@ std::string short_length(const std::string& text) {
   return text;
 }
 
+std::optional<Length> to_length(const std::string& text, const LengthBasis& basis) {
+  try {
+    const Length length = parse_length(short_length(text), basis.unit, basis.diagonal);
+    if (std::isfinite(length.value)) return length;
+  } catch (const std::invalid_argument&) {
+    // The library does not know which option the text came from.
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void wrong_length(std::string_view option, std::string_view range, std::string_view text) {
+  wrong_value(option, fmt::format("a length {} such as 0.2vox, 0.05mm, 30um, 500nm or 0.1%", range), text);
+}
+
 // Whether a length is given in a metric unit, and not in voxels, in percent or without a unit.
 bool is_metric_length(const std::string& text) {
   return !text.empty() && text.find_last_not_of("0123456789.%") == text.size() - 1 &&
@@ -66,13 +80,15 @@ LengthBasis length_basis(const TriangleMesh& mesh) {
 LengthBasis unknown_basis() { return {"", {1, 1, 1}, 1, 0, false}; }
 
 Length parse_error_length(std::string_view option, const std::string& text, const LengthBasis& basis) {
-  try {
-    const Length length = parse_length(short_length(text), basis.unit, basis.diagonal);
-    if (std::isfinite(length.value) && length.value >= 0) return length;
-  } catch (const std::invalid_argument&) {
-    // The library does not know which option the text came from.
-  }
-  wrong_value(option, "a length of at least 0 such as 0.2vox, 0.05mm, 30um, 500nm or 0.1%", text);
+  const std::optional<Length> length = to_length(text, basis);
+  if (!length || !(length->value >= 0)) wrong_length(option, "of at least 0", text);
+  return *length;
+}
+
+Length parse_positive_length(std::string_view option, const std::string& text, const LengthBasis& basis) {
+  const std::optional<Length> length = to_length(text, basis);
+  if (!length || !(length->value > 0)) wrong_length(option, "above 0", text);
+  return *length;
 }
 
 void tell_lengths(const std::string& path, const std::vector<GivenLength>& lengths, bool stated,

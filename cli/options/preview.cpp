@@ -28,9 +28,7 @@ GivenLength given_cell(const PreviewChoice& preview) {
 
 Length preview_cell(const PreviewChoice& preview, const LengthBasis& basis) {
   if (preview.cell == kUsualCell) return {};
-  const Length cell = parse_error_length("--preview", preview.cell, basis);
-  if (!(cell.value > 0)) wrong_value("--preview", "a length above 0", preview.cell);
-  return cell;
+  return parse_positive_length("--preview", preview.cell, basis);
 }
 
 std::string preview_text(const PreviewChoice& preview) { return "preview, cells " + preview.cell; }

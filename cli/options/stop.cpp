@@ -85,9 +85,7 @@ bool drops_specks(const StopOptions& stop) {
 
 Length stop_distance(const StopOptions& stop, const LengthBasis& basis) {
   if (stop.max_distance.empty()) return {};
-  const Length distance = parse_error_length("--max-distance", stop.max_distance, basis);
-  if (!(distance.value > 0)) wrong_value("--max-distance", "a length above 0", stop.max_distance);
-  return distance;
+  return parse_positive_length("--max-distance", stop.max_distance, basis);
 }
 
 std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {

@@ -46,7 +46,7 @@ double parse_share(std::string_view option, std::string_view text) {
   return *value * (percent ? kPercent : 1);
 }
 
-std::int64_t parse_count(std::string_view option, std::string_view text) {
+std::int64_t parse_count(std::string_view option, std::string_view text, std::string_view example) {
   constexpr double kMost = 9e18;
   std::string_view digits = text;
   double factor = 1;
@@ -59,8 +59,8 @@ std::int64_t parse_count(std::string_view option, std::string_view text) {
   const bool whole = part && factor > 1 && *part * factor >= 1 && *part * factor < kMost &&
                      std::floor(*part * factor) == *part * factor;
   if (!whole) {
-    const bool is_digits = to_number<std::int64_t>(text).has_value();
-    wrong_value(option, fmt::format("a whole number of at least 1{}", is_digits ? "" : ", such as 5000 or 50k"), text);
+    const std::string hint = to_finite(text) ? "" : fmt::format(", such as {}", example);
+    wrong_value(option, "a whole number of at least 1" + hint, text);
   }
   return static_cast<std::int64_t>(*part * factor);
 }
@@ -143,7 +143,7 @@ Quality parse_quality(std::string_view text) {
 
 int parse_threads(std::string_view text) {
   if (text == "all") return 0;
-  const std::int64_t threads = parse_count("--threads", text);
+  const std::int64_t threads = parse_count("--threads", text, "8, or all");
   if (threads > kMostThreads) wrong_value("--threads", fmt::format("at most {}", kMostThreads), text);
   return static_cast<int>(threads);
 }

@@ -38,7 +38,8 @@ std::optional<T> to_number(std::string_view text) {
 double parse_share(std::string_view option, std::string_view text);
 
 double parse_number(std::string_view option, std::string_view text);
-std::int64_t parse_count(std::string_view option, std::string_view text);            // at least 1
+// At least 1. The example is shown where the text is no number.
+std::int64_t parse_count(std::string_view option, std::string_view text, std::string_view example = "5000 or 50k");
 int parse_port(std::string_view option, std::string_view text);                      // 0 to 65535
 std::uint64_t parse_bytes(std::string_view option, std::string_view text);           // "800M", "2G", "1.5Gi"
 std::array<double, 3> parse_triple(std::string_view option, std::string_view text);  // "x,y,z"

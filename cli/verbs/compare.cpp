@@ -116,7 +116,7 @@ void run_compare(const CompareArguments& arguments) {
   options.threads = parse_threads(arguments.threads);
   voxel_length(arguments, "");  // finds an error in it now
   if (!arguments.histogram.empty()) {
-    options.bins = static_cast<std::size_t>(parse_count("--histogram", arguments.histogram));
+    options.bins = static_cast<std::size_t>(parse_count("--histogram", arguments.histogram, "100"));
     if (options.bins > kMostBins) wrong_value("--histogram", fmt::format("at most {}", kMostBins), arguments.histogram);
   }
   check_different({arguments.a, arguments.distances});

@@ -18,7 +18,7 @@ std::string folder_beside(const OutputOptions& output) {
 
 std::optional<std::int64_t> asked_blocks(const MeshArguments& arguments) {
   if (arguments.blocks.empty() || arguments.blocks == "auto" || arguments.blocks == "off") return std::nullopt;
-  const std::int64_t size = parse_count("--blocks", arguments.blocks);
+  const std::int64_t size = parse_count("--blocks", arguments.blocks, "512, auto or off");
   if (size < 8) wrong_value("--blocks", "8 cells or more, auto or off", arguments.blocks);
   return size;
 }

@@ -46,7 +46,7 @@ ExtractorKind parse_extractor(std::string_view text) {
 // Passes of --smooth, 0 where it is not given.
 int parse_smooth(std::string_view text) {
   if (text.empty()) return 0;
-  const std::int64_t passes = parse_count("--smooth", text);
+  const std::int64_t passes = parse_count("--smooth", text, "10");
   if (passes > kMostSmoothing) wrong_value("--smooth", fmt::format("at most {} passes", kMostSmoothing), text);
   return static_cast<int>(passes);
 }
@@ -79,7 +79,7 @@ std::int64_t parse_slab(std::string_view text, std::int64_t slices) {
   const std::int64_t whole = slices + 2;
   if (text == "auto") return 0;
   if (text == "whole") return whole;
-  return std::min(parse_count("--slab", text), whole);
+  return std::min(parse_count("--slab", text, "16, auto or whole"), whole);
 }
 
 MeshOptions mesh_options(const MeshArguments& arguments) {

@@ -112,7 +112,7 @@ void parse_every(std::string_view text, CheckpointOptions& checkpoint) {
   const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
   const std::string_view number = text.substr(0, digits);
   const std::string_view unit = text.substr(digits);
-  if (unit == "layers") checkpoint.layers = parse_count("--every", number);
+  if (unit == "layers") checkpoint.layers = parse_count("--every", number, "16layers");
   for (const auto& [name, seconds] : kUnits) {
     if (unit == name) checkpoint.seconds = seconds * parse_number("--every", number);
   }

@@ -48,8 +48,8 @@ struct RenderArguments {
   bool wireframe = false, axes = false, quiet = false, no_clobber = false, no_color_bar = false;
 };
 
-int parse_limited(std::string_view option, std::string_view text, std::int64_t most) {
-  const std::int64_t count = parse_count(option, text);
+int parse_limited(std::string_view option, std::string_view text, std::int64_t most, std::string_view example) {
+  const std::int64_t count = parse_count(option, text, example);
   if (count > most) wrong_value(option, fmt::format("at most {}", most), text);
   return static_cast<int>(count);
 }
@@ -122,8 +122,8 @@ RenderOptions parse_options(const RenderArguments& arguments) {
   RenderOptions options;
   auto [width, height] = halves(arguments.size, 'x');
   if (arguments.size.find('x') == std::string::npos) height = width;
-  options.width = parse_limited("--size", width, kMostPixels);
-  options.height = parse_limited("--size", height, kMostPixels);
+  options.width = parse_limited("--size", width, kMostPixels, "1200x900");
+  options.height = parse_limited("--size", height, kMostPixels, "1200x900");
   options.view = parse_view(arguments.view);
   options.up = parse_axis(arguments.up);
   options.zoom = parse_zoom(arguments.zoom);
@@ -134,7 +134,7 @@ RenderOptions parse_options(const RenderArguments& arguments) {
   options.shading =
       parse_choice<Shading>("--shading", arguments.shading, {{"smooth", Shading::kSmooth}, {"flat", Shading::kFlat}});
   options.wireframe = arguments.wireframe;
-  options.samples = parse_limited("--samples", arguments.samples, kMostSamples);
+  options.samples = parse_limited("--samples", arguments.samples, kMostSamples, "3");
   options.threads = parse_threads(arguments.threads);
   if (!arguments.colour_by.empty()) parse_choice<int>("--color-by", arguments.colour_by, {{"quality", 0}});
   if (!arguments.range.empty()) {
