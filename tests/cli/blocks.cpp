@@ -239,7 +239,9 @@ TEST(CliTasks, OtherFoldersAndVolumesAreRefused) {
   // The result of a task of another mesh.
   ASSERT_EQ(run(folder.path(), {"generate", "box", "--size", "24", "--type", "uint8", "-o", "b.nrrd"}).code, 0);
   ASSERT_EQ(run(folder.path(), {"plan", "b.nrrd", "--iso", "127.5", "--blocks", "16", "-o", "others"}).code, 0);
-  std::filesystem::copy(folder / "tasks/0.rest", folder / "others/0.rest");
+  for (const std::string file : {"/0.final", "/0.rest"}) {
+    std::filesystem::copy(folder / ("tasks" + file), folder / ("others" + file));
+  }
   expect_failed(run(folder.path(), {"work", "others", "--quiet"}), 3, "others/0.rest: belongs to another mesh");
   files::write_bytes(folder / "tasks/plan.json", "{}");
   expect_failed(run(folder.path(), {"status", "tasks"}), 3, "tasks/plan.json");
