@@ -30,7 +30,7 @@ LengthBasis unknown_basis();
 // Parses a length, with the option's name in its message. Refuses lengths that cannot be an error.
 Length parse_error_length(std::string_view option, const std::string& text, const LengthBasis& basis);
 
-// The same, and refuses 0.
+// Parses a length in the same way, and refuses 0 as well.
 Length parse_positive_length(std::string_view option, const std::string& text, const LengthBasis& basis);
 
 // A length as it was given.

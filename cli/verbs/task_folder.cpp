@@ -61,7 +61,7 @@ void require_planned_volume(const PlannedMesh& plan, const std::string& path, co
                   plan.arguments.input.path, path, expected, found));
 }
 
-// A rule for make for the tasks of each stage.
+// A rule for make for the tasks of each stage. A pattern with two targets is run once for both files of a task.
 std::string makefile(const TaskList& tasks) {
   std::string text =
       "# make -j8 -C FOLDER; then: isoweave collect FOLDER -o MESH\nISOWEAVE ?= isoweave\n"
@@ -70,12 +70,14 @@ std::string makefile(const TaskList& tasks) {
   for (std::size_t stage = 0; stage < tasks.stages.size(); ++stage) {
     const std::uint64_t first = tasks.first_of(stage);
     text += fmt::format(" stage-{}", stage);
-    rules += fmt::format("\nSTAGE{0} := $(addsuffix .rest,$(shell seq {1} {2}))\nstage-{0}: $(STAGE{0})\n", stage,
-                         first, first + tasks.stages[stage] - 1);
+    rules += fmt::format(
+        "\nSTAGE{0} := $(foreach task,$(shell seq {1} {2}),$(task).final $(task).rest)\nstage-{0}: $(STAGE{0})\n",
+        stage, first, first + tasks.stages[stage] - 1);
     if (stage > 0) rules += fmt::format("$(STAGE{}): | stage-{}\n", stage, stage - 1);
     rules += fmt::format(".PHONY: stage-{}\n", stage);
   }
-  return text + "\n.PHONY: all\n" + rules + "\n%.rest:\n\t$(ISOWEAVE) work . --task $* --threads $(THREADS) --quiet\n";
+  return text + "\n.PHONY: all\n" + rules +
+         "\n%.final %.rest:\n\t$(ISOWEAVE) work . --task $* --threads $(THREADS) --quiet\n";
 }
 
 // An array of jobs for each stage.

@@ -27,7 +27,7 @@ class ExtractedSurface {
  public:
   using Corners = measure::TriangleCorners;
 
-  // What reach() finds out about a triangle besides its answer.
+  // The facts about a triangle that reach() finds out besides its answer.
   struct Looked {
     std::uint64_t comparisons = 0;  // of a part with a triangle
     double farthest = 0;            // where it is within the distance: the distance of all its points, or more

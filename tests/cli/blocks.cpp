@@ -222,7 +222,13 @@ TEST(CliTasks, MakeWorksOnThem) {
   const files::Folder folder;
   plan(folder, "40");
   const std::string program = std::filesystem::absolute(ISOWEAVE_BINARY).string();
-  ASSERT_EQ(std::system(("make -s -j3 -C '" + folder / "tasks' ISOWEAVE='" + program + "'").c_str()), 0);
+  const std::string make = "make -s -j3 -C '" + folder / "tasks' ISOWEAVE='" + program + "'";
+  ASSERT_EQ(std::system(make.c_str()), 0);
+  for (const std::string lost : {"tasks/0.final", "tasks/1.rest"}) {
+    std::filesystem::remove(folder / lost);
+    ASSERT_EQ(std::system(make.c_str()), 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / lost)) << lost;
+  }
   ASSERT_EQ(std::system(("sh -n '" + folder / "tasks/slurm.sh'").c_str()), 0);
   expect_collected(folder);
 }
