@@ -7,6 +7,7 @@
 #include "files/atomic_file.hpp"
 #include "isoweave/error.hpp"
 #include "system/durable_file.hpp"
+#include "system/file_facts.hpp"
 
 namespace isoweave {
 namespace {
@@ -43,7 +44,7 @@ void AtomicFolder::check_free(const std::string& path) {
   if (!empty || error) throw CannotWrite(path + ": exists, expected nothing or an empty folder of that name");
 }
 
-AtomicFolder::AtomicFolder(const std::string& path) : path_(without_slashes(path)) {
+AtomicFolder::AtomicFolder(const std::string& path) : path_(system::follow_links(without_slashes(path))) {
   check_free(path);
   temporary_ = make_temporary(path_);
 }

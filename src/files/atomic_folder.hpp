@@ -32,7 +32,7 @@ class AtomicFolder {
   void commit();
 
  private:
-  std::string path_;       // without slashes at the end
+  std::string path_;       // that links lead to, without slashes at the end
   std::string temporary_;  // empty once it was renamed
 };
 

@@ -11,6 +11,7 @@
 
 #include "files.hpp"
 #include "files/atomic_file.hpp"
+#include "files/atomic_folder.hpp"
 #include "isoweave/error.hpp"
 #include "isoweave/output_file.hpp"
 #include "meshes.hpp"
@@ -317,6 +318,21 @@ TEST(AtomicFile, AMeshCannotBeFinishedAfterAFailedWrite) {
   }
   EXPECT_THROW(sink->finish(), std::logic_error);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));
+}
+
+// A link is followed to a folder that is there, and to one that is not.
+TEST(AtomicFolder, IsWrittenThroughASymbolicLink) {
+  const files::Folder folder;
+  std::filesystem::create_directories(folder / "store/empty");
+  for (const std::string name : {"empty", "new"}) {
+    const std::string link = folder / (name + ".precomputed");
+    std::filesystem::create_directory_symlink("store/" + name, link);
+    AtomicFolder out(link + "/");
+    out.write_file("info", bytes_of("after"));
+    out.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(link)) << name;
+    EXPECT_EQ(files::read_bytes(folder / ("store/" + name + "/info")), "after");
+  }
 }
 
 }  // namespace
