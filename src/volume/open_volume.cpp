@@ -166,13 +166,12 @@ void refuse_array_options(const VolumeInfo& info, const OpenOptions& options) {
   }
   if (!array && options.level) bad_input(info.path, "HDF5, Zarr, N5 or a precomputed volume for --level", info.format);
   const bool axes = array || is_one_of(info.format, {"npy", "npz", "tiff", "nifti", "nrrd", "metaimage", "analyze",
-                                                     "mgh", "mrc", "fits"});
+                                                     "mgh", "mrc", "fits", "dicom", "dicom-seg"});
   if (!axes && (options.channel || options.time || options.slices_from != SliceAxis::kSlices)) {
-    bad_input(
-        info.path,
-        "NPY, NPZ, Analyze, MGH, MRC, FITS, TIFF, NIfTI, NRRD, MetaImage, HDF5, Zarr or N5 for --channel, --time and "
-        "--slices-from",
-        info.format);
+    bad_input(info.path,
+              "NPY, NPZ, Analyze, MGH, MRC, FITS, TIFF, NIfTI, NRRD, MetaImage, DICOM, HDF5, Zarr or N5 for --channel, "
+              "--time and --slices-from",
+              info.format);
   }
 }
 

@@ -16,7 +16,7 @@
 #include "volume/volume_index.hpp"
 #include "vti_helpers.hpp"
 #ifdef ISOWEAVE_HAS_GDCM
-#include "dicom_helpers.hpp"
+#include "dicom_segment_helpers.hpp"
 #endif
 #ifdef ISOWEAVE_HAS_PNG
 #include "png_helpers.hpp"
@@ -295,6 +295,17 @@ void put_dicom_as_found(Seeds& seeds) {
   seeds.put("dicom_export", plain + kNext + series);
 }
 
+void put_dicom_segments(Seeds& seeds) {
+  using namespace dicom_files;
+  const std::vector<SegmentFrame> apart{{1, 30, {0, 34}}, {2, 32.5, {1}}, {2, 40, {33}}};
+  const std::vector<SegmentFrame> shared{{1, 30, {0, 1}}, {300, 30, {1, 2}}};
+  const std::vector<NamedSegment> names{{1, "a"}, {2, "b"}};
+  seeds.put("dicom", segmentation(apart, {.segments = names}));
+  seeds.put("dicom", segmentation(shared, {.segments = names}));
+  seeds.put("dicom", segmentation(apart, {.type = "FRACTIONAL", .segments = names, .more = segment_number(0xe, 200)}));
+  seeds.put("dicom", segmentation({{0, 30, {1}, 2}, {0, 31, {2}, 1}}, {.type = "LABELMAP", .segments = names}));
+}
+
 void put_dicom(Seeds& seeds) {
   using namespace dicom_files;
   const TempFolder folder;
@@ -314,6 +325,7 @@ void put_dicom(Seeds& seeds) {
   seeds.put("dicom", frames);
   seeds.put("dicom", deflated_file(frames));
   put_dicom_as_found(seeds);
+  put_dicom_segments(seeds);
   seeds.put("dicom", deflated_file(plain));
   const std::string lengths = run_lengths(slice(0));
   const std::string table = item(bytes_of(0U) + bytes_of(static_cast<std::uint32_t>(lengths.size() + 8)));

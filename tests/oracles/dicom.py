@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """DICOM as scanners and archives leave it, written by pydicom: uneven slices, scaling of each slice, frames without
-groups, data sets without magic, exports. Right values are those of a formula.
+groups, data sets without magic, exports, segmentations. Right values are those of a formula.
 """
 
 import os
@@ -179,11 +179,97 @@ def check_bare_exports(oracle, folder, mesh):
     check_ball(oracle, top, mesh, 0.2)
 
 
+def check_times(oracle, folder, mesh):
+    """Two echoes in a series, the second half as bright: the ball is in both."""
+    places = np.arange(55) * 2.5
+    top = os.path.join(folder, "echoes")
+    for number in range(110):
+        n = (37 * number) % 110
+        data = put_slice(top, f"{number}.dcm", places[n % 55])
+        data.EchoTime = "4.9" if n < 55 else "12.1"
+        data.PixelData = np.round(slice_of_ball(places[n % 55]) / (1 + n // 55)).astype("<i2").tobytes()
+        save(data)
+    path = os.path.join(folder, "echoes_in_frames", "a.dcm")
+    data = put_frames(path, np.repeat(places, 2))
+    data.PixelData = np.round([slice_of_ball(z) / echo for z in places for echo in (1, 2)]).astype("<i2").tobytes()
+    del data.ImagePositionPatient
+    data.PerFrameFunctionalGroupsSequence = Sequence([item_of(
+        MREchoSequence=Sequence([item_of(EffectiveEchoTime=echo)]),
+        PlanePositionSequence=Sequence([item_of(ImagePositionPatient=[0, 0, float(z)])]))
+        for z in places for echo in (4.9, 12.1)])
+    save(data)
+    for volume in (top, path):
+        check_ball(oracle, volume, mesh, 0.2)
+        with oracle.file(volume):
+            oracle.mesh(volume, mesh, "--iso", 500, "--error", 0, "--time", 1)
+            distance = np.sqrt(((ply_vertices(mesh) - CENTRE) ** 2).sum(axis=1))
+            oracle.expect_near(distance, RADIUS, 0.2, f"{volume}: the ball of the second echo")
+            notes = " ".join(oracle.info(volume)["notes"])
+            oracle.expect("Echo Time (4.9, 12.1)" in notes, f"{volume}: a note on echoes, found {notes}")
+
+
+def item_of(**fields):
+    data = Dataset()
+    for name, value in fields.items():
+        setattr(data, name, value)
+    return data
+
+
+def put_segmentation(path, frames, names, turn):
+    """frames: (segment, place along the normal, mask), in any order."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    data = new_file(path, np.zeros(1))
+    data.SOPClassUID = data.file_meta.MediaStorageSOPClassUID = "1.2.840.10008.5.1.4.1.1.66.4"
+    data.BitsAllocated = data.BitsStored = 1
+    data.HighBit = data.PixelRepresentation = 0
+    del data.PixelSpacing, data.ImageOrientationPatient
+    data.NumberOfFrames = len(frames)
+    data.SegmentationType = "BINARY"
+    data.SegmentSequence = Sequence([item_of(SegmentNumber=n, SegmentLabel=name) for n, name in names.items()])
+    data.SharedFunctionalGroupsSequence = Sequence([item_of(
+        PixelMeasuresSequence=Sequence([item_of(PixelSpacing=[STEP, STEP], SliceThickness=STEP)]),
+        PlaneOrientationSequence=Sequence([item_of(ImageOrientationPatient=[*turn[0], *turn[1]])]))])
+    data.PerFrameFunctionalGroupsSequence = Sequence([item_of(
+        PlanePositionSequence=Sequence([item_of(ImagePositionPatient=[float(x) for x in z * turn[2]])]),
+        SegmentIdentificationSequence=Sequence([item_of(ReferencedSegmentNumber=segment)]))
+        for segment, z, _ in frames])
+    data.PixelData = np.packbits(np.concatenate([mask.ravel() for _, _, mask in frames]), bitorder="little").tobytes()
+    if len(data.PixelData) % 2:
+        data.PixelData += b"\0"
+    return data
+
+
+def check_segmentation(oracle, folder, mesh):
+    """Two balls in planes that are turned, each without its empty frames, the planes between them without any."""
+    turn = np.array([[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]])
+    balls = {1: ("Left ball", [50, 60, 40], 25), 4: ("Right ball", [70, 64, 130], 30)}
+    places = np.arange(90) * STEP
+    z, y, x = np.meshgrid(places, np.arange(SIZE) * STEP, np.arange(SIZE) * STEP, indexing="ij")
+    frames = []
+    for segment, (_, centre, radius) in balls.items():
+        inside = (x - centre[0]) ** 2 + (y - centre[1]) ** 2 + (z - centre[2]) ** 2 <= radius**2
+        frames += [(segment, places[n], plane) for n, plane in enumerate(inside) if plane.any()]
+    frames = [frames[(37 * n) % len(frames)] for n in range(len(frames))]
+    path = os.path.join(folder, "segments", "a.dcm")
+    save(put_segmentation(path, frames, {n: name for n, (name, _, _) in balls.items()}, turn))
+    with oracle.file(path):
+        oracle.run("mesh", path, "--labels", "all", "-o", mesh, "--error", 0, "--quiet")
+        for segment, (name, centre, radius) in balls.items():
+            file = mesh.replace(".ply", f"_{name.replace(' ', '_')}.ply")
+            points = ply_vertices(file)
+            oracle.expect_near(points.mean(axis=0), np.array(centre) @ turn, 0.2, f"{name}: its middle")
+            distance = np.sqrt(((points - np.array(centre) @ turn) ** 2).sum(axis=1))
+            oracle.expect_near(distance, radius, STEP, f"{name}: its radius")
+            check = oracle.check(file)
+            oracle.expect_equal((check["euler"], check["open_edges"]), (2, 0), f"{name}: one closed ball")
+
+
 def main():
     oracle = Oracle(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
         mesh = os.path.join(folder, "mesh.ply")
-        for check in (check_uneven, check_scaling, check_stacks, check_bare_exports):
+        for check in (check_uneven, check_scaling, check_stacks, check_bare_exports, check_times,
+                      check_segmentation):
             check(oracle, folder, mesh)
     oracle.finish()
 

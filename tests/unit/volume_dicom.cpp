@@ -278,7 +278,7 @@ TEST(Dicom, RefusesWhatIsNoGreySliceInAPlace) {
   EXPECT_TRUE(contains(with(fields), "expected grey samples (MONOCHROME1 or 2), found 'PALETTE COLOR' of 1 samples"));
   fields = {};
   fields.bits = 12;
-  EXPECT_TRUE(contains(with(fields), "8, 16 or 32 bits allocated, found 12"));
+  EXPECT_TRUE(contains(with(fields), "1, 8, 16 or 32 bits allocated, found 12"));
   fields = {};
   fields.position.clear();
   EXPECT_TRUE(contains(with(fields), "expected 3 numbers as Image Position (Patient), found none"));

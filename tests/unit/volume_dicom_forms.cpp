@@ -317,29 +317,6 @@ TEST(DicomSyntax, ThatIsNotReadIsNamed) {
   EXPECT_TRUE(contains(found("102"), "(MPEG or HEVC)"));
 }
 
-// Frames without anything in them may be left out of a segmentation.
-TEST(DicomSegmentation, IsNotInterpolatedWhereFramesAreLeftOut) {
-  const TempFolder folder;
-  const std::string image = "1.2.840.10008.5.1.4.1.1.2", segmentation = "1.2.840.10008.5.1.4.1.1.66.4";
-  const auto of_class = [&](const std::vector<std::string>& frames) {
-    std::string samples;
-    for (std::size_t n = 0; n < frames.size(); ++n) samples += slice(n);
-    std::string file = enhanced(frames, samples);
-    const std::string before = element(8, 0x16, "UI", image);
-    const std::size_t place = file.find(before);
-    file.replace(place, before.size(), element(8, 0x16, "UI", segmentation));
-    folder.put("bare", file.substr(place));
-    return folder.put("a", file);
-  };
-  EXPECT_EQ(open_volume(of_class({frame_at(0), frame_at(2), frame_at(4)}))->info().dims[2], 3);
-  const std::string gap = of_class({frame_at(0), frame_at(2), frame_at(8)});
-  EXPECT_TRUE(contains(refusal(gap), "expected a segmentation with all its slices, also the empty ones, found 3 of 5"));
-  EXPECT_TRUE(contains(refusal(folder / "bare"), "found 3 of 5")) << "without a meta group";
-  OpenOptions options;
-  options.uneven_slices = UnevenSlices::kMean;
-  EXPECT_EQ(open_volume(gap, options)->info().dims[2], 3);
-}
-
 TEST(DicomSeries, WithoutUidIsChosenByAName) {
   const TempFolder folder;
   DicomFields fields;

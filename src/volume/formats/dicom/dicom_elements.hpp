@@ -47,6 +47,7 @@ class DicomElementWalk {
     big_endian_ = big_endian;
   }
 
+  bool is_big_endian() const { return big_endian_; }
   std::uint64_t position() const { return position_; }
   bool at_end() const { return position_ >= file_.size(); }
   // Sequences and items that the element that next() gave lies in.

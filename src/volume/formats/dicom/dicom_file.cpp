@@ -68,7 +68,7 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
     std::uint32_t tag;
     std::string DicomSlice::*field;
   };
-  static constexpr std::array<Known, 16> kKnown{{{0x00080018, &DicomSlice::image},
+  static constexpr std::array<Known, 17> kKnown{{{0x00080018, &DicomSlice::image},
                                                  {0x00080016, &DicomSlice::media},
                                                  {0x00020002, &DicomSlice::media},
                                                  {0x00020010, &DicomSlice::syntax},
@@ -77,6 +77,7 @@ void take_text(DicomSlice& slice, const DicomElementWalk& walk, const DicomEleme
                                                  {0x00180050, &DicomSlice::thickness},
                                                  {0x00180088, &DicomSlice::slice_spacing},
                                                  {0x0020000e, &DicomSlice::series},
+                                                 {0x00200013, &DicomSlice::instance},
                                                  {0x00200032, &DicomSlice::position},
                                                  {0x00200037, &DicomSlice::orientation},
                                                  {0x00280004, &DicomSlice::photometric},
@@ -95,6 +96,7 @@ void take(DicomSlice& slice, const DicomElementWalk& walk, const DicomElement& e
   constexpr std::uint32_t kDoseScaling = 0x3004000e;
   take_number(slice, walk, element);
   take_text(slice, walk, element);
+  take_moment(slice.moments, walk, element);
   // A dose has no Rescale Slope.
   if (element.tag == kDoseScaling && slice.slope.empty()) slice.slope = walk.text(element);
 }
@@ -172,13 +174,22 @@ std::vector<std::byte> bytes_at(DicomBytes& file, const DicomRange& range) {
   return bytes;
 }
 
+// The lowest bit of a byte is the first sample of its eight.
+std::vector<std::byte> bytes_of_bits(std::span<const std::byte> bits, std::size_t first, std::size_t count) {
+  std::vector<std::byte> bytes(count);
+  for (std::size_t n = 0; n < count; ++n) bytes[n] = bits[(first + n) / 8] >> (first + n) % 8 & std::byte{1};
+  return bytes;
+}
+
 std::vector<std::byte> plain_samples(const DicomSlice& slice, DicomBytes& file, std::size_t bytes) {
-  if (slice.pixel_bytes() < bytes) {
-    bad_input(slice.path, std::to_string(bytes) + " bytes of samples", std::to_string(slice.pixel_bytes()));
+  const std::uint64_t stored = slice.bits == 1 ? slice.plain_bytes() : bytes;
+  if (slice.pixel_bytes() < stored) {
+    bad_input(slice.path, std::to_string(stored) + " bytes of samples", std::to_string(slice.pixel_bytes()));
   }
-  std::vector<std::byte> samples = bytes_at(file, {slice.pixels.front().first, bytes});
+  std::vector<std::byte> samples = bytes_at(file, {slice.pixels.front().first, stored});
   const bool big = slice.syntax == kBigEndian;
   if (big && slice.bits != 16) bad_input(slice.path, "big-endian samples of 16 bits", std::to_string(slice.bits));
+  if (slice.bits == 1) return bytes_of_bits(samples, static_cast<std::size_t>(slice.first_bit), bytes);
   if (big != (std::endian::native == std::endian::big)) {
     swap_sample_bytes(samples, static_cast<std::size_t>(slice.bits) / 8);
   }
@@ -232,6 +243,11 @@ std::uint64_t DicomSlice::pixel_bytes() const {
   return sum;
 }
 
+std::uint64_t DicomSlice::plain_bytes() const {
+  const auto all = static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns);
+  return (static_cast<std::uint64_t>(first_bit) + all * static_cast<std::uint64_t>(bits) + 7) / 8;
+}
+
 std::string DicomSlice::name() const {
   const std::size_t last = path.rfind('/');
   if (last == std::string::npos || last == 0) return path;
@@ -277,6 +293,7 @@ bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes)
 
 bool is_copy(const DicomSlice& a, const DicomSlice& b) {
   if (a.image != b.image || a.syntax != b.syntax || a.pixels.size() != b.pixels.size()) return false;
+  if (a.frame != b.frame) return false;
   const DicomBytesPtr first = bytes_of(a.file, a.syntax, a.data_set);
   const DicomBytesPtr second = bytes_of(b.file, b.syntax, b.data_set);
   return std::equal(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), [&](const DicomRange& x, const DicomRange& y) {

@@ -11,6 +11,8 @@
 
 #include "isoweave/volume.hpp"
 #include "volume/formats/dicom/dicom_elements.hpp"
+#include "volume/formats/dicom/dicom_moments.hpp"
+#include "volume/formats/dicom/dicom_segments.hpp"
 
 namespace isoweave {
 
@@ -42,6 +44,9 @@ struct DicomSlice {
   std::string thickness;
   std::string slope;
   std::string intercept;
+  std::string instance;  // Instance Number
+  DicomMoments moments;
+  std::size_t frame = 0;  // of the file, from 0
 
   bool has_unit = true;   // whether the pixel spacing is in mm; else it is not said
   std::string placed_by;  // where a frame's place is not its own: what it is taken from, for a note
@@ -50,10 +55,17 @@ struct DicomSlice {
   // in a deflated file are counted as inflated.
   std::vector<DicomRange> pixels;
   bool packed = false;
+  int first_bit = 0;  // of the first byte, where samples are plain and have 1 bit: frames follow without a gap
+
+  // Where the image is a segmentation: its segments, and the one that the frame is of, 0 if it is of all.
+  std::shared_ptr<const DicomSegments> segmentation;
+  std::uint32_t segment = 0;
+
   std::uint64_t data_set = 0;         // its first byte
   std::shared_ptr<DicomBytes> bytes;  // the open file, where it holds several frames
 
-  std::uint64_t pixel_bytes() const;
+  std::uint64_t pixel_bytes() const;  // as they are stored
+  std::uint64_t plain_bytes() const;  // that the samples take where they are not packed
 
   // The path but for the folders above that of the file, for messages that name two of them.
   std::string name() const;
@@ -70,10 +82,11 @@ bool is_dicomdir(const std::string& path);
 // by decode_dicom.
 bool has_bits_above(const DicomSlice& slice, SampleType type, std::size_t bytes);
 
-// Whether the files of two slices hold the same bytes as samples.
+// Whether two slices are one frame of one image, and their files hold the same bytes as samples.
 bool is_copy(const DicomSlice& a, const DicomSlice& b);
 
-// The samples, in the machine's byte order. Throws BadInput unless they are `bytes` of `type`.
+// The samples, in the machine's byte order; those of 1 bit as bytes, 0 or 1. Throws BadInput unless they are `bytes` of
+// `type`.
 std::vector<std::byte> decode_dicom(const DicomSlice& slice, SampleType type, std::size_t bytes);
 
 // Unpack samples after check_frame_header. Throw BadInput when they do not decode to `bytes`.

@@ -12,6 +12,12 @@ namespace {
 
 constexpr std::size_t kMostFrames = 1 << 17;
 
+// All four are numbers of 16 bits.
+std::uint64_t bits_of_frame(const DicomSlice& slice) {
+  const auto bits = static_cast<std::uint64_t>(slice.bits) * static_cast<std::uint64_t>(slice.samples);
+  return static_cast<std::uint64_t>(slice.rows * slice.columns) * bits;
+}
+
 void override_with(std::string& text, const std::string& other) {
   if (!other.empty()) text = other;
 }
@@ -32,6 +38,7 @@ void DicomFrames::take(const DicomElementWalk& walk, const DicomElement& element
   // A group's sequence, its item, the macro's sequence, its item.
   constexpr std::size_t kDepth = 4;
   stack_.take(walk, element);
+  segments_.take(walk, element);
   if (walk.depth() == 0) {
     if (const std::string_view name = unread_samples(element.tag); !name.empty()) unread_ = name;
     group_ = element.tag == kSharedGroups ? Group::kShared : element.tag == kFrameGroups ? Group::kFrame : Group::kNone;
@@ -58,11 +65,14 @@ void DicomFrames::take_place(const DicomElementWalk& walk, const DicomElement& e
                                                 {0x00280030, &Place::pixel_spacing},
                                                 {0x00281052, &Place::intercept},
                                                 {0x00281053, &Place::slope}}};
+  constexpr std::uint32_t kSegment = 0x0062000b;
   if (group_ == Group::kFrame && frames_.empty()) return;
   Place& place = group_ == Group::kShared ? shared_ : frames_.back();
+  if (element.tag == kSegment && element.length >= 2) place.segment = walk.number(element.value, 2);
   for (const Known& known : kKnown) {
     if (known.tag == element.tag) place.*known.field = walk.text(element);
   }
+  take_moment(place.moments, walk, element);
 }
 
 void DicomFrames::set_samples(bool packed, DicomFragments fragments, DicomRange plain) {
@@ -95,6 +105,8 @@ DicomSlice DicomFrames::slice(const DicomSlice& common, std::size_t frame) const
     override_with(slice.slope, place->slope);
     override_with(slice.intercept, place->intercept);
     override_with(slice.image_type, place->image_type);
+    for (std::size_t n = 0; n < slice.moments.size(); ++n) override_with(slice.moments[n], place->moments[n]);
+    if (place->segment != 0) slice.segment = place->segment;
   }
   return slice;
 }
@@ -110,27 +122,38 @@ std::vector<DicomSlice> DicomFrames::slices(const DicomSlice& common) const {
   for (std::size_t frame = 0; frame < count; ++frame) {
     slices.push_back(slice(common, frame));
     if (count > 1) slices.back().path += " (frame " + std::to_string(frame + 1) + ")";
+    slices.back().frame = frame;
     slices.back().packed = packed_;
+    if (!packed_) slices.back().first_bit = static_cast<int>(frame * bits_of_frame(common) % 8);
     slices.back().pixels = std::move(samples[frame]);
   }
-  if (frames_.empty() && count > 1) stack_.place(slices);
+  if (is_segmentation_class(common.media)) {
+    add_segments(slices);
+  } else if (frames_.empty() && count > 1) {
+    stack_.place(slices);
+  }
   return slices;
+}
+
+// Says of each slice that it is of a segmentation, whose frames lie where their groups say and nowhere else.
+void DicomFrames::add_segments(std::vector<DicomSlice>& slices) const {
+  const auto segments = std::make_shared<const DicomSegments>(segments_);
+  for (DicomSlice& slice : slices) slice.segmentation = segments;
 }
 
 std::vector<std::vector<DicomRange>> DicomFrames::samples_of(const DicomSlice& common, std::size_t count) const {
   if (count == 1) return {packed_ ? fragments_.list : std::vector<DicomRange>{plain_}};
   std::vector<std::vector<DicomRange>> samples;
   if (packed_ && fragments_.list.size() != count) return fragments_by_table(common.path, count);
-  const auto bits = static_cast<std::uint64_t>(common.bits) * static_cast<std::uint64_t>(common.samples);
-  const auto bytes = static_cast<std::uint64_t>(common.rows * common.columns) * bits / 8;
-  // All three are numbers of 16 bits, and there are fewer than 2^17 frames.
-  if (bytes == 0) bad_input(common.path, "samples of 8, 16 or 32 bits", std::to_string(common.bits));
-  if (!packed_ && bytes * count > plain_.second) {
-    bad_input(common.path, std::to_string(bytes * count) + " bytes of samples", std::to_string(plain_.second));
+  const std::uint64_t bits = bits_of_frame(common);
+  if (bits == 0) bad_input(common.path, "samples of 1, 8, 16 or 32 bits", std::to_string(common.bits));
+  if (!packed_ && bits > 8 * plain_.second / count) {
+    bad_input(common.path, std::to_string((bits * count + 7) / 8) + " bytes of samples", std::to_string(plain_.second));
   }
   for (std::size_t frame = 0; frame < count; ++frame) {
-    const DicomRange range = packed_ ? fragments_.list[frame] : DicomRange{plain_.first + frame * bytes, bytes};
-    samples.push_back({range});
+    const std::uint64_t begin = frame * bits / 8;
+    const std::uint64_t end = (frame * bits + bits + 7) / 8;
+    samples.push_back({packed_ ? fragments_.list[frame] : DicomRange{plain_.first + begin, end - begin}});
   }
   return samples;
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "volume/formats/dicom/dicom_file.hpp"
+#include "volume/formats/dicom/dicom_moments.hpp"
+#include "volume/formats/dicom/dicom_segments.hpp"
 #include "volume/formats/dicom/dicom_stack.hpp"
 
 namespace isoweave {
@@ -29,18 +31,22 @@ class DicomFrames {
   // The place according to the groups; empty where they do not give it.
   struct Place {
     std::string position, orientation, pixel_spacing, slice_spacing, thickness, slope, intercept, image_type;
+    DicomMoments moments;
+    std::uint32_t segment = 0;  // of a segmentation
   };
   enum class Group { kNone, kShared, kFrame };
 
   void take_place(const DicomElementWalk& walk, const DicomElement& element);
   std::size_t count_of(const DicomSlice& common) const;
   DicomSlice slice(const DicomSlice& common, std::size_t frame) const;
+  void add_segments(std::vector<DicomSlice>& slices) const;
   std::vector<std::vector<DicomRange>> samples_of(const DicomSlice& common, std::size_t count) const;
   std::vector<std::vector<DicomRange>> fragments_by_table(const std::string& path, std::size_t count) const;
   std::uint32_t table_entry(std::size_t n) const;
 
   DicomBytes& file_;
   DicomStack stack_;
+  DicomSegments segments_;
   Group group_ = Group::kNone;  // that the last element lies in
   Place shared_;
   std::vector<Place> frames_;

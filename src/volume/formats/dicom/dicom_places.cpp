@@ -22,10 +22,12 @@ std::string text_of(const SliceKindFacts& facts) {
 }
 
 SampleType sample_type_of(const DicomSlice& slice) {
+  if (slice.bits == 1 && slice.packed) bad_input(slice.path, "samples of 1 bit as they are", "packed ones");
+  if (slice.bits == 1) return SampleType::kUint8;
   if (slice.bits == 8) return slice.is_signed ? SampleType::kInt8 : SampleType::kUint8;
   if (slice.bits == 16) return slice.is_signed ? SampleType::kInt16 : SampleType::kUint16;
   if (slice.bits == 32) return slice.is_signed ? SampleType::kInt32 : SampleType::kUint32;
-  bad_input(slice.path, "8, 16 or 32 bits allocated", std::to_string(slice.bits));
+  bad_input(slice.path, "1, 8, 16 or 32 bits allocated", std::to_string(slice.bits));
 }
 
 // Refuses packed samples that no decoder is there for, by the name of their family. Files of other series in a folder
@@ -47,7 +49,10 @@ void refuse_unread_syntax(const DicomSlice& slice) {
 
 SliceKindFacts facts_of(const DicomSlice& slice) {
   refuse_unread_syntax(slice);
-  if (slice.samples != 1 || !slice.photometric.starts_with("MONOCHROME")) {
+  // Colours of a label map are for show: its samples are numbers.
+  const bool shows = slice.photometric.starts_with("MONOCHROME") ||
+                     (slice.photometric == "PALETTE COLOR" && slice.segmentation != nullptr);
+  if (slice.samples != 1 || !shows) {
     bad_input(slice.path, "grey samples (MONOCHROME1 or 2)",
               in_quotes(slice.photometric) + " of " + std::to_string(slice.samples) + " samples");
   }
@@ -128,6 +133,29 @@ void drop_copies(PlacedSeries& series) {
 }
 
 }  // namespace
+
+Depths depths_of(const PlacedSeries& series) {
+  constexpr double kSame = 1e-3;  // of the distance of samples in a plane
+  const double slack = kSame * std::min(series.plane.row_step, series.plane.column_step);
+  Depths depths;
+  for (const PlacedSlice& slice : series.slices) {
+    if (depths.distinct.empty() || slice.depth - depths.distinct.back() > slack) depths.distinct.push_back(slice.depth);
+    depths.of_slice.push_back(depths.distinct.size() - 1);
+  }
+  return depths;
+}
+
+void check_sizes(const std::vector<PlacedSlice>& slices, std::uint64_t bytes) {
+  constexpr std::uint64_t kPacked = 1 << 20;
+  for (const PlacedSlice& placed : slices) {
+    const std::uint64_t stored = placed.slice.pixel_bytes();
+    if (placed.slice.packed) check_plausible(placed.slice.path, bytes, stored, kPacked);
+    const std::uint64_t plain = placed.slice.plain_bytes();
+    if (!placed.slice.packed && stored < plain) {
+      bad_input(placed.slice.path, std::to_string(plain) + " bytes of samples", std::to_string(stored));
+    }
+  }
+}
 
 PlacedSeries place_series(const std::vector<DicomSlice>& series) {
   PlacedSeries result;

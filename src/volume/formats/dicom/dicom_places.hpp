@@ -45,6 +45,17 @@ struct PlacedSeries {
   std::vector<std::string> notes;   // about images that are left out
 };
 
+// The depths that slices lie at, ascending and each once, and the place of every slice among them.
+struct Depths {
+  std::vector<double> distinct;
+  std::vector<std::size_t> of_slice;
+};
+
+Depths depths_of(const PlacedSeries& series);
+
+// Throws BadInput where the files cannot hold the samples that the headers speak of: `bytes` of each slice.
+void check_sizes(const std::vector<PlacedSlice>& slices, std::uint64_t bytes);
+
 // Leaves scouts out where most images are of one look, then checks that the slices are parallel and alike.
 PlacedSeries place_series(const std::vector<DicomSlice>& series);
 

@@ -94,6 +94,7 @@ OpenedVolume open_dicom_file(const std::string& path, const OpenOptions& options
   const std::string& chosen = options.series;
   if (!chosen.empty() && chosen != name_of(uid))
     bad_input(path, "the series " + in_quotes(chosen), in_quotes(name_of(uid)));
+  if (self.front().segmentation) return open_dicom_slices(self, path, options);  // a volume by itself
   Series series;
   const Places places = places_of(self);
   std::size_t files = 0;

@@ -13,82 +13,17 @@
 #include "files/quoted.hpp"
 #include "parallel/size.hpp"
 #include "volume/even_slices.hpp"
+#include "volume/formats/dicom/dicom_axes.hpp"
 #include "volume/formats/dicom/dicom_numbers.hpp"
 #include "volume/formats/dicom/dicom_places.hpp"
+#include "volume/formats/dicom/dicom_segmentation.hpp"
+#include "volume/formats/dicom/series_volumes.hpp"
 #include "volume/samples.hpp"
 
 namespace isoweave {
 namespace {
 
 using Slices = std::vector<PlacedSlice>;
-
-// Notes slices that lie beside the line from the first to the last.
-void note_line(VolumeInfo& info, const Slices& slices, const Vector3& step) {
-  constexpr double kBeside = 1e-2;
-  const PlacedSlice& first = slices.front();
-  const PlacedSlice& last = slices.back();
-  double farthest = 0;
-  for (const PlacedSlice& slice : slices) {
-    const double along = (slice.depth - first.depth) / (last.depth - first.depth);
-    Vector3 beside{};
-    for (std::size_t n = 0; n < 3; ++n) {
-      beside[n] = slice.position[n] - first.position[n] - along * (last.position[n] - first.position[n]);
-    }
-    farthest = std::max(farthest, length_of(beside));
-  }
-  if (farthest > kBeside * length_of(step)) {
-    info.notes.push_back("the slices do not lie on one line: up to " + number_text(farthest) + " mm beside it");
-  }
-}
-
-// The vector across the only slice there is.
-Vector3 thickness_of(VolumeInfo& info, const DicomSlice& slice, const SlicePlane& plane) {
-  const std::string& text = slice.slice_spacing.empty() ? slice.thickness : slice.slice_spacing;
-  if (text.empty()) info.notes.emplace_back("one slice: its thickness is not given and taken as 1");
-  // The sign of a distance says on which side other slices would lie.
-  const double thickness = std::abs(number_or(text, 1, "Slice Thickness", slice.path));
-  Vector3 step = plane.normal();
-  for (double& component : step) component *= thickness;
-  return step;
-}
-
-// The vector from one slice of the grid to the next, by the positions of the first slice and the last.
-Vector3 slice_step(VolumeInfo& info, const PlacedSeries& series, const EvenGrid& grid) {
-  const Slices& slices = series.slices;
-  if (slices.size() == 1) return thickness_of(info, slices.front().slice, series.plane);
-  Vector3 step{};
-  for (std::size_t n = 0; n < 3; ++n) {
-    step[n] = (slices.back().position[n] - slices.front().position[n]) / static_cast<double>(grid.count - 1);
-  }
-  note_line(info, slices, step);
-  return step;
-}
-
-void set_axes(VolumeInfo& info, const PlacedSeries& series, const EvenGrid& grid) {
-  const SlicePlane& plane = series.plane;
-  Axes axes;
-  for (std::size_t n = 0; n < 3; ++n) {
-    axes.steps[0][n] = plane.row[n] * plane.row_step;
-    axes.steps[1][n] = plane.column[n] * plane.column_step;
-  }
-  axes.steps[2] = slice_step(info, series, grid);
-  axes.origin = series.slices.front().position;
-  set_geometry(info.geometry, axes, info.path);
-  info.geometry.space = Space::kLps;
-  if (series.slices.front().slice.has_unit) info.geometry.unit = "mm";
-}
-
-// Compares the stored samples with what the header makes of them.
-void check_sizes(const Slices& slices, std::uint64_t bytes) {
-  constexpr std::uint64_t kPacked = 1 << 20;
-  for (const PlacedSlice& placed : slices) {
-    const std::uint64_t stored = placed.slice.pixel_bytes();
-    if (placed.slice.packed) check_plausible(placed.slice.path, bytes, stored, kPacked);
-    if (!placed.slice.packed && stored < bytes) {
-      bad_input(placed.slice.path, std::to_string(bytes) + " bytes of samples", std::to_string(stored));
-    }
-  }
-}
 
 bool is_scaled_alike(const Slices& slices) {
   return std::all_of(slices.begin(), slices.end(), [&](const PlacedSlice& slice) {
@@ -173,16 +108,6 @@ double rounding_of(const PlacedSeries& series) {
   return std::pow(10.0, -decimals);
 }
 
-// Refuses a segmentation between whose slices others would be made: writers leave out frames without anything in them,
-// and what is interpolated there would not be empty.
-void refuse_gaps_of_segmentation(const PlacedSeries& series, const EvenGrid& grid, const std::string& path) {
-  constexpr std::array<std::string_view, 2> kClasses{"1.2.840.10008.5.1.4.1.1.66.4", "1.2.840.10008.5.1.4.1.1.66.7"};
-  const std::string& found = series.slices.front().slice.media;
-  if (!grid.is_resampled || std::find(kClasses.begin(), kClasses.end(), found) == kClasses.end()) return;
-  bad_input(path, "a segmentation with all its slices, also the empty ones",
-            std::to_string(series.slices.size()) + " of " + std::to_string(grid.count));
-}
-
 EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions& options) {
   const Slices& slices = series.slices;
   SlicePlaces places{info.path,
@@ -197,9 +122,8 @@ EvenGrid grid_of(VolumeInfo& info, const PlacedSeries& series, const OpenOptions
   if (options.spacing && !notes.empty()) {
     notes.back() = "the slices do not lie at an even distance: the one that is given is taken for all of them";
   }
-  refuse_gaps_of_segmentation(series, grid, info.path);
   info.notes.insert(info.notes.end(), notes.begin(), notes.end());
-  if (grid.is_resampled) info.part = "slices made at an even distance";
+  if (grid.is_resampled) info.part += (info.part.empty() ? "" : ", ") + std::string("slices made at an even distance");
   return grid;
 }
 
@@ -229,13 +153,18 @@ void note_bits(VolumeInfo& info, const PlacedSeries& series) {
 
 OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std::string& path,
                                const OpenOptions& options) {
-  const auto shared = std::make_shared<const PlacedSeries>(place_series(series));
+  if (series.front().segmentation) return open_dicom_segmentation(series, path, options);
+  PlacedSeries all = place_series(series);
+  std::string part;
+  choose_volume(all, path, options, part);
+  const auto shared = std::make_shared<const PlacedSeries>(std::move(all));
   const PlacedSeries& placed = *shared;
   const Slices& slices = placed.slices;
   OpenedVolume volume;
   VolumeInfo& info = volume.info;
   info.path = path;
   info.format = "dicom";
+  info.part = part;
   info.type = placed.facts.type;
   info.dims = {placed.facts.columns, placed.facts.rows, static_cast<std::int64_t>(slices.size())};
   checked_volume_bytes(info);
@@ -243,7 +172,7 @@ OpenedVolume open_dicom_slices(const std::vector<DicomSlice>& series, const std:
   info.notes = placed.notes;
   const EvenGrid grid = grid_of(info, placed, options);
   info.dims[2] = grid.count;
-  set_axes(info, placed, grid);
+  set_dicom_axes(info, placed, grid.count);
   set_scaling(info, slices);
   for (const PlacedSlice& placed_slice : slices) {
     const std::string& file = placed_slice.slice.file;
