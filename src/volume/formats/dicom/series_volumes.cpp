@@ -77,6 +77,7 @@ class SharedPlaces {
     std::vector<std::vector<std::string>> of_slice;
     for (const PlacedSlice& slice : series_.slices) {
       std::vector<std::string> value;
+      value.reserve(by.size());
       for (const Difference* one : by) value.push_back(one->text(slice.slice));
       values.emplace(value, 0);
       if (values.size() > volumes()) return std::nullopt;
