@@ -75,7 +75,7 @@ struct VolumeInfo {
   Geometry geometry;
   double slope = 1;                    // value = slope * stored + intercept; slope is not 0
   double intercept = 0;                // iso-values are given as values, samples stay as stored
-  std::vector<LabelName> labels;       // what the file says of labels, in its order (3D Slicer's segmentations)
+  std::vector<LabelName> labels;       // what the file says of labels, in its order (segmentations)
   std::vector<std::string> notes;      // things a user should know: "4-D: the first of 12 volumes is read"
   std::vector<std::string> remarks{};  // the same of what is usual: "1 file of the folder is no slice ...: README.md"
 
@@ -169,7 +169,8 @@ struct OpenOptions {
 // array of chunks. Any other folder, or a pattern such as "slices/*.tif", is a series of one file per slice: TIFF, PNG
 // or, with options.raw, samples alone, in the order of the numbers in their names; DICOM by position. A DICOM file
 // stands for the series it belongs to, and a folder of DICOM for the folders below it too. docs/formats.md says what is
-// read of each format. Only headers are read here, and their claims are compared with the sizes of files.
+// read of each format. Only headers are read here, and their claims are compared with the sizes of files. Of a DICOM
+// segmentation that does not say whether segments overlap, frames are read, too.
 // @throws BadInput when there is no file, no slice, no known format or none of this build, when the header is wrong,
 //   and for options that the format has no place for; std::invalid_argument for a unit that is not known; CannotWrite
 //   when there is no room for a pipe's content

@@ -1,4 +1,4 @@
-// Segmentations in DICOM: frames of segments, of fractions and of numbers, as label maps. Threads: none, one reader.
+// Segmentations in DICOM: frames of segments, of fractions and of numbers, as label maps.
 #include <algorithm>
 
 #include "dicom_segment_helpers.hpp"
@@ -64,6 +64,10 @@ TEST(DicomSegments, ThatOverlapAreLayers) {
     EXPECT_EQ(listed(read_file<std::uint8_t>(path, with_channel(1))), "1/4=7 1/5=7 2/6=7");
     EXPECT_TRUE(contains(refusal(path, with_channel(2)), "expected --channel below 2, found 2"));
   }
+  const auto unnamed = open_volume(folder.put("c", segmentation(frames, {})));
+  ASSERT_EQ(unnamed->info().labels.size(), 2U) << "a layer without a label would not be found";
+  EXPECT_EQ(unnamed->info().labels[1].label, Label(7));
+  EXPECT_EQ(unnamed->info().labels[1].layer, 1);
   const std::string wrong = folder.put("b", segmentation(frames, {.overlap = "NO"}));
   const auto source = open_volume(wrong);
   std::vector<std::byte> samples(source->info().slice_bytes());

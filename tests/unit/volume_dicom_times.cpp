@@ -1,4 +1,4 @@
-// Several volumes in one DICOM series: times, echoes, phases. Threads: none, one reader.
+// Several volumes in one DICOM series: times, echoes, phases.
 #include <algorithm>
 
 #include "dicom_helpers.hpp"

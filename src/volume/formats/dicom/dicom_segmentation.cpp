@@ -6,13 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "files/header_text.hpp"
 #include "files/input_file.hpp"
 #include "files/quoted.hpp"
 #include "parallel/size.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 #include "volume/formats/dicom/dicom_axes.hpp"
-#include "volume/formats/dicom/dicom_numbers.hpp"
 #include "volume/formats/dicom/dicom_places.hpp"
 #include "volume/formats/dicom/frame_planes.hpp"
 #include "volume/samples.hpp"
@@ -161,14 +159,18 @@ class Segmentation {
   std::vector<std::vector<std::size_t>> frames_in_;  // each plane
 };
 
-// The names of segments, each with its layer.
+// The names of segments, each with its layer. Segments in layers of their own are listed without a name, too, as a
+// layer is found by them.
 std::vector<LabelName> labels_of(const DicomSegments& segments, const std::vector<std::uint32_t>& layers) {
   std::vector<LabelName> labels;
-  for (LabelName label : segments.names()) {
-    if (label.label == Label(0)) continue;
-    const auto layer = std::find(layers.begin(), layers.end(), label.label.bits());
-    if (layer != layers.end()) label.layer = layer - layers.begin();
-    labels.push_back(std::move(label));
+  for (const LabelName& label : segments.names()) {
+    if (label.label != Label(0)) labels.push_back(label);
+  }
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    const auto has_number = [&](const LabelName& label) { return label.label == Label(layers[n]); };
+    auto label = std::find_if(labels.begin(), labels.end(), has_number);
+    if (label == labels.end()) label = labels.insert(labels.end(), {Label(layers[n]), {}, {}, 0});
+    label->layer = static_cast<std::int64_t>(n);
   }
   return labels;
 }

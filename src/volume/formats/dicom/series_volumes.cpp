@@ -5,14 +5,11 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "files/header_text.hpp"
 #include "files/input_file.hpp"
-#include "files/quoted.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
-#include "volume/formats/dicom/dicom_numbers.hpp"
 
 namespace isoweave {
 namespace {
