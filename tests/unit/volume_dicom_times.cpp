@@ -122,6 +122,16 @@ TEST(DicomTimes, AreOfSeveralPlaces) {
   EXPECT_TRUE(contains(refusal(folder / ""), "a position of its own for every slice"));
 }
 
+// A value that some places have twice does not tell volumes apart; the order of numbers may.
+TEST(DicomTimes, AreToldApartByWhatIsOnceInEveryPlace) {
+  const TempFolder folder;
+  for (const int z : {0, 1, 2}) {
+    put_slice(folder, z, 1, echo(z == 2 ? "2" : "1") + number(z + 1));
+    put_slice(folder, z, 2, echo(z == 1 ? "1" : "2") + number(z + 4));
+  }
+  EXPECT_EQ(values(folder / ""), (Values{1, 1, 1}));
+}
+
 // Images side by side at one depth are no volumes.
 TEST(DicomTimes, LieInTheSamePlaces) {
   const TempFolder folder;
