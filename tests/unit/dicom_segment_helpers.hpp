@@ -28,7 +28,7 @@ struct NamedSegment {
   std::string name;
 };
 
-// What the header says of segments.
+// The elements of a header that are about segments.
 struct SaidOfSegments {
   std::string type = "BINARY";
   std::vector<NamedSegment> segments{};

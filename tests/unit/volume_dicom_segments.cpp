@@ -174,6 +174,11 @@ TEST(DicomSegments, ThatAreNoneAreRefused) {
   folder.put("two/b", segmentation({{1, 30, {5}}}, {}));
   EXPECT_TRUE(contains(refusal(folder / "two"), "expected one segmentation, or one file of them"));
   EXPECT_EQ(open_volume(folder / "two/a")->info().dims[2], 3);
+  folder.put("two/b", segmentation({{1, 30, {4}}}, {}));
+  EXPECT_EQ(open_volume(folder / "two")->info().dims[2], 3) << "a copy of the file";
+  OpenOptions options;
+  options.slices_from = SliceAxis::kChannels;
+  EXPECT_TRUE(contains(refusal(folder / "two/a", options), "for --slices-from, found DICOM, which does"));
 }
 
 TEST(DicomSegments, HaveColoursOfTheirHeaders) {

@@ -132,6 +132,31 @@ TEST(DicomTimes, AreToldApartByWhatIsOnceInEveryPlace) {
   EXPECT_EQ(values(folder / ""), (Values{1, 1, 1}));
 }
 
+// Copies of images need not stand beside them in the order of files.
+TEST(DicomTimes, AreFoundBesideCopies) {
+  const TempFolder folder;
+  DicomFields fields;
+  for (const std::string name : {"a", "b"}) {
+    for (int n = 0; n < 4; ++n) {
+      fields.position = at(n / 2);
+      fields.more = echo(std::to_string(n % 2)) + image(n);
+      folder.put(name + std::to_string(n), dicom(fields, slice(static_cast<std::size_t>(n))));
+    }
+  }
+  const auto source = open_volume(folder / "");
+  EXPECT_TRUE(contains(source->info().notes.at(0), "4 images are copies of others and are left out"));
+  EXPECT_TRUE(contains(source->info().notes.at(1), "2 volumes in the same places, told apart by Echo Time (0, 1)"));
+}
+
+TEST(DicomTimes, AreNotTakenForSlices) {
+  const TempFolder folder;
+  put_series(folder);
+  OpenOptions options;
+  options.slices_from = SliceAxis::kTimes;
+  EXPECT_TRUE(contains(refusal(folder / "", options), "for --slices-from, found DICOM, which does"));
+  EXPECT_TRUE(contains(refusal(folder / "", at_time(1)), "expected --time below 1, found 1"));
+}
+
 // Images side by side at one depth are no volumes.
 TEST(DicomTimes, LieInTheSamePlaces) {
   const TempFolder folder;

@@ -174,7 +174,7 @@ std::vector<std::byte> bytes_at(DicomBytes& file, const DicomRange& range) {
   return bytes;
 }
 
-// The lowest bit of a byte is the first sample of its eight.
+// Samples of 1 bit as bytes. The lowest bit of a stored byte is the first of its eight samples.
 std::vector<std::byte> bytes_of_bits(std::span<const std::byte> bits, std::size_t first, std::size_t count) {
   std::vector<std::byte> bytes(count);
   for (std::size_t n = 0; n < count; ++n) bytes[n] = bits[(first + n) / 8] >> (first + n) % 8 & std::byte{1};
@@ -243,10 +243,13 @@ std::uint64_t DicomSlice::pixel_bytes() const {
   return sum;
 }
 
-std::uint64_t DicomSlice::plain_bytes() const {
-  const auto all = static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns);
-  return (static_cast<std::uint64_t>(first_bit) + all * static_cast<std::uint64_t>(bits) + 7) / 8;
+// All four are numbers of 16 bits.
+std::uint64_t DicomSlice::plain_bits() const {
+  return static_cast<std::uint64_t>(rows * columns) *
+         (static_cast<std::uint64_t>(bits) * static_cast<std::uint64_t>(samples));
 }
+
+std::uint64_t DicomSlice::plain_bytes() const { return (static_cast<std::uint64_t>(first_bit) + plain_bits() + 7) / 8; }
 
 std::string DicomSlice::name() const {
   const std::size_t last = path.rfind('/');

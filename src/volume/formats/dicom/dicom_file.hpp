@@ -65,7 +65,8 @@ struct DicomSlice {
   std::shared_ptr<DicomBytes> bytes;  // the open file, where it holds several frames
 
   std::uint64_t pixel_bytes() const;  // as they are stored
-  std::uint64_t plain_bytes() const;  // that the samples take where they are not packed
+  std::uint64_t plain_bits() const;   // of the samples where they are not packed
+  std::uint64_t plain_bytes() const;  // that these lie in
 
   // The path but for the folders above that of the file, for messages that name two of them.
   std::string name() const;

@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::size_t kMostFrames = 1 << 17;
 
-// All four are numbers of 16 bits.
-std::uint64_t bits_of_frame(const DicomSlice& slice) {
-  const auto bits = static_cast<std::uint64_t>(slice.bits) * static_cast<std::uint64_t>(slice.samples);
-  return static_cast<std::uint64_t>(slice.rows * slice.columns) * bits;
-}
-
 void override_with(std::string& text, const std::string& other) {
   if (!other.empty()) text = other;
 }
@@ -124,7 +118,7 @@ std::vector<DicomSlice> DicomFrames::slices(const DicomSlice& common) const {
     if (count > 1) slices.back().path += " (frame " + std::to_string(frame + 1) + ")";
     slices.back().frame = frame;
     slices.back().packed = packed_;
-    if (!packed_) slices.back().first_bit = static_cast<int>(frame * bits_of_frame(common) % 8);
+    if (!packed_) slices.back().first_bit = static_cast<int>(frame * common.plain_bits() % 8);
     slices.back().pixels = std::move(samples[frame]);
   }
   if (is_segmentation_class(common.media)) {
@@ -145,7 +139,7 @@ std::vector<std::vector<DicomRange>> DicomFrames::samples_of(const DicomSlice& c
   if (count == 1) return {packed_ ? fragments_.list : std::vector<DicomRange>{plain_}};
   std::vector<std::vector<DicomRange>> samples;
   if (packed_ && fragments_.list.size() != count) return fragments_by_table(common.path, count);
-  const std::uint64_t bits = bits_of_frame(common);
+  const std::uint64_t bits = common.plain_bits();
   if (bits == 0) bad_input(common.path, "samples of 1, 8, 16 or 32 bits", std::to_string(common.bits));
   if (!packed_ && bits > 8 * plain_.second / count) {
     bad_input(common.path, std::to_string((bits * count + 7) / 8) + " bytes of samples", std::to_string(plain_.second));

@@ -1,4 +1,4 @@
-// What a header says of the time, echo or phase of an image: it tells images apart that lie in one place.
+// The attributes of DICOM by which images in one place may differ: times, echoes, phases, diffusion weights.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 
 namespace isoweave {
 
+// An attribute, and how its value is stored.
 struct DicomMoment {
   enum class Form : std::uint8_t { kText, kWhole, kDouble };
 
@@ -19,7 +20,8 @@ struct DicomMoment {
   Form form;
 };
 
-// In the order in which they are asked. Those of single images and those of frames stand side by side.
+// All such attributes, in the order in which they are tried. An attribute of single images stands before that of
+// frames.
 inline constexpr std::array<DicomMoment, 15> kDicomMoments{
     {{0x00200100, "Temporal Position Identifier", DicomMoment::Form::kText},
      {0x00209128, "Temporal Position Index", DicomMoment::Form::kWhole},
@@ -37,9 +39,10 @@ inline constexpr std::array<DicomMoment, 15> kDicomMoments{
      {0x00080032, "Acquisition Time", DicomMoment::Form::kText},
      {0x00080033, "Content Time", DicomMoment::Form::kText}}};
 
+// The values of an image, as texts; empty where the header does not have the attribute.
 using DicomMoments = std::array<std::string, kDicomMoments.size()>;
 
-// Takes the value of an element that is one of the moments.
+// Takes the value of an element that is one of the attributes.
 void take_moment(DicomMoments& moments, const DicomElementWalk& walk, const DicomElement& element);
 
 }  // namespace isoweave

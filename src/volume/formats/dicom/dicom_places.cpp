@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "files/input_file.hpp"
@@ -111,17 +113,21 @@ void refuse_mosaic(const std::vector<DicomSlice>& slices) {
             "a mosaic of slices (Image Type), which is not read (dcm2niix turns it into NIfTI)");
 }
 
-// Drops slices that are in the place of the one before and are copies of it: exports hold images twice.
+// Drops slices that are copies of others in the same place: exports hold images twice.
 void drop_copies(PlacedSeries& series) {
-  std::vector<PlacedSlice> kept;
+  using Identity = std::tuple<std::string_view, std::size_t, Vector3>;  // image, frame, position
+  std::map<Identity, const DicomSlice*> first;
+  std::vector<bool> is_dropped;
   std::string copy;
-  for (PlacedSlice& slice : series.slices) {
-    const bool same_place = !kept.empty() && kept.back().position == slice.position;
-    if (same_place && is_copy(kept.back().slice, slice.slice)) {
-      copy = in_quotes(slice.slice.name());
-    } else {
-      kept.push_back(std::move(slice));
-    }
+  for (const PlacedSlice& placed : series.slices) {
+    const DicomSlice& slice = placed.slice;
+    const auto [found, is_new] = first.emplace(Identity{slice.image, slice.frame, placed.position}, &slice);
+    is_dropped.push_back(!is_new && is_copy(*found->second, slice));
+    if (is_dropped.back()) copy = in_quotes(slice.name());
+  }
+  std::vector<PlacedSlice> kept;
+  for (std::size_t n = 0; n < is_dropped.size(); ++n) {
+    if (!is_dropped[n]) kept.push_back(std::move(series.slices[n]));
   }
   const std::size_t dropped = series.slices.size() - kept.size();
   series.slices = std::move(kept);
@@ -155,6 +161,11 @@ void check_sizes(const std::vector<PlacedSlice>& slices, std::uint64_t bytes) {
       bad_input(placed.slice.path, std::to_string(plain) + " bytes of samples", std::to_string(stored));
     }
   }
+}
+
+void refuse_slices_from(const OpenOptions& options, const std::string& path) {
+  if (options.slices_from == SliceAxis::kSlices) return;
+  bad_input(path, "a file that does not say where its slices lie, for --slices-from", "DICOM, which does");
 }
 
 PlacedSeries place_series(const std::vector<DicomSlice>& series) {

@@ -56,6 +56,9 @@ Depths depths_of(const PlacedSeries& series);
 // Throws BadInput where the files cannot hold the samples that the headers speak of: `bytes` of each slice.
 void check_sizes(const std::vector<PlacedSlice>& slices, std::uint64_t bytes);
 
+// Throws BadInput where options take another axis for that of slices: DICOM says where its slices lie.
+void refuse_slices_from(const OpenOptions& options, const std::string& path);
+
 // Leaves scouts out where most images are of one look, then checks that the slices are parallel and alike.
 PlacedSeries place_series(const std::vector<DicomSlice>& series);
 

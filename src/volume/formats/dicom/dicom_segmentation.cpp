@@ -156,7 +156,7 @@ class Segmentation {
   PlacedSeries series_;
   FramePlanes planes_;
   std::vector<std::uint32_t> numbers_;               // of segments, ascending; none in a label map
-  std::vector<std::vector<std::size_t>> frames_in_;  // each plane
+  std::vector<std::vector<std::size_t>> frames_in_;  // each plane, by their places in the series
 };
 
 // The names of segments, each with its layer. Segments in layers of their own are listed without a name, too, as a
@@ -177,9 +177,7 @@ std::vector<LabelName> labels_of(const DicomSegments& segments, const std::vecto
 
 // Chooses a layer, and sets what that says of the volume.
 std::int64_t choose_layer(VolumeInfo& info, std::size_t layers, const OpenOptions& options) {
-  if (options.slices_from != SliceAxis::kSlices) {
-    bad_input(info.path, "slices that are frames (--slices-from)", "a segmentation, whose frames have their places");
-  }
+  refuse_slices_from(options, info.path);
   const auto channels = static_cast<std::int64_t>(std::max<std::size_t>(layers, 1));
   const AxisChoice choice = choose_axes(
       {{channels, "channel"}, {info.dims[2], "z"}, {info.dims[1], "y"}, {info.dims[0], "x"}}, options, info.path);

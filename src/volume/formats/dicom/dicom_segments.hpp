@@ -20,7 +20,7 @@ class DicomSegments {
   // BINARY: samples are in the segment of their frame or not; FRACTIONAL: they say how much of them is; LABELMAP: they
   // are numbers of segments.
   const std::string& type() const { return type_; }
-  // What stands for all of a sample where type is FRACTIONAL; 0 where it is not said.
+  // The stored value that means a whole sample, where the type is FRACTIONAL; 0 where the header does not have it.
   std::uint32_t most_fraction() const { return most_fraction_; }
   const std::string& said_to_overlap() const { return overlap_; }  // YES, NO, or that it is not known
 

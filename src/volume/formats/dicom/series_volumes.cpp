@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "files/header_text.hpp"
-#include "files/input_file.hpp"
 #include "volume/formats/chunked/array_axes.hpp"
 
 namespace isoweave {
@@ -20,7 +19,7 @@ struct Volumes {
   std::string by;  // for a note
 };
 
-// What may tell images apart: its name, and its text of an image.
+// A thing by which images may differ: its name, and its value for an image.
 struct Difference {
   std::string name;
   std::function<std::string(const DicomSlice&)> text;
@@ -191,15 +190,12 @@ std::optional<Volumes> volumes_of(const PlacedSeries& series) {
 }  // namespace
 
 void choose_volume(PlacedSeries& series, const std::string& path, const OpenOptions& options, std::string& part) {
-  if (options.slices_from != SliceAxis::kSlices) {
-    bad_input(path, "slices as DICOM places them", "--slices-from, which is for files that do not say");
-  }
+  refuse_slices_from(options, path);
   const std::optional<Volumes> volumes = volumes_of(series);
   const std::size_t count = volumes ? 1 + *std::max_element(volumes->of_slice.begin(), volumes->of_slice.end()) : 1;
   const auto slices = static_cast<std::int64_t>(series.slices.size() / count);
-  // Slices cannot be times here, so that no axis is flat.
   const AxisChoice choice = choose_axes({{static_cast<std::int64_t>(count), "time"},
-                                         {std::max<std::int64_t>(slices, 2), "z"},
+                                         {slices, "z"},
                                          {series.facts.rows, "y"},
                                          {series.facts.columns, "x"}},
                                         options, path);

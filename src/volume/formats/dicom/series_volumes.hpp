@@ -5,8 +5,8 @@
 
 namespace isoweave {
 
-// Keeps the slices of one of the volumes that a series holds: the one at options.time, or the first with a note. Images
-// belong to one volume where a moment, two of them, or the order of their numbers tells the volumes apart without a
+// Keeps the slices of one of the volumes that a series holds: the one at options.time, or the first with a note. The
+// volumes are told apart by an attribute, by two of them, or by the order of the images' numbers, without a
 // contradiction. Where none does, the series stays as it is. Adds notes, and what was chosen to `part`. Throws BadInput
 // for an index that is not there.
 void choose_volume(PlacedSeries& series, const std::string& path, const OpenOptions& options, std::string& part);
