@@ -61,7 +61,7 @@ class Measurement {
     const TaskList list = stages_.tasks();
     for (std::uint64_t n = 0; n < list.count(); ++n) {
       const bool first = list.stage_of(n) == 0;
-      TaskWork work(task_, stages_, n, control_, executor_, [] {});
+      TaskWork work(task_, task_.simplify.zone.retire, stages_, n, control_, executor_, [] {});
       TaskResult result = first ? work.extract(open_) : work.glue(std::exchange(parts_[n], {}));
       add(n, first, result);
     }
@@ -242,8 +242,8 @@ void print_weak(const VolumeInfo& info, const MeshOptions& options, const BlockO
     GenerateOptions larger;
     larger.kind = "box";
     for (std::size_t axis = 0; axis < 3; ++axis) larger.dims[axis] = info.dims[axis] * side;
-    const BlockStages stages(
-        resolve_blocks(RunKind::kProcesses, *generate_volume(larger), options, blocks, {}, {0, 0, 0}), blocks);
+    const BlockStages stages(resolve_blocks(RunKind::kBlocks, *generate_volume(larger), options, blocks, {}, {0, 0, 0}),
+                             blocks);
     const auto copies = static_cast<double>(side * side * side);
     const Copies all(one, costs, stages, copies);
     const Outcome outcome = Schedule().run(
@@ -263,7 +263,7 @@ void run(const std::string& path, double iso, double error, std::int64_t block, 
   options.closed = !open_border;
   BlockOptions blocks;
   blocks.size = block;
-  const Task task = resolve_blocks(RunKind::kProcesses, *open(), options, blocks, {}, {0, 0, 0});
+  const Task task = resolve_blocks(RunKind::kBlocks, *open(), options, blocks, {}, {0, 0, 0});
   const BlockStages stages(task, blocks);
   const Costs costs = Measurement(open, task, stages).run();
   std::printf("%.0f triangles extracted; work of all blocks over a sweep's: %.2f\n", costs.triangles, [&] {

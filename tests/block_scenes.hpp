@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <ostream>
 #include <random>
@@ -119,6 +121,28 @@ inline std::vector<BlockScene> some_scenes() {
 
 inline BlockScene noise_scene() { return block_scenes().front(); }
 
+// The scenes that go with a number of triangles.
+inline std::vector<BlockScene> number_scenes() {
+  std::vector<BlockScene> some = some_scenes();
+  std::erase_if(some, [](const BlockScene& scene) { return !scene.options.levels.empty(); });
+  return some;
+}
+
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+inline BlockScene to_number(BlockScene scene, std::uint64_t triangles, double error = kNoLimit) {
+  scene.options.triangles = triangles;
+  scene.options.error = Length::units(error);
+  return scene;
+}
+
+inline std::uint64_t all_triangles(const BlockScene& scene) {
+  MeshOptions full = scene.options;
+  full.error = Length::units(0);
+  MemorySink sink;
+  return mesh_volume(*scene.open(), sink, full).triangles_extracted;
+}
+
 struct BlockRun {
   std::vector<TriangleMesh> meshes;
   MeshReport report;
@@ -168,6 +192,11 @@ inline void expect_same(const BlockRun& found, const BlockRun& expected) {
     EXPECT_EQ(found.meshes[n].vertices.size(), expected.meshes[n].vertices.size());
     EXPECT_EQ(riders_digest(found.meshes[n]), riders_digest(expected.meshes[n]));
   }
+}
+
+inline void expect_same_by_number(const BlockRun& found, const BlockRun& expected) {
+  expect_same(found, expected);
+  EXPECT_EQ(found.report.error, expected.report.error);
 }
 
 }  // namespace isoweave::testing

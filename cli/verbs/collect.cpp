@@ -1,9 +1,13 @@
 // isoweave collect: the mesh out of the tasks of isoweave plan.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "isoweave/error.hpp"
 #include "options/files.hpp"
 #include "options/levels.hpp"
 #include "options/output_mesh.hpp"
@@ -41,6 +45,17 @@ RunOptions run_options(const CollectArguments& arguments) {
   return run;
 }
 
+// Collects the tasks. Where they have gone too far for a number of triangles, the plan goes less far from now on.
+MeshReport collect(const PlannedMesh& plan, const LevelSinks& sinks, const RunControl& control) {
+  try {
+    return collect_tasks(plan.mesh, sinks.pointers(), control);
+  } catch (const HeadStartTooHigh& found) {
+    lower_head_start(plan.mesh.folder, found.lower());
+    throw BadInput(fmt::format("{}: the plan goes less far now: isoweave work {}, then collect again", found.what(),
+                               plan.mesh.folder));
+  }
+}
+
 void run_collect(const CollectArguments& arguments) {
   const RunOptions run = run_options(arguments);
   RunControl control = run_control(run);
@@ -57,15 +72,18 @@ void run_collect(const CollectArguments& arguments) {
   const LevelSinks sinks(outputs, [&](std::size_t level) {
     return file_options(plan.arguments, stops[level], plan.mesh.options, plan.volume);
   });
-  MeshReport report = collect_tasks(plan.mesh, sinks.pointers(), control);
+  MeshReport report = collect(plan, sinks, control);
   sinks.tell_digests(report);
   Json json = run_json(report, volume_json(plan.volume, plan.arguments.input.path));
+  const std::uint64_t triangles = plan.mesh.options.triangles;
+  if (triangles > 0) json["target"] = {{"triangles", triangles}};
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   evidence.write(std::move(json), control, {});
   if (arguments.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_levels(report, outputs);
+  print_target(plan.arguments.stop, report, triangles, plan.mesh.options.error, plan.volume.geometry.unit);
   const double voxels = static_cast<double>(plan.volume.slice_samples()) * static_cast<double>(plan.volume.dims[2]);
   print_summary(report, outputs.back().name(), voxels);
 }

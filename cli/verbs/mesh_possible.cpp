@@ -42,7 +42,7 @@ AskedKind asked_kind(const MeshArguments& arguments) {
   if (preview && (blocks || rank_link() != nullptr)) {
     throw std::invalid_argument(fmt::format("--preview: expected a run without {}", blocks ? "--blocks" : "ranks"));
   }
-  if (rank_link() != nullptr) return {RunKind::kProcesses, "isoweave-mpi"};
+  if (rank_link() != nullptr) return {RunKind::kBlocks, "isoweave-mpi"};
   if (blocks) return {RunKind::kBlocks, "--blocks"};
   if (preview) return {RunKind::kPreview, "--preview"};
   return {};

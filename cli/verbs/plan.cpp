@@ -39,8 +39,10 @@ void run_plan(MeshArguments arguments, const std::string& folder, bool quiet) {
     if (!quiet) print_note("--iso " + arguments.iso + " (Otsu's threshold)");
   }
   const MeshOptions asked = mesh_options(arguments);
-  require_possible({RunKind::kProcesses, "plan", asked, {}, arguments.stop, arguments.components});
-  const PlannedMesh plan = make_plan(arguments, block, folder);
+  require_possible({RunKind::kBlocks, "plan", asked, {}, arguments.stop, arguments.components});
+  RunControl control;
+  control.stop = borrow(stop_on_signal());
+  const PlannedMesh plan = make_plan(arguments, block, folder, control);
   const TaskList tasks = list_tasks(plan.mesh);
   if (quiet) return;
   tell_lengths(arguments, plan.volume);

@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "isoweave/forecast.hpp"
 #include "isoweave/output_file.hpp"
+#include "isoweave/ranks.hpp"
 #include "options/input_volume.hpp"
 #include "report/report.hpp"
 #include "verbs/mesh_options.hpp"
@@ -27,12 +29,15 @@ void write_file(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+void check_task_folder(const std::string& folder) {
+  if (!std::filesystem::is_directory(folder) || std::filesystem::is_empty(folder)) return;
+  throw CannotWrite(folder + ": expected a new or empty folder for the tasks, found files in it");
+}
+
 void make_task_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder)) throw CannotWrite(folder + ": cannot be made: " + error.message());
-  if (std::filesystem::is_empty(folder)) return;
-  throw CannotWrite(folder + ": expected a new or empty folder for the tasks, found files in it");
 }
 
 PlannedMesh planned(MeshArguments arguments, std::int64_t block, const std::string& folder) {
@@ -44,6 +49,14 @@ PlannedMesh planned(MeshArguments arguments, std::int64_t block, const std::stri
   blocks.size = block;
   plan.mesh = {folder, [input = plan.arguments.input] { return open_input(input); }, options, blocks};
   return plan;
+}
+
+// Finds the number of triangles to stop at, if there is one, and the error up to which tasks may decide everything.
+void plan_number(PlannedMesh& plan, const RunControl& control) {
+  TaskMesh& mesh = plan.mesh;
+  mesh.options.triangles = stop_triangles(
+      plan.arguments.stop, [&] { return count_triangles_in_blocks(mesh.open, mesh.options, mesh.blocks, control); });
+  if (mesh.options.triangles > 0) mesh.head_start = forecast_mesh(*mesh.open(), mesh.options, control).head_start;
 }
 
 Json read_json(const std::string& path) {
@@ -97,18 +110,30 @@ std::string slurm_script(const TaskList& tasks) {
 
 }  // namespace
 
-PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder) {
+PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder,
+                      const RunControl& control) {
   PlannedMesh plan = planned(arguments, block, folder);
   const TaskList tasks = list_tasks(plan.mesh);
+  check_task_folder(folder);
+  plan_number(plan, control);
   make_task_folder(folder);
   const Json json = {{"version", ISOWEAVE_VERSION},
                      {"blocks", block},
                      {"stages", tasks.stages},
+                     {"head_start", plan.mesh.head_start},
                      {"volume", facts_of_volume(plan.volume)},
                      {"mesh", task_json(plan.arguments, plan.mesh.options)}};
   write_job_files(folder, tasks);
   write_file(folder + "/" + kPlan, json.dump(2) + "\n");
   return plan;
+}
+
+void lower_head_start(const std::string& folder, double lower) {
+  const std::string path = folder + "/" + kPlan;
+  Json json = read_json(path);
+  json["head_start"] = lower;
+  remove_results(folder);
+  write_file(path, json.dump(2) + "\n");
 }
 
 PlannedMesh read_plan(const std::string& folder) {
@@ -122,6 +147,8 @@ PlannedMesh read_plan(const std::string& folder) {
     MeshArguments arguments;
     set_task(arguments, arguments, json.at("mesh"));
     PlannedMesh plan = planned(std::move(arguments), json.at("blocks"), folder);
+    plan.mesh.options.triangles = stop_triangles(plan.arguments.stop, [] { return std::uint64_t{0}; });
+    plan.mesh.head_start = json.at("head_start");
     require_planned_volume(plan, path, json.at("volume"));
     return plan;
   } catch (const Json::exception&) {

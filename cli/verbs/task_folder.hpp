@@ -15,8 +15,13 @@ struct PlannedMesh {
   VolumeInfo volume;
 };
 
-// Makes the folder and its plan. Throws CannotWrite where the folder holds anything.
-PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder);
+// Makes the folder and its plan. To a number of triangles, reads some of the volume, and for a share all of it, under
+// the control of a run. Throws CannotWrite where the folder holds anything.
+PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder,
+                      const RunControl& control);
+
+// Gives the plan of a folder a lower head start, and removes the results of all tasks, which had a higher one.
+void lower_head_start(const std::string& folder, double lower);
 
 // Reads the plan of a folder, and opens its volume. Throws BadInput.
 PlannedMesh read_plan(const std::string& folder);

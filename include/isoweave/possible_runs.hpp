@@ -13,9 +13,8 @@
 namespace isoweave {
 
 // The kinds of runs: the mesh of a volume, the meshes of labels, those of several iso-values, a choice of components, a
-// mesh from a mesh, the mesh of a volume in blocks, the same by several processes (tasks or ranks), the preview of a
-// volume or a mesh.
-enum class RunKind : std::uint8_t { kMesh, kLabels, kIsoValues, kComponents, kSimplify, kBlocks, kProcesses, kPreview };
+// mesh from a mesh, the mesh of a volume in blocks (by one process, tasks or ranks), the preview of a volume or a mesh.
+enum class RunKind : std::uint8_t { kMesh, kLabels, kIsoValues, kComponents, kSimplify, kBlocks, kPreview };
 
 // The features that do not go with every kind of run, or not with a device. In parentheses the options that ask for
 // them.

@@ -70,10 +70,18 @@ std::optional<std::int64_t> block_size_of_results(const std::string& folder);
 //   another mesh
 // @cost Memory of a rank: a block, and the parts that have arrived for its blocks. Rank 0 holds final triangles besides
 //   that have arrived before others that they follow. Before the work begins each rank reads four slices of each of its
-//   blocks, to tell how much there is to do.
+//   blocks, to tell how much there is to do. To a number of triangles, rank 0 makes the forecast of mesh_in_blocks,
+//   where RunControl::head_start is not known, and ends the mesh at the number by itself: 350 bytes for each triangle
+//   of 1.5 times the number.
 // @determinism The mesh is that of mesh_volume, for any number of ranks. The order of triangles depends on them.
 MeshReport mesh_in_ranks(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
                          const RankOptions& ranks, RankLink& link, const RunControl& control = {});
+
+// The number of triangles of the full surface, counted by all ranks of a link, each of which gets it. All must be given
+// the same volume, options and blocks.
+// @throws as mesh_in_ranks
+std::uint64_t count_triangles_in_ranks(const VolumeOpener& open, const SurfaceOptions& options,
+                                       const BlockOptions& blocks, RankLink& link, const RunControl& control = {});
 
 // Ends the run of all ranks with an error of this one, from outside of mesh_in_ranks: as where a file cannot be opened
 // before. The others may be in mesh_in_ranks, or here with errors of their own.

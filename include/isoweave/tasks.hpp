@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "isoweave/blocks.hpp"
+#include "isoweave/error.hpp"
 
 #pragma GCC visibility push(default)
 namespace isoweave {
@@ -32,6 +33,22 @@ struct TaskMesh {
   VolumeOpener open;
   MeshOptions options;
   BlockOptions blocks;  // without a folder
+  // With a number of triangles: the error, in the unit of the volume, up to which tasks decide everything, as
+  // Forecast::head_start. Whoever plans finds it. With 0 nothing is decided before the mesh is collected.
+  double head_start = 0;
+};
+
+// The tasks of a mesh to a number of triangles have decided up to an error that leaves fewer. All of them have to be
+// done again, with a lower TaskMesh::head_start.
+class HeadStartTooHigh : public BadInput {
+ public:
+  HeadStartTooHigh(const std::string& what, double lower) : BadInput(what), lower_(lower) {}
+
+  // The head start with which more triangles than the number are left, by the counts of the tasks.
+  double lower() const { return lower_; }
+
+ private:
+  double lower_;
 };
 
 // The tasks of a mesh.
@@ -58,8 +75,11 @@ bool is_done(const TaskMesh& mesh, std::uint64_t task);
 
 // Puts the results of all tasks together into sinks, one for each level and one more, and finishes the sinks.
 // @throws BadInput where a task is not done, where a file is damaged or of another mesh, and where the counts of all
-//   tasks do not add up; and what mesh_volume throws
-// @cost Memory: the final triangles of a block, and 4 bytes for each vertex of the mesh with RunControl::measure.
+//   tasks do not add up; HeadStartTooHigh; and what mesh_volume throws
+// @cost Memory: the final triangles of a block, and 4 bytes for each vertex of the mesh with RunControl::measure. With
+// a
+//   number of triangles, what is left by the tasks becomes one surface, which ends at the number here: 350 bytes for
+//   each triangle of 1.5 times the number.
 MeshReport collect_tasks(const TaskMesh& mesh, std::span<MeshSink* const> sinks, const RunControl& control = {});
 
 }  // namespace isoweave

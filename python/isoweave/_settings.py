@@ -68,6 +68,8 @@ class PlanSettings(TypedDict, total=False):
     blocks: int
     threads: int
     error: Length | None
+    triangles: int | None
+    ratio: float | None
     quality: Quality
     specks: Literal["keep", "drop"]
     inside: Literal["above", "below"]

@@ -10,7 +10,7 @@ import os
 import pathlib
 import shutil
 import tempfile
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from time import sleep
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Protocol, Sequence, Union, overload
@@ -94,12 +94,24 @@ def _work_on_all(client: Any, folder: str, threads: int, told: Teller) -> None:
             raise
 
 
+def _plan_in(folder: str) -> dict[str, Any]:
+    """The plan without the error up to which tasks decide everything: it is lower where it was too high for a number."""
+    plan: dict[str, Any] = json.loads(pathlib.Path(folder, "plan.json").read_bytes())
+    del plan["head_start"]
+    return plan
+
+
+def _all_done(folder: str) -> bool:
+    stages = json.loads(run("status", folder, "--json"))["stages"]
+    return all(stage["done"] == stage["tasks"] for stage in stages)
+
+
 def _plan(options: Sequence[str], folder: str, scratch: str) -> None:
     """Plans the mesh in a folder, or compares the plan that is there."""
     plan = pathlib.Path(folder, "plan.json")
     made = os.path.join(scratch, "plan") if plan.exists() else folder
     run("plan", *options, f"--output={made}", "--quiet")
-    if pathlib.Path(made, "plan.json").read_bytes() != plan.read_bytes():
+    if _plan_in(made) != _plan_in(folder):
         raise c.BadInput(f"{plan}: expected the plan of the same mesh, found that of another")
 
 
@@ -179,8 +191,8 @@ def mesh(
 ) -> list[Report]: ...
 def mesh(
     volume: PathLike | Stored, level: float | None = None, *, out: PathLike, client: Any = None, folder: PathLike | None = None,
-    blocks: int = 512, threads: int = 1, error: Length | None = None, lods: Sequence[Length] = (), quality: str = "normal",
-    specks: str = "keep", inside: str = "above", closed: bool = True, smooth: int = 0, extractor: str = "cubes",
+    blocks: int = 512, threads: int = 1, error: Length | None = None, lods: Sequence[Length] = (),
+    triangles: int | None = None, ratio: float | None = None, quality: str = "normal", specks: str = "keep", inside: str = "above", closed: bool = True, smooth: int = 0, extractor: str = "cubes",
     normals: str | None = None, space: str | None = None, spacing: Any = None, origin: Any = None, raw: str | None = None,
     dataset: str | None = None, series: str | None = None, channel: int | None = None, time: int | None = None,
     external: bool = True, roi: Roi | None = None, step: int | None = None, compress: bool = False,
@@ -201,10 +213,13 @@ def mesh(
         blocks: cells along each side of a task's block; 128 at least.
         threads: of each task, whose worker may run several tasks at a time. 0: one for each processor.
         raw, dataset, series, external: as :func:`isoweave.open_volume`.
-        error, lods, quality, specks, inside, closed, smooth, extractor, normals, space, spacing, origin, channel, time, roi,
+        error, lods, triangles, ratio, quality, specks, inside, closed, smooth, extractor, normals, space, spacing, origin, channel, time, roi,
             step, compress: as :func:`isoweave.mesh`. There is no "dual" extractor, and nothing negative in ``roi``.
         progress: True: a bar of tqdm, or one line on standard error. A function that gets a :class:`TaskProgress` after every
             task; False from it stops the run.
+
+    To a number of triangles, the client ends the mesh by itself, in 350 bytes for each triangle of 1.5 times the number; with
+    ``ratio`` it counts the triangles of the full surface before.
 
     Returns:
         A :class:`Report`; a list of them with ``lods``, finest first.
@@ -215,7 +230,8 @@ def mesh(
     """
     values: dict[str, Any] = {
         "iso": _numbers(level) or "auto", "blocks": blocks, "error": _length(error),
-        "lods": ",".join(_length(each) or "" for each in lods) or None, "quality": quality, "specks": specks,
+        "lods": ",".join(_length(each) or "" for each in lods) or None, "triangles": triangles,
+        "ratio": None if ratio is None else repr(float(ratio)), "quality": quality, "specks": specks,
         "inside": inside, "smooth": smooth or None, "extractor": extractor, "normals": normals or "none", "space": space,
         "spacing": _numbers(spacing), "origin": _numbers(origin), "raw": raw, "dataset": dataset, "series": series,
         "channel": channel, "time": time, "roi": _ranges(roi), "step": step,
@@ -227,10 +243,12 @@ def mesh(
     with tempfile.TemporaryDirectory() as scratch, _task_folder(folder, path) as tasks:
         _plan(options, tasks, scratch)
         report = None
-        with suppress(c.BadInput):  # tasks are left; a wrong `out` is refused before any of them is done
-            report = _collect(tasks, path, compress, scratch)
-        if report is None:
-            with closing(teller(progress)) as told:
-                _work_on_all(client, tasks, threads, told)
-            report = _collect(tasks, path, compress, scratch)
+        while report is None:
+            try:  # a wrong `out` is refused before any task is done
+                report = _collect(tasks, path, compress, scratch)
+            except c.BadInput:
+                if _all_done(tasks):
+                    raise
+                with closing(teller(progress)) as told:
+                    _work_on_all(client, tasks, threads, told)
     return level_reports(report, len(lods)) if lods else report

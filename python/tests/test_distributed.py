@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import json
 import os
 import pathlib
 import signal
@@ -144,6 +145,23 @@ def test_options(client: Any, folder: pathlib.Path, volume: np.ndarray) -> None:
     alone = isoweave.mesh(path, 100, lods=["0.1vox", 0.5])
     assert [level.triangles for level in levels] == [len(mesh.faces) for mesh in alone]
     assert [isoweave.check(folder / f"l_lod{n}.ply").digest for n in range(2)] == [mesh.digest for mesh in alone]
+
+
+def test_a_number_of_triangles(client: Any, folder: pathlib.Path, noise: str) -> None:
+    for stop in ({"triangles": 3000}, {"ratio": 0.1}, {"triangles": 3000, "error": 0.2}):
+        report = cluster_mesh(noise, 0.5, blocks=40, out=folder / "m.ply", **stop)
+        alone = isoweave.mesh(noise, 0.5, out=folder / "alone.ply", **stop)
+        assert (report.digest, report.triangles) == (alone.digest, alone.triangles), stop
+    # A forecast is a guess: here the plan has one that leaves too little.
+    tasks = folder / "tasks"
+    cluster_mesh(noise, 0.5, blocks=40, triangles=3000, folder=tasks, out=folder / "m.ply")
+    plan = json.loads((tasks / "plan.json").read_bytes())
+    for file in tasks.glob("*.rest"):
+        file.unlink()
+    (tasks / "plan.json").write_text(json.dumps({**plan, "head_start": 10 * plan["head_start"]}))
+    again = cluster_mesh(noise, 0.5, blocks=40, triangles=3000, folder=tasks, out=folder / "again.ply")
+    assert again.digest == isoweave.mesh(noise, 0.5, triangles=3000).digest
+    assert json.loads((tasks / "plan.json").read_bytes())["head_start"] < 10 * plan["head_start"]
 
 
 def test_arrays_of_zarr_are_read_by_their_path(

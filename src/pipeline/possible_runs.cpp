@@ -7,23 +7,21 @@ namespace isoweave {
 namespace {
 
 // The kinds of runs that refuse a feature.
-constexpr unsigned kDevice = 1;       // a CUDA device
-constexpr unsigned kLabels = 2;       // meshes of labels
-constexpr unsigned kComponents = 4;   // the choice of components
-constexpr unsigned kSimplify = 8;     // a mesh from a mesh
-constexpr unsigned kIsoValues = 16;   // meshes of several iso-values
-constexpr unsigned kBlocks = 32;      // a mesh in blocks
-constexpr unsigned kPreview = 64;     // a preview
-constexpr unsigned kProcesses = 128;  // a mesh in blocks by several processes
+constexpr unsigned kDevice = 1;      // a CUDA device
+constexpr unsigned kLabels = 2;      // meshes of labels
+constexpr unsigned kComponents = 4;  // the choice of components
+constexpr unsigned kSimplify = 8;    // a mesh from a mesh
+constexpr unsigned kIsoValues = 16;  // meshes of several iso-values
+constexpr unsigned kBlocks = 32;     // a mesh in blocks
+constexpr unsigned kPreview = 64;    // a preview
 
 struct Refuser {
   unsigned bit;
   const char* name;
   const char* reason;
 };
-constexpr std::array<Refuser, 8> kRefusers{{{kLabels, "labels", "which takes one surface"},
+constexpr std::array<Refuser, 7> kRefusers{{{kLabels, "labels", "which takes one surface"},
                                             {kBlocks, "blocks", "which takes slabs"},
-                                            {kProcesses, "several processes", "which takes one process"},
                                             {kIsoValues, "several iso-values", "which takes one surface"},
                                             {kPreview, "a preview", "which takes the simplifier"},
                                             {kComponents, "a choice of components", "which takes processors"},
@@ -41,7 +39,7 @@ struct Feature {
 constexpr std::array<Feature, 14> kFeatures{{
     {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify | kBlocks | kPreview,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
-    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kProcesses | kPreview,
+    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0; }},
     {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues | kPreview,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},
@@ -76,7 +74,6 @@ unsigned refusers_of(RunKind kind, const RunControl& control) {
   if (kind == RunKind::kLabels) return kLabels | device;
   if (kind == RunKind::kIsoValues) return kIsoValues | device;
   if (kind == RunKind::kBlocks) return kBlocks | device;
-  if (kind == RunKind::kProcesses) return kBlocks | kProcesses | device;
   if (kind == RunKind::kComponents) return kComponents | device;
   if (kind == RunKind::kPreview) return kPreview | device;
   return (kind == RunKind::kSimplify ? kSimplify : 0) | device;

@@ -22,9 +22,6 @@
 namespace isoweave {
 namespace {
 
-// Whether the surface of a run is cut, so that all of it goes through the simplifier.
-bool takes_blocks(RunKind kind) { return kind == RunKind::kBlocks || kind == RunKind::kProcesses; }
-
 double length_in(const Length& length, double side) { return length.value * (length.in_voxels ? side : 1); }
 
 constexpr double kFarError = 64;  // of a distance: hardly an edge that costs more stays within it
@@ -116,7 +113,8 @@ Task resolve(const VolumeInfo& volume, const MeshOptions& options, const RunCont
   task.offset = offset;
   task.rule = stored_rule(volume, options);
   task.simplify = resolve_simplification(options, measure_of(volume, options.extractor));
-  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options) || takes_blocks(kind);
+  const bool is_cut = kind == RunKind::kBlocks;  // so that all of it goes through the simplifier
+  task.simplify.needed = options.error.value > 0 || !has_cells(volume, options) || is_cut;
   task.simplify.zone.normals_count = options.normals == Normals::kQuadric;
   task.simplify.normals = task.has_normals();
   task.simplify.values = options.values != nullptr;
@@ -202,6 +200,13 @@ CostBits head_start_cost(double error, double a0) {
 CostBits head_start_cost(double error, const VolumeInfo& volume) {
   const double voxel = mean_voxel(volume.geometry);
   return head_start_cost(error, voxel * voxel);
+}
+
+double head_start_within(CostBits cost, const VolumeInfo& volume) {
+  if (cost < to_cost(0)) return 0;
+  double error = mean_voxel(volume.geometry) * std::sqrt(static_cast<double>(cost_value(cost)));
+  while (head_start_cost(error, volume) > cost) error *= 1 - 0x1p-24;
+  return error;
 }
 
 void require_different(std::span<MeshSink* const> sinks) {

@@ -93,6 +93,9 @@ bool can_repeat(const SliceSource& volume, const MeshOptions& options, const Run
 CostBits head_start_cost(double error, double a0);
 CostBits head_start_cost(double error, const VolumeInfo& volume);
 
+// A head start whose cost is not above one that is known: the largest such error, or nearly that.
+double head_start_within(CostBits cost, const VolumeInfo& volume);
+
 // Throws std::invalid_argument where a mesh has no sink, or one sink would get two meshes.
 void require_different(std::span<MeshSink* const> sinks);
 

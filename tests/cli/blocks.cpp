@@ -174,6 +174,47 @@ TEST(CliTasks, OneByOneInTheOrderOfStages) {
   expect_collected(folder);
 }
 
+nlohmann::json report_to(const files::Folder& folder, const Words& words) {
+  const Result result = run(folder.path(), with(words, {"-o", "out.ply", "--report", "out.json", "--quiet"}));
+  EXPECT_EQ(result.code, 0) << result.err;
+  return report_in(folder);
+}
+
+TEST(CliTasks, EndAtANumberOrAShareOfAllTriangles) {
+  for (const Words& stop : {Words{"--triangles", "100k"}, Words{"--ratio", "30%"}}) {
+    const files::Folder folder;
+    const Words surface = with({kVolume, "--iso", "0.5"}, stop);
+    const nlohmann::json one = report_to(folder, with({"mesh"}, surface));
+    ASSERT_EQ(run(folder.path(), with(with({"plan"}, surface), {"--blocks", "24", "-o", "tasks"})).code, 0);
+    ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+    const nlohmann::json collected = report_to(folder, {"collect", "tasks"});
+    for (const char* const key : {"digest", "triangles", "error", "target"}) {
+      EXPECT_EQ(collected.at(key), one.at(key)) << key;
+    }
+  }
+}
+
+// A forecast is a guess: here a plan has one that leaves too little.
+TEST(CliTasks, ThatWentTooFarAreDoneAgain) {
+  const files::Folder folder;
+  const Words surface{kVolume, "--iso", "0.5", "--triangles", "100k"};
+  const nlohmann::json one = report_to(folder, with({"mesh"}, surface));
+  ASSERT_EQ(run(folder.path(), with(with({"plan"}, surface), {"--blocks", "24", "-o", "tasks", "--quiet"})).code, 0);
+  nlohmann::json plan = nlohmann::json::parse(files::read_bytes(folder / "tasks/plan.json"));
+  const double forecast = plan.at("head_start");
+  EXPECT_GT(forecast, 0);
+  plan["head_start"] = 10 * forecast;
+  files::write_bytes(folder / "tasks/plan.json", plan.dump());
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  const Result refused = run(folder.path(), {"collect", "tasks", "-o", "far.ply"});
+  expect_failed(refused, 3, "tasks: expected tasks that leave more than 100000 triangles, found ");
+  expect_failed(refused, 3, ": the plan goes less far now: isoweave work tasks, then collect again");
+  EXPECT_FALSE(std::filesystem::exists(folder / "far.ply"));
+  expect_failed(run(folder.path(), {"collect", "tasks", "-o", "far.ply"}), 3, "found task 0 undone");
+  ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
+  EXPECT_EQ(report_to(folder, {"collect", "tasks"}).at("digest"), one.at("digest"));
+}
+
 // Holds task 0 as a process that works on it does, until release().
 class HeldTask {
  public:
@@ -240,7 +281,7 @@ TEST(CliTasks, OtherFoldersAndVolumesAreRefused) {
   const Words plan{"plan", "a.nrrd", "--iso", "127.5", "--blocks", "16", "-o", "tasks"};
   ASSERT_EQ(run(folder.path(), plan).code, 0);
   expect_failed(run(folder.path(), plan), 4, "tasks: expected a new or empty folder");
-  expect_failed(run(folder.path(), with(plan, {"--triangles", "10"})), 2, "--triangles");
+  expect_failed(run(folder.path(), with(plan, {"--max-distance", "1vox"})), 2, "--max-distance");
   ASSERT_EQ(run(folder.path(), {"work", "tasks", "--task", "0"}).code, 0);
   // The result of a task of another mesh.
   ASSERT_EQ(run(folder.path(), {"generate", "box", "--size", "24", "--type", "uint8", "-o", "b.nrrd"}).code, 0);

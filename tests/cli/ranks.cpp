@@ -108,6 +108,19 @@ TEST_P(Ranks, GiveTheMeshOfOneProcess) {
   }
 }
 
+TEST_P(Ranks, EndAtANumberOrAShareOfAllTriangles) {
+  for (const Words& stop : {Words{"--triangles", "100k"}, Words{"--ratio", "30%"}}) {
+    const files::Folder folder;
+    ASSERT_EQ(run(folder.path(), mesh(stop)).code, 0);
+    const nlohmann::json one = report_in(folder);
+    const Result result = run_ranks(folder, 3, with(mesh(stop), {"--blocks", "24"}));
+    ASSERT_EQ(result.code, 0) << result.err;
+    for (const char* const key : {"digest", "triangles", "error", "target"}) {
+      EXPECT_EQ(report_in(folder).at(key), one.at(key)) << key;
+    }
+  }
+}
+
 TEST_P(Ranks, WriteOtherFormatsAndLevels) {
   const files::Folder folder;
   const Words levels{"mesh", kVolume, "--iso", "0.5", "--lods", "0,0.1vox,0.3vox", "-o", "a.glb", "--quiet"};
@@ -143,8 +156,9 @@ TEST_P(Ranks, FailWithOneLineAndLeaveNothing) {
                   "no.nrrd: cannot be opened");
   expect_one_line(run_ranks(folder, 3, {"mesh", "--iso", "1"}), 2, "VOLUME is required");
   expect_one_line(run_ranks(folder, 3, {"info", "no.nrrd"}), 2, "expected one of mesh");
-  expect_one_line(run_ranks(folder, 2, mesh({"--triangles", "1k"})), 2,
-                  "isoweave-mpi: expected a run without --triangles");
+  expect_one_line(run_ranks(folder, 2, mesh({"--max-distance", "1vox"})), 2,
+                  "isoweave-mpi: expected a run without --max-distance");
+  expect_one_line(run_ranks(folder, 2, mesh({"--ratio", "2"})), 2, "--ratio");
   expect_one_line(run_ranks(folder, 2, mesh({"--labels", "all"})), 2, "--labels");
   expect_one_line(run_ranks(folder, 2, mesh({"--html", "out.html"})), 2, "--html");
   expect_one_line(run_ranks(folder, 2, mesh({"-o", "none/out.ply"})), 2, "--output");

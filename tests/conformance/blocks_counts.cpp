@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -14,30 +13,10 @@
 namespace isoweave::testing::blocks_counts_test {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-BlockScene to_number(BlockScene scene, std::uint64_t triangles, double error = kNoLimit) {
-  scene.options.triangles = triangles;
-  scene.options.error = Length::units(error);
-  return scene;
-}
-
-std::uint64_t all_triangles(const BlockScene& scene) {
-  MeshOptions full = scene.options;
-  full.error = Length::units(0);
-  MemorySink sink;
-  return mesh_volume(*scene.open(), sink, full).triangles_extracted;
-}
-
 BlockRun run_blocks(const BlockScene& scene, const BlockOptions& blocks, const RunControl& control) {
   return run_into_memory(scene, [&](std::span<MeshSink* const> sinks) {
     return mesh_in_blocks(scene.open, sinks, scene.options, blocks, control);
   });
-}
-
-void expect_same_by_number(const BlockRun& found, const BlockRun& expected) {
-  expect_same(found, expected);
-  EXPECT_EQ(found.report.error, expected.report.error);
 }
 
 class BlocksToNumber : public ::testing::TestWithParam<BlockScene> {};
@@ -66,12 +45,6 @@ TEST_P(BlocksToNumber, AnySizeLimitAndShareGivesTheMeshOfTheSweep) {
       EXPECT_TRUE(folder.entries().empty());
     }
   }
-}
-
-std::vector<BlockScene> number_scenes() {
-  std::vector<BlockScene> some = some_scenes();
-  std::erase_if(some, [](const BlockScene& scene) { return !scene.options.levels.empty(); });
-  return some;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BlocksToNumber, ::testing::ValuesIn(number_scenes()),

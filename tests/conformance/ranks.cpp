@@ -11,35 +11,12 @@
 #include "block_scenes.hpp"
 #include "files.hpp"
 #include "isoweave/error.hpp"
-#include "local_ranks.hpp"
 #include "pipeline/parts/block_mesh.hpp"
 #include "pipeline/ranks/rank_plan.hpp"
+#include "rank_runs.hpp"
 
 namespace isoweave::testing::ranks_test {
 namespace {
-
-void rethrow_first(const std::vector<std::exception_ptr>& errors) {
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-}
-
-// Meshes a scene by ranks. Others than rank 0 have no sinks.
-BlockRun run_ranks(const BlockScene& scene, int count, const RankOptions& ranks, const RunControl& control) {
-  return run_into_memory(scene, [&](std::span<MeshSink* const> sinks) {
-    MeshReport report;
-    rethrow_first(LocalRanks(count).run([&](RankLink& link) {
-      const bool first = link.rank() == 0;
-      MeshReport own =
-          mesh_in_ranks(scene.open, first ? sinks : std::span<MeshSink* const>(), scene.options, ranks, link, control);
-      if (first) report = std::move(own);
-    }));
-    EXPECT_EQ(report.ranks.size(), static_cast<std::size_t>(count));
-    // Each rank has said at its end what it did.
-    for (const RankWork& rank : report.ranks) EXPECT_GT(rank.peak_bytes, 0U);
-    return report;
-  });
-}
 
 class Ranks : public ::testing::TestWithParam<BlockScene> {};
 
@@ -240,7 +217,7 @@ TEST(RankPlan, SharesTheWork) {
   const BlockScene scene = noise_scene();
   BlockOptions blocks;
   blocks.size = 8;
-  const Task task = resolve_blocks(RunKind::kProcesses, *scene.open(), scene.options, blocks, {}, {0, 0, 0});
+  const Task task = resolve_blocks(RunKind::kBlocks, *scene.open(), scene.options, blocks, {}, {0, 0, 0});
   const BlockStages stages(task, blocks);
   const TaskList tasks = stages.tasks();
   std::vector<std::uint64_t> weights;
@@ -267,7 +244,7 @@ TEST(BlockStages, TakersAndGiversBelongTogether) {
     BlockOptions blocks;
     blocks.size = 11;
     blocks.first = {first, -first, first};
-    const BlockStages stages(resolve_blocks(RunKind::kProcesses, *scene.open(), scene.options, blocks, {}, {0, 0, 0}),
+    const BlockStages stages(resolve_blocks(RunKind::kBlocks, *scene.open(), scene.options, blocks, {}, {0, 0, 0}),
                              blocks);
     const TaskList tasks = stages.tasks();
     for (std::uint64_t task = 0; task < tasks.count(); ++task) {

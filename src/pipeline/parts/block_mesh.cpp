@@ -39,6 +39,12 @@ void check_memory_of_blocks(const Task& task, const RunControl& control, std::in
                    " cells take more here");
 }
 
+TaskIdentity identity_of_tasks(const TaskMesh& mesh, const Task& task) {
+  const bool to_number = task.simplify.triangles > 0;
+  return {identity_of(task), mesh.blocks.size, mesh.blocks.first,
+          to_number ? head_start_cost(mesh.head_start, task.volume) : kUnknownCost};
+}
+
 PartShape cut_part_shape(const SimplifyTask& task) {
   PartShape shape = part_shape(task);
   shape.ends.assign(task.level_costs.size() + 1, {kNotHandedOver, std::numeric_limits<std::uint32_t>::max()});

@@ -23,6 +23,9 @@ Task resolve_blocks(RunKind kind, const SliceSource& volume, const MeshOptions& 
 // and BadInput.
 void check_blocks(const SliceSource& volume, const BlockOptions& blocks);
 
+// The mesh that the files of tasks belong to.
+TaskIdentity identity_of_tasks(const TaskMesh& mesh, const Task& task);
+
 // The shape of the parts of a task's surface, whatever has been handed over so far.
 PartShape cut_part_shape(const SimplifyTask& task);
 

@@ -4,11 +4,24 @@
 #include <utility>
 #include <vector>
 
+#include "isoweave/forecast.hpp"
 #include "pipeline/run_report.hpp"
 #include "simplify/count_target.hpp"
 #include "simplify/part_algebra.hpp"
 
 namespace isoweave {
+
+CostBits head_start_of(const VolumeOpener& open, const MeshOptions& options, const RunControl& control) {
+  if (options.triangles == 0) return kUnknownCost;
+  const std::unique_ptr<SliceSource> volume = open();
+  std::optional<double> error = control.head_start;
+  if (!error) {
+    RunControl uncapped = control;  // slabs may not fit, and are not taken
+    uncapped.memory = 0;
+    error = forecast_mesh(*volume, options, uncapped).head_start;
+  }
+  return head_start_cost(*error, volume->info());
+}
 
 BlocksToNumber::BlocksToNumber(const Task& task, const BlockStages& stages, const std::string& folder,
                                const RunControl& control, const Executor& executor, MeshReport& report)
@@ -25,8 +38,17 @@ std::unique_ptr<PartStore> BlocksToNumber::make_store() const {
                                      folder_);
 }
 
-std::optional<CostBits> BlocksToNumber::thin(const VolumeOpener& open, CostBits limit, const BlockPass::Tell& tell) {
+void BlocksToNumber::extract(const VolumeOpener& open, CostBits limit, const BlockPass::Tell& tell) {
   pass(std::min(limit, task_.simplify.zone.retire), [&](BlockPass& pass) { pass.extract(open, tell); });
+}
+
+void BlocksToNumber::keep(KeptTriangles kept) {
+  least_.merge(kept.least);
+  totals_.removed.merge(kept.removed);
+  for (ZonePart& part : kept.parts) kept_->hand_on(std::move(part), 0);
+}
+
+std::optional<CostBits> BlocksToNumber::thin() {
   while (!has_overshot() && kept() > most_together(task_.simplify.triangles)) {
     const CostBits higher = std::min(least_.highest_with_beyond(task_.simplify.triangles), task_.simplify.zone.retire);
     if (higher <= limit_) break;

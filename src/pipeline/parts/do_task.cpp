@@ -22,8 +22,8 @@ class TaskRun {
       : mesh_(mesh),
         number_(number),
         control_(control),
-        task_(resolve_blocks(RunKind::kProcesses, *mesh.open(), mesh.options, mesh.blocks, control, {0, 0, 0})),
-        identity_{identity_of(task_), mesh.blocks.size, mesh.blocks.first},
+        task_(resolve_blocks(RunKind::kBlocks, *mesh.open(), mesh.options, mesh.blocks, control, {0, 0, 0})),
+        identity_(identity_of_tasks(mesh, task_)),
         stages_(task_, mesh.blocks),
         givers_(stages_.givers_of(number)),
         executor_(control.threads) {}
@@ -39,10 +39,11 @@ class TaskRun {
 
  private:
   TaskResult work() const {
-    TaskWork work(task_, stages_, number_, control_, executor_, [] {});
+    const CostBits limit = limit_of_tasks(task_.simplify, identity_.head_start);
+    TaskWork work(task_, limit, stages_, number_, control_, executor_, [] {});
     if (givers_.empty()) return work.extract(mesh_.open);
     try {
-      return work.glue(read_parts_for(mesh_.folder, identity_, number_, givers_, cut_part_shape(task_.simplify)));
+      return work.glue(TaskFolder(mesh_.folder, identity_, task_.simplify).parts_for(number_, givers_));
     } catch (const UnfitParts& unfit) {
       throw BadInput(mesh_.folder + ": the files for task " + std::to_string(number_) +
                      " do not fit together: " + unfit.what());
@@ -62,7 +63,7 @@ class TaskRun {
 }  // namespace
 
 TaskList list_tasks(const TaskMesh& mesh) {
-  const Task task = resolve_blocks(RunKind::kProcesses, *mesh.open(), mesh.options, mesh.blocks, {}, {0, 0, 0});
+  const Task task = resolve_blocks(RunKind::kBlocks, *mesh.open(), mesh.options, mesh.blocks, {}, {0, 0, 0});
   return BlockStages(task, mesh.blocks).tasks();
 }
 

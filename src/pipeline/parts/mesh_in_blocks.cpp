@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "isoweave/blocks.hpp"
-#include "isoweave/forecast.hpp"
 #include "output/final_output.hpp"
 #include "output/world.hpp"
 #include "parallel/float_environment.hpp"
@@ -46,19 +45,6 @@ class FinalOfBlock final : public FinalSource {
   PartStore& store_;
   const std::size_t level_;
 };
-
-// The cost up to which a run to a number of triangles may decide everything at once.
-CostBits head_start_of(const VolumeOpener& open, const MeshOptions& options, const RunControl& control) {
-  if (options.triangles == 0) return kUnknownCost;
-  const std::unique_ptr<SliceSource> volume = open();
-  std::optional<double> error = control.head_start;
-  if (!error) {
-    RunControl uncapped = control;  // slabs may not fit, and are not taken
-    uncapped.memory = 0;
-    error = forecast_mesh(*volume, options, uncapped).head_start;
-  }
-  return head_start_cost(*error, volume->info());
-}
 
 class BlocksRun {
  public:
@@ -114,12 +100,12 @@ class BlocksRun {
   // Hands all triangles over once the number is met.
   std::optional<CostBits> take_to_number(CostBits head_start) {
     BlocksToNumber surface(task_, stages_, folder_, control_, executor_, report_);
-    const std::optional<CostBits> lower = surface.thin(open_, head_start, [&](SlabRecord& record) {
+    surface.extract(open_, head_start, [&](SlabRecord& record) {
       record.bytes += surface.kept_bytes();
       record.undecided_triangles = surface.kept();
       tell(record);
     });
-    if (lower) return lower;
+    if (const std::optional<CostBits> lower = surface.thin()) return lower;
     const std::unique_ptr<Simplifier> simplifier = surface.finish();
     check_memory_of_blocks(task_, control_, stages_.grids[0].size);
     outputs_.back()->take(simplifier->final_source());

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isoweave/error.hpp"
+#include "pipeline/parts/task_work.hpp"
 #include "pipeline/run_report.hpp"
 #include "system/process_memory.hpp"
 
@@ -33,8 +34,9 @@ std::uint64_t task_of(const KnownVertex& vertex) { return vertex.receipt.number 
 
 }  // namespace
 
-TaskCollector::TaskCollector(Task task, const BlockStages& stages, std::span<MeshSink* const> sinks,
-                             const RunControl& control, const Executor& executor, std::string name)
+TaskCollector::TaskCollector(Task task, CostBits head_start, const BlockStages& stages,
+                             std::span<MeshSink* const> sinks, const RunControl& control, const Executor& executor,
+                             std::string name, const std::string& scratch)
     : task_(with_offset(std::move(task), common_offset(sinks))),
       stages_(stages),
       tasks_(stages.tasks()),
@@ -45,11 +47,15 @@ TaskCollector::TaskCollector(Task task, const BlockStages& stages, std::span<Mes
       sinks_(sinks.begin(), sinks.end()),
       firsts_(sinks.size(), std::vector<std::uint64_t>(tasks_.count(), kNotWritten)),
       totals_(sinks.size()),
-      left_(tasks_.stages.size(), 0) {
+      left_(tasks_.stages.size(), 0),
+      head_start_(head_start) {
   for (MeshSink* sink : sinks_) {
     outputs_.push_back(std::make_unique<FinalOutput>(world_, *sink, executor_, control.measure));
   }
   start_report();
+  if (task_.simplify.triangles == 0) return;
+  number_.emplace(task_, stages_, scratch, control_, executor_, report_);
+  number_->begin(limit_of_tasks(task_.simplify, head_start));
 }
 
 void TaskCollector::start_report() {
@@ -123,7 +129,11 @@ void TaskCollector::name_known(std::size_t level, FinalPiece& piece) const {
 
 void TaskCollector::check_counts() const {
   const std::uint64_t expected = report_.triangles_extracted - decisions_.removed;
-  if (totals_.back().triangles != expected) refuse("triangles", expected, totals_.back().triangles);
+  const std::uint64_t found = number_ ? number_->kept() : totals_.back().triangles;
+  if (found != expected) refuse("triangles", expected, found);
+  if (number_ && number_->totals().removed.items() != decisions_.removed) {
+    refuse("removed triangles with their costs", decisions_.removed, number_->totals().removed.items());
+  }
   for (std::size_t stage = 0; stage + 1 < left_.size(); ++stage) {
     const std::uint64_t taken = report_.blocks[stage + 1].triangles;
     if (left_[stage] != taken) refuse("triangles that a stage takes over", left_[stage], taken);
@@ -132,6 +142,24 @@ void TaskCollector::check_counts() const {
     throw OverMemory(name_ + ": expected fewer than 2^32 vertices where components are counted, found " +
                      std::to_string(totals_.back().vertices));
   }
+}
+
+std::optional<CostBits> TaskCollector::end_at_number() {
+  BlockTotals tasks;
+  tasks.decisions = decisions_;
+  tasks.rounds = report_.rounds;
+  number_->count(tasks);
+  if (const std::optional<CostBits> lower = number_->thin()) {
+    if (*lower < head_start_) return lower;
+    throw BadInput(name_ + ": the results of the tasks do not fit together: expected costs that tell how far to go");
+  }
+  const std::unique_ptr<Simplifier> simplifier = number_->finish();
+  check_memory_of_blocks(task_, control_, stages_.grids[0].size);
+  outputs_.back()->take(simplifier->final_source());
+  decisions_ = number_->totals().decisions;
+  report_.rounds = number_->totals().rounds;
+  totals_.back().defects = simplifier->defects();
+  return std::nullopt;
 }
 
 void TaskCollector::refuse(const char* what, std::uint64_t expected, std::uint64_t found) const {
@@ -148,6 +176,7 @@ void TaskCollector::finish_report() {
   }
   report_decisions(decisions_, report_);
   report_samples(task_.volume, range_, report_);
+  if (number_) report_target(decisions_, task_.simplify, report_);
   while (report_.blocks.size() > 1 && report_.blocks.back().blocks == 0) report_.blocks.pop_back();
   warn_of_border(task_, report_);
   warn_of_nothing(task_, control_.allow_empty, report_);

@@ -3,26 +3,39 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output/final_output.hpp"
 #include "output/world.hpp"
 #include "pipeline/parts/block_mesh.hpp"
+#include "pipeline/parts/blocks_to_number.hpp"
 #include "pipeline/parts/task_file.hpp"
 
 namespace isoweave {
 
 class TaskCollector {
  public:
-  // sinks: one for each level and one more. name: the folder or the volume, for messages. All other arguments must
+  // head_start: that of the tasks. sinks: one for each level and one more. name: the folder or the volume, for
+  // messages. scratch: a folder in which what is kept waits; empty: it waits in memory. All other arguments must
   // outlive the collector.
-  TaskCollector(Task task, const BlockStages& stages, std::span<MeshSink* const> sinks, const RunControl& control,
-                const Executor& executor, std::string name);
+  TaskCollector(Task task, CostBits head_start, const BlockStages& stages, std::span<MeshSink* const> sinks,
+                const RunControl& control, const Executor& executor, std::string name, const std::string& scratch);
 
   // Adds the counts of a task.
   void count(std::uint64_t task, const TaskFacts& facts);
+
+  // Of a run to a number of triangles, whose tasks decide up to the cost of a head start: takes what a task keeps.
+  void keep(KeptTriangles kept) { number_->keep(std::move(kept)); }
+  std::uint64_t kept() const { return number_->kept(); }
+
+  // Of such a run, after check_counts(): ends the mesh at the number, and writes it. Returns the head start of the run
+  // that has to take the place of this one, as its own was too high: nothing has been written then. Throws BadInput for
+  // counts that give no lower one.
+  std::optional<CostBits> end_at_number();
 
   // Whether all vertices that final triangles of a task name have been written.
   bool can_write(std::uint64_t task, const std::vector<std::vector<FinalPiece>>& pieces) const;
@@ -62,6 +75,8 @@ class TaskCollector {
   MeshReport report_;
   DecisionCounts decisions_;
   SampleRange range_;
+  const CostBits head_start_;
+  std::optional<BlocksToNumber> number_;  // of a run to a number of triangles
 };
 
 }  // namespace isoweave

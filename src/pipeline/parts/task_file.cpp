@@ -7,7 +7,7 @@ namespace isoweave {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6b73617465766f77;  // "wovetask", little-endian
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLeastPiece = 48;  // bytes: the lengths of five lists, and a count
 
 void require_same(const StateReader& state, const char* what, const std::string& found, const std::string& expected) {
@@ -25,6 +25,7 @@ void TaskIdentity::write(StateWriter& state, std::uint64_t task) const {
   state.list(run.options);
   state.value(block);
   state.value(first);
+  state.value(head_start);
   state.value(task);
 }
 
@@ -39,6 +40,7 @@ TaskIdentity TaskIdentity::read(StateReader& state) {
   state.list(found.run.options);
   state.value(found.block);
   state.value(found.first);
+  state.value(found.head_start);
   return found;
 }
 
@@ -50,6 +52,7 @@ void TaskIdentity::require(StateReader& state, std::uint64_t task) const {
   require_same(state, "options", found.run.options, run.options);
   require_same(state, "size of blocks", std::to_string(found.block), std::to_string(block));
   require_same(state, "task", std::to_string(found_task), std::to_string(task));
+  state.require(found.head_start == head_start, "the head start of the plan");
   state.require(found.first == first, "the place of blocks");
 }
 

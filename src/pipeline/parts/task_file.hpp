@@ -1,5 +1,6 @@
 // The two files of a task: `N.final` with its final triangles, and `N.rest` with the parts that are left for the next
-// stage. The second one appears when the task is done.
+// stage. The second one appears when the task is done. In a run to a number of triangles none is final before the end:
+// `N.final` has those that the task keeps.
 //
 // Both begin with the mesh that they are of. A vertex that a task has handed over is known by the number of the task
 // and its place among the vertices of that task.
@@ -27,6 +28,7 @@ struct TaskIdentity {
   RunIdentity run;
   std::int64_t block = 0;
   std::array<std::int64_t, 3> first{0, 0, 0};
+  CostBits head_start = kUnknownCost;  // of a run to a number of triangles: what tasks decide costs no more
 
   void write(StateWriter& state, std::uint64_t task) const;
 

@@ -10,19 +10,12 @@ namespace {
 
 constexpr const char* kKind = "file of a task";
 
-TaskFacts facts_in(StateReader& reader, const TaskIdentity& identity, std::uint64_t task, std::size_t levels) {
-  identity.require(reader, task);
-  TaskFacts facts;
-  facts.read(reader, levels);
-  return facts;
-}
-
 }  // namespace
 
 void write_result(const std::string& folder, const TaskIdentity& identity, std::uint64_t task, TaskResult& result) {
   StateWriter final(final_file(folder, task));
   identity.write(final, task);
-  for (const std::vector<FinalPiece>& level : result.pieces) write_final_pieces(final, level);
+  result.write_mesh(final);
   final.commit();
   StateWriter rest(rest_file(folder, task));
   identity.write(rest, task);
@@ -31,42 +24,45 @@ void write_result(const std::string& folder, const TaskIdentity& identity, std::
   rest.commit();
 }
 
-TaskFacts read_facts(const std::string& folder, const TaskIdentity& identity, std::uint64_t task, std::size_t levels) {
-  StateReader reader(rest_file(folder, task), kKind);
-  return facts_in(reader, identity, task, levels);
+TaskFacts TaskFolder::read_facts(StateReader& reader, std::uint64_t task) const {
+  identity_.require(reader, task);
+  TaskFacts facts;
+  facts.read(reader, shape_.ends.size());
+  return facts;
 }
 
-std::vector<std::vector<FinalPiece>> read_finals(const std::string& folder, const TaskIdentity& identity,
-                                                 std::uint64_t task, std::size_t levels) {
-  StateReader reader(final_file(folder, task), kKind);
-  identity.require(reader, task);
-  std::vector<std::vector<FinalPiece>> pieces(levels);
-  for (std::vector<FinalPiece>& level : pieces) read_final_pieces(reader, level);
-  reader.require_end();
-  return pieces;
+TaskFacts TaskFolder::facts(std::uint64_t task) const {
+  StateReader reader(rest_file(folder_, task), kKind);
+  return read_facts(reader, task);
 }
 
-TaskResult read_result(const std::string& folder, const TaskIdentity& identity, std::uint64_t task,
-                       const PartShape& shape) {
+TaskResult TaskFolder::mesh(std::uint64_t task) const {
+  StateReader reader(final_file(folder_, task), kKind);
+  identity_.require(reader, task);
   TaskResult result;
-  StateReader reader(rest_file(folder, task), kKind);
-  result.facts = facts_in(reader, identity, task, shape.ends.size());
-  for (const TaskPart& part : result.facts.parts) result.parts.push_back({part.task, read_cut_part(reader, shape)});
-  result.pieces = read_finals(folder, identity, task, shape.ends.size());
+  result.read_mesh(reader, shape_, to_number_);
+  reader.require_end();
   return result;
 }
 
-std::vector<ZonePart> read_parts_for(const std::string& folder, const TaskIdentity& identity, std::uint64_t task,
-                                     const std::vector<std::uint64_t>& from, const PartShape& shape) {
+TaskResult TaskFolder::result(std::uint64_t task) const {
+  TaskResult result = mesh(task);
+  StateReader reader(rest_file(folder_, task), kKind);
+  result.facts = read_facts(reader, task);
+  for (const TaskPart& part : result.facts.parts) result.parts.push_back({part.task, read_cut_part(reader, shape_)});
+  return result;
+}
+
+std::vector<ZonePart> TaskFolder::parts_for(std::uint64_t task, const std::vector<std::uint64_t>& from) const {
   std::vector<ZonePart> parts;
   for (const std::uint64_t giver : from) {
-    StateReader reader(rest_file(folder, giver), kKind);
-    const TaskFacts facts = facts_in(reader, identity, giver, shape.ends.size());
+    StateReader reader(rest_file(folder_, giver), kKind);
+    const TaskFacts facts = read_facts(reader, giver);
     const auto ours =
         std::find_if(facts.parts.begin(), facts.parts.end(), [&](const TaskPart& part) { return part.task == task; });
     if (ours == facts.parts.end()) continue;
-    for (auto part = facts.parts.begin(); part != ours; ++part) read_cut_part(reader, shape);
-    parts.push_back(read_cut_part(reader, shape));
+    for (auto part = facts.parts.begin(); part != ours; ++part) read_cut_part(reader, shape_);
+    parts.push_back(read_cut_part(reader, shape_));
   }
   return parts;
 }

@@ -12,17 +12,29 @@ namespace isoweave {
 // Writes the two files of a task. Throws CannotWrite.
 void write_result(const std::string& folder, const TaskIdentity& identity, std::uint64_t task, TaskResult& result);
 
-// Reads the counts of a task that is done, and its final triangles in each of so many levels. Throw BadInput.
-TaskFacts read_facts(const std::string& folder, const TaskIdentity& identity, std::uint64_t task, std::size_t levels);
-std::vector<std::vector<FinalPiece>> read_finals(const std::string& folder, const TaskIdentity& identity,
-                                                 std::uint64_t task, std::size_t levels);
+// The files that tasks of a mesh have left in a folder. The arguments must outlive it.
+class TaskFolder {
+ public:
+  TaskFolder(const std::string& folder, const TaskIdentity& identity, const SimplifyTask& task)
+      : folder_(folder), identity_(identity), shape_(cut_part_shape(task)), to_number_(task.triangles > 0) {}
 
-// Reads the result of a task that is done. shape: that of its parts. Throws BadInput.
-TaskResult read_result(const std::string& folder, const TaskIdentity& identity, std::uint64_t task,
-                       const PartShape& shape);
+  // Reads of a task that is done its counts, and its result without parts for others. Throw BadInput.
+  TaskFacts facts(std::uint64_t task) const;
+  TaskResult mesh(std::uint64_t task) const;
 
-// Reads the parts that tasks which are done have left for another one. Throws BadInput.
-std::vector<ZonePart> read_parts_for(const std::string& folder, const TaskIdentity& identity, std::uint64_t task,
-                                     const std::vector<std::uint64_t>& from, const PartShape& shape);
+  // Reads the whole result of a task that is done. Throws BadInput.
+  TaskResult result(std::uint64_t task) const;
+
+  // Reads the parts that tasks which are done have left for another one. Throws BadInput.
+  std::vector<ZonePart> parts_for(std::uint64_t task, const std::vector<std::uint64_t>& from) const;
+
+ private:
+  TaskFacts read_facts(StateReader& reader, std::uint64_t task) const;
+
+  const std::string& folder_;
+  const TaskIdentity& identity_;
+  const PartShape shape_;
+  const bool to_number_;
+};
 
 }  // namespace isoweave

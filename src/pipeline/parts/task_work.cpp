@@ -1,21 +1,38 @@
 #include "pipeline/parts/task_work.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace isoweave {
 
-TaskWork::TaskWork(const Task& task, const BlockStages& stages, std::uint64_t number, const RunControl& control,
-                   const Executor& executor, std::function<void()> between)
+void TaskResult::write_mesh(StateWriter& state) {
+  if (kept) return kept->write(state);
+  for (const std::vector<FinalPiece>& level : pieces) write_final_pieces(state, level);
+}
+
+void TaskResult::read_mesh(StateReader& state, const PartShape& shape, bool to_number) {
+  pieces.resize(shape.ends.size());
+  if (to_number) return kept.emplace().read(state, shape);
+  for (std::vector<FinalPiece>& level : pieces) read_final_pieces(state, level);
+}
+
+CostBits limit_of_tasks(const SimplifyTask& task, CostBits head_start) {
+  return task.triangles > 0 ? std::min(head_start, task.zone.retire) : task.zone.retire;
+}
+
+TaskWork::TaskWork(const Task& task, CostBits limit, const BlockStages& stages, std::uint64_t number,
+                   const RunControl& control, const Executor& executor, std::function<void()> between)
     : task_(task),
       stages_(stages),
       number_(number),
       tasks_(stages.tasks()),
       stage_(tasks_.stage_of(number)),
       between_(std::move(between)),
-      worker_(task, task.simplify.zone.retire, stages.all, control, executor, report_,
-              [this](Simplifier& simplifier, std::size_t level) { keep_final(simplifier, level); }) {
+      worker_(task, limit, stages.all, control, executor, report_,
+              [this](Simplifier& simplifier, std::size_t level) { take(simplifier, level); }) {
+  if (task.simplify.triangles > 0) result_.kept.emplace();
   result_.pieces.resize(task.simplify.level_costs.size() + 1);
   result_.facts.levels.resize(result_.pieces.size());
 }
@@ -32,6 +49,15 @@ TaskResult TaskWork::glue(std::vector<ZonePart> parts) {
   return result_of(worker_.glue(std::move(parts)));
 }
 
+void TaskWork::take(Simplifier& simplifier, std::size_t level) {
+  if (!result_.kept) {
+    keep_final(simplifier, level);
+  } else if (ZonePart part = simplifier.take_settled(result_.kept->least); part.triangles.size() > 0) {
+    result_.kept->parts.push_back(std::move(part));
+  }
+  between_();
+}
+
 // Keeps what is final in a level until the task is done.
 void TaskWork::keep_final(Simplifier& simplifier, std::size_t level) {
   LevelCounts& counts = result_.facts.levels[level];
@@ -44,7 +70,6 @@ void TaskWork::keep_final(Simplifier& simplifier, std::size_t level) {
     counts.open_edges += piece.open_edges;
     if (piece.positions.size() + piece.triangles.size() > 0) result_.pieces[level].push_back(std::move(piece));
   } while (source.has_more());
-  between_();
 }
 
 TaskResult TaskWork::result_of(ZonePart rest) {
@@ -76,6 +101,7 @@ void TaskWork::count() {
   counts.rounds = totals.rounds;
   counts.decisions = totals.decisions;
   counts.range = totals.range;
+  if (result_.kept) result_.kept->removed.merge(totals.removed);
   for (std::size_t level = 0; level < result_.pieces.size(); ++level) {
     result_.facts.levels[level].defects = totals.defects[level];
   }

@@ -12,21 +12,18 @@
 #include "isoweave/ranks.hpp"
 #include "parallel/float_environment.hpp"
 #include "pipeline/loop.hpp"
+#include "pipeline/parts/blocks_to_number.hpp"
 #include "pipeline/parts/task_folder.hpp"
 #include "pipeline/parts/waiting_part.hpp"
 #include "pipeline/ranks/rank_messages.hpp"
 #include "pipeline/ranks/rank_plan.hpp"
 #include "pipeline/ranks/result_writer.hpp"
+#include "pipeline/ranks/results_folder.hpp"
 #include "pipeline/run_report.hpp"
 #include "system/process_memory.hpp"
 
 namespace isoweave {
 namespace {
-
-// The run has failed, here or elsewhere: rank 0 has said so to all.
-struct RunFailed {
-  RankError error;
-};
 
 class RanksRun {
  public:
@@ -36,28 +33,25 @@ class RanksRun {
         options_(ranks),
         link_(link),
         control_(control),
-        task_(resolve_blocks(RunKind::kProcesses, *open(), options, ranks.blocks, control, {0, 0, 0})),
+        mesh_options_(options),
+        task_(resolve_blocks(RunKind::kBlocks, *open(), options, ranks.blocks, control, {0, 0, 0})),
         identity_{identity_of(task_), ranks.blocks.size, ranks.blocks.first},
         stages_(task_, ranks.blocks),
         tasks_(stages_.tasks()),
-        executor_(control.threads) {
+        executor_(control.threads),
+        sinks_(sinks) {
     if (!ranks.blocks.folder.empty()) scratch_.emplace(ranks.blocks.folder);
-    if (is_first()) {
-      collector_.emplace(task_, stages_, sinks, control_, executor_, task_.volume.path);
-      results_.emplace(*collector_);
-    }
   }
 
   MeshReport run() {
     Stopwatch total;
     share_out();
-    while (work_.tasks < own_) {
-      take_messages();
-      ready_.empty() ? wait() : work_on_next();
+    while (true) {
+      work_on_all();
+      if (is_first() ? completed() : ended()) break;
     }
-    require_unchanged(task_, identity_.run);
-    if (!is_first()) return end_elsewhere();
-    MeshReport report = complete();
+    if (!is_first()) return {};
+    MeshReport report = finish();
     total.lap(report.seconds_total);
     return report;
   }
@@ -84,11 +78,6 @@ class RanksRun {
     }
     is_first() ? plan() : send_weights();
     while (owners_.empty()) wait();
-    for (std::uint64_t task = 0; task < tasks_.count(); ++task) {
-      if (owner(task) != link_.rank()) continue;
-      ++own_;
-      if (tasks_.stage_of(task) == 0) ready_.insert(task);
-    }
   }
 
   void send_weights() {
@@ -98,13 +87,44 @@ class RanksRun {
   }
 
   void plan() {
+    const std::optional<TaskIdentity> before = identity_of_results(options_.results);
+    begin_with(before ? before->head_start : head_start_of(open_, mesh_options_, control_));
     while (weighed_ < link_.ranks()) wait();
     owners_ = plan_ranks(stages_, weights_, link_.ranks());
     for (int rank = 1; rank < link_.ranks(); ++rank) {
       MessageWriter message(MessageKind::kPlan);
+      message.value(identity_.head_start);
       message.list(owners_);
       send(rank, message.take());
     }
+  }
+
+  // Makes ready for results of tasks that decide up to the cost of a head start.
+  void begin_with(CostBits head_start) {
+    identity_.head_start = head_start;
+    collector_.emplace(task_, head_start, stages_, sinks_, control_, executor_, task_.volume.path,
+                       options_.blocks.folder);
+    results_.emplace(*collector_);
+  }
+
+  // Works on all tasks of this rank.
+  void work_on_all() {
+    std::uint64_t left = 0;
+    for (std::uint64_t task = 0; task < tasks_.count(); ++task) {
+      if (owner(task) != link_.rank()) continue;
+      ++left;
+      if (tasks_.stage_of(task) == 0) ready_.insert(task);
+    }
+    while (left > 0) {
+      take_messages();
+      if (ready_.empty()) {
+        wait();
+      } else {
+        work_on_next();
+        --left;
+      }
+    }
+    require_unchanged(task_, identity_.run);
   }
 
   // Takes the first task that can be done, from the results that are kept or by working on it.
@@ -116,14 +136,14 @@ class RanksRun {
     ++work_.tasks;
     work_.triangles += result.facts.counts.taken;
     hand_on(task, std::move(result.parts));
-    hand_in(task, result.facts, std::move(result.pieces));
+    hand_in(task, std::move(result));
   }
 
   bool is_kept(std::uint64_t task) const { return !options_.results.empty() && has_result(options_.results, task); }
 
   TaskResult kept_result(std::uint64_t task) {
     parts_.erase(task);
-    return read_result(options_.results, identity_, task, cut_part_shape(task_.simplify));
+    return TaskFolder(options_.results, identity_, task_.simplify).result(task);
   }
 
   TaskResult work(std::uint64_t task) {
@@ -134,16 +154,19 @@ class RanksRun {
     return result;
   }
 
-  TaskResult extract(std::uint64_t task) {
-    return TaskWork(task_, stages_, task, control_, executor_, [this] { take_messages(); }).extract(open_);
-  }
+  TaskResult extract(std::uint64_t task) { return work_of(task).extract(open_); }
 
   TaskResult glue(std::uint64_t task) {
     std::vector<ZonePart> parts;
     if (const auto waiting = parts_.extract(task)) {
       for (WaitingPart& part : waiting.mapped()) parts.push_back(part.take(cut_part_shape(task_.simplify)));
     }
-    return TaskWork(task_, stages_, task, control_, executor_, [this] { take_messages(); }).glue(std::move(parts));
+    return work_of(task).glue(std::move(parts));
+  }
+
+  TaskWork work_of(std::uint64_t task) {
+    const CostBits limit = limit_of_tasks(task_.simplify, identity_.head_start);
+    return TaskWork(task_, limit, stages_, task, control_, executor_, [this] { take_messages(); });
   }
 
   // Sends every task of the next stage that waits for it what a task has left for it, or that this is nothing.
@@ -180,17 +203,17 @@ class RanksRun {
   }
 
   // Gives rank 0 the final triangles of a task and its counts.
-  void hand_in(std::uint64_t task, const TaskFacts& facts, std::vector<std::vector<FinalPiece>> pieces) {
-    if (is_first()) return take_result(task, facts, std::move(pieces));
+  void hand_in(std::uint64_t task, TaskResult result) {
+    if (is_first()) return take_result(task, std::move(result));
     MessageWriter message(MessageKind::kResult);
     message.value(task);
-    facts.write(message);
-    for (const std::vector<FinalPiece>& level : pieces) write_final_pieces(message, level);
+    result.facts.write(message);
+    result.write_mesh(message);
     send(0, message.take());
   }
 
-  void take_result(std::uint64_t task, const TaskFacts& facts, std::vector<std::vector<FinalPiece>> pieces) {
-    results_->take(task, facts, std::move(pieces));
+  void take_result(std::uint64_t task, TaskResult result) {
+    results_->take(task, std::move(result));
     if (!control_.progress) return;
     const auto done = static_cast<std::int64_t>(results_->tasks());
     const auto all = static_cast<std::int64_t>(tasks_.count());
@@ -217,6 +240,7 @@ class RanksRun {
       case MessageKind::kWeights:
         return take_weights(message);
       case MessageKind::kPlan:
+        message.value(identity_.head_start);
         message.list(owners_);
         return message.require(owners_.size() == tasks_.count(), "a rank for each task");
       case MessageKind::kPart:
@@ -227,14 +251,16 @@ class RanksRun {
         ++ranks_done_;
         return message.value(rank_work(message.from()));
       }
-      case MessageKind::kFailed: {
-        RunFailed failed;
-        failed.error.read(message);
-        throw failed;
-      }
+      case MessageKind::kAgain:
+        again_ = true;
+        return message.value(identity_.head_start);
+      case MessageKind::kFailed:
+        throw RunFailed::read(message);
       case MessageKind::kEnd:
         ended_ = true;
         return;
+      case MessageKind::kCount:
+        break;
     }
     message.require(false, "a kind of message that there is");
   }
@@ -261,13 +287,12 @@ class RanksRun {
 
   void read_result_of(MessageReader& message) {
     std::uint64_t task = 0;
-    TaskFacts facts;
+    TaskResult result;
     message.value(task);
     message.require(is_first() && task < tasks_.count(), "a task of this mesh");
-    facts.read(message, levels());
-    std::vector<std::vector<FinalPiece>> pieces(levels());
-    for (std::vector<FinalPiece>& level : pieces) read_final_pieces(message, level);
-    take_result(task, facts, std::move(pieces));
+    result.facts.read(message, levels());
+    result.read_mesh(message, cut_part_shape(task_.simplify), task_.simplify.triangles > 0);
+    take_result(task, std::move(result));
   }
 
   RankWork& rank_work(int rank) {
@@ -275,20 +300,40 @@ class RanksRun {
     return all_work_.at(to_size(rank));
   }
 
-  MeshReport end_elsewhere() {
+  // Tells rank 0 that all tasks here are done. Returns whether the run has ended: else all are to be done again.
+  bool ended() {
+    again_ = false;
     work_.peak_bytes = system::peak_bytes();
     MessageWriter message(MessageKind::kDone);
     message.value(work_);
     send(0, message.take());
-    while (!ended_) wait();
-    return {};
+    while (!ended_ && !again_) wait();
+    return ended_;
   }
 
-  // Completes the mesh, when all ranks are done.
-  MeshReport complete() {
+  // Completes the mesh, when all ranks are done. Returns whether it is complete: else all tasks are to be done again.
+  bool completed() {
     while (results_->tasks() < tasks_.count() || ranks_done_ + 1 < link_.ranks()) wait();
     if (results_->waits()) throw BadInput(task_.volume.path + ": final triangles of ranks do not fit together");
     collector_->check_counts();
+    if (task_.simplify.triangles == 0) return true;
+    const std::optional<CostBits> lower = collector_->end_at_number();
+    if (lower) begin_again(*lower);
+    return !lower;
+  }
+
+  void begin_again(CostBits head_start) {
+    if (!options_.results.empty()) remove_results(options_.results);
+    ranks_done_ = 0;
+    begin_with(head_start);
+    for (int rank = 1; rank < link_.ranks(); ++rank) {
+      MessageWriter message(MessageKind::kAgain);
+      message.value(head_start);
+      send(rank, message.take());
+    }
+  }
+
+  MeshReport finish() {
     MeshReport report = collector_->finish();
     work_.peak_bytes = report.peak_bytes;
     rank_work(0) = work_;
@@ -301,17 +346,18 @@ class RanksRun {
   const RankOptions& options_;
   RankLink& link_;
   const RunControl& control_;
+  const MeshOptions& mesh_options_;
   const Task task_;
-  const TaskIdentity identity_;
+  TaskIdentity identity_;
   const BlockStages stages_;
   const TaskList tasks_;
   const Executor executor_;
-  std::optional<TaskCollector> collector_;  // of rank 0
+  const std::span<MeshSink* const> sinks_;  // of rank 0
+  std::optional<TaskCollector> collector_;
   std::optional<ResultWriter> results_;
   std::vector<std::uint64_t> weights_;            // per task of the first stage
   std::vector<std::uint32_t> owners_;             // per task
   int weighed_ = 1;                               // ranks, this one included
-  std::uint64_t own_ = 0;                         // tasks of this rank
   std::set<std::uint64_t> ready_;                 // all parts for them are here
   std::map<std::uint64_t, std::size_t> arrived_;  // per task that is not ready: messages from the stage before
   std::optional<PartScratch> scratch_;
@@ -319,30 +365,18 @@ class RanksRun {
   RankWork work_;
   std::vector<RankWork> all_work_;
   int ranks_done_ = 0;  // others
-  bool ended_ = false;
+  bool ended_ = false, again_ = false;
 };
-
-MeshReport run(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
-               const RankOptions& ranks, RankLink& link, const RunControl& control) {
-  std::optional<RankError> error;
-  try {
-    if (link.rank() == 0) check_sinks(sinks, options.levels.size());
-    return RanksRun(open, sinks, options, ranks, link, control).run();
-  } catch (const RunFailed& failed) {
-    error = failed.error;
-    if (link.rank() == 0) tell_all(link, *error);
-  } catch (const std::exception& own) {
-    error = agreed_error(link, RankError::of(own));
-  }
-  error->raise();
-}
 
 }  // namespace
 
 MeshReport mesh_in_ranks(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
                          const RankOptions& ranks, RankLink& link, const RunControl& control) {
   const StandardFloats floats;
-  return run(open, sinks, options, ranks, link, control);
+  return run_together(link, [&] {
+    if (link.rank() == 0) check_sinks(sinks, options.levels.size());
+    return RanksRun(open, sinks, options, ranks, link, control).run();
+  });
 }
 
 void end_ranks(RankLink& link, const std::exception& error) { agreed_error(link, RankError::of(error)).raise(); }

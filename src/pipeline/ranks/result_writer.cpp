@@ -4,10 +4,11 @@
 
 namespace isoweave {
 
-void ResultWriter::take(std::uint64_t task, const TaskFacts& facts, std::vector<std::vector<FinalPiece>> pieces) {
+void ResultWriter::take(std::uint64_t task, TaskResult result) {
   ++tasks_;
-  collector_.count(task, facts);
-  waiting_.push_back({task, std::move(pieces)});
+  collector_.count(task, result.facts);
+  if (result.kept) return collector_.keep(std::move(*result.kept));
+  waiting_.push_back({task, std::move(result.pieces)});
   while (write_some()) {
   }
 }

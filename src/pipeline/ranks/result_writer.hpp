@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/parts/task_collector.hpp"
+#include "pipeline/parts/task_work.hpp"
 
 namespace isoweave {
 
@@ -12,8 +13,8 @@ class ResultWriter {
  public:
   explicit ResultWriter(TaskCollector& collector) : collector_(collector) {}
 
-  // Takes the counts and the final triangles of a task.
-  void take(std::uint64_t task, const TaskFacts& facts, std::vector<std::vector<FinalPiece>> pieces);
+  // Takes the counts of a task, and its part of the mesh. Of a run to a number of triangles nothing is written yet.
+  void take(std::uint64_t task, TaskResult result);
 
   std::uint64_t tasks() const { return tasks_; }  // taken so far
   bool waits() const { return !waiting_.empty(); }

@@ -1,10 +1,10 @@
-// The folder in which results of blocks are kept.
+#include "pipeline/ranks/results_folder.hpp"
+
 #include <filesystem>
 #include <system_error>
 #include <vector>
 
 #include "isoweave/ranks.hpp"
-#include "pipeline/parts/task_file.hpp"
 
 namespace isoweave {
 namespace {
@@ -20,11 +20,16 @@ std::vector<std::filesystem::path> results_in(const std::string& folder, const c
 
 }  // namespace
 
-std::optional<std::int64_t> block_size_of_results(const std::string& folder) {
+std::optional<TaskIdentity> identity_of_results(const std::string& folder) {
   const std::vector<std::filesystem::path> results = results_in(folder, ".rest");
   if (results.empty()) return std::nullopt;
   StateReader reader(results.front().string(), "file of a task");
-  return TaskIdentity::read(reader).block;
+  return TaskIdentity::read(reader);
+}
+
+std::optional<std::int64_t> block_size_of_results(const std::string& folder) {
+  const std::optional<TaskIdentity> identity = identity_of_results(folder);
+  return identity ? std::optional(identity->block) : std::nullopt;
 }
 
 void remove_results(const std::string& folder) {
