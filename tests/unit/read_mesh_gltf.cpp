@@ -112,6 +112,46 @@ TEST(ReadGltf, JoinsMeshesAndTurnsMirroredOnesOver) {
   EXPECT_EQ(check_mesh(found).misoriented_edges, 0U);
 }
 
+// A scene with three copies of a tetrahedron, in a node that is moved along z.
+Gltf three_copies() {
+  Gltf gltf;
+  const int mesh = gltf.add_tetrahedron();
+  const int shifts = gltf.add_points({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}});
+  const int scales = gltf.add_points({{1, 1, 1}, {2, 2, 2}, {1, 1, -1}});
+  // The second one is turned by a quarter about z; numbers of 8 bits with a sign.
+  const std::string turns = {0, 0, 0, 127, 0, 0, 90, 90, 0, 0, 0, 127};
+  const int rotations = gltf.add(turns, kByte, 3, "VEC4", {{"normalized", true}});
+  gltf.show({{{"mesh", mesh}, {"translation", {0, 0, 100}}}});
+  gltf.scene["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", shifts}, {"SCALE", scales}, {"ROTATION", rotations}, {"_ID", 99}};
+  gltf.scene["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  return gltf;
+}
+
+TEST(ReadGltf, PlacesCopiesByTheListsOfTheirNode) {
+  const TriangleMesh found = read(three_copies());
+  ASSERT_EQ(found.vertices.size(), 12U);
+  const std::vector<Point> right{{0, 0, 100}, {1, 0, 100},  {0, 1, 100},  {0, 0, 101},  {10, 0, 100}, {10, 2, 100},
+                                 {8, 0, 100}, {10, 0, 102}, {20, 0, 100}, {21, 0, 100}, {20, 1, 100}, {20, 0, 99}};
+  for (std::size_t v = 0; v < 12; ++v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found.vertices[v][axis], right[v][axis], 1e-5) << v;
+  }
+  EXPECT_NEAR(check_mesh(found).volume, 10.0 / 6, 1e-6);
+  EXPECT_EQ(check_mesh(found).misoriented_edges, 0U);
+  EXPECT_TRUE(has_note(found, "3 meshes are joined"));
+}
+
+TEST(ReadGltf, RefusesCopiesWithoutAPlace) {
+  for (const int count : {0, 2}) {
+    Gltf gltf = three_copies();
+    Json& copies = gltf.scene["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    gltf.scene["accessors"][copies["SCALE"].get<std::size_t>()]["count"] = count;
+    if (count == 0) copies = {{"SCALE", copies["SCALE"]}};
+    EXPECT_TRUE(contains(refusal(gltf), "places for all copies of a mesh")) << count;
+  }
+  foreign::expect_damage_is_safe("a.glb", three_copies().glb());
+}
+
 TEST(ReadGltf, ReadsIndicesOfEveryTypeAndNone) {
   for (const int component : {kUbyte, kUshort, kUint, 0}) {
     Gltf gltf;

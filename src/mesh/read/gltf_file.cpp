@@ -261,18 +261,22 @@ GltfFile::Stored GltfFile::stored(const GltfValue& number, std::string_view type
   return stored;
 }
 
-std::vector<WidePoint> GltfFile::vectors(const GltfValue& accessor) {
-  const Stored numbers = stored(accessor, "VEC3", 3);
+template <std::size_t kCount>
+std::vector<std::array<double, kCount>> GltfFile::rows(const GltfValue& accessor, std::string_view type) {
+  const Stored numbers = stored(accessor, type, kCount);
   const std::size_t each = component_bytes(numbers.component);
-  std::vector<WidePoint> points(to_size(numbers.count));
-  for (std::size_t n = 0; n < points.size(); ++n) {
+  std::vector<std::array<double, kCount>> rows(to_size(numbers.count));
+  for (std::size_t n = 0; n < rows.size(); ++n) {
     const std::byte* const from = numbers.bytes.data() + n * numbers.stride;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      points[n][axis] = real_of(load(from + axis * each, each), numbers.component, numbers.normalized);
+    for (std::size_t axis = 0; axis < kCount; ++axis) {
+      rows[n][axis] = real_of(load(from + axis * each, each), numbers.component, numbers.normalized);
     }
   }
-  return points;
+  return rows;
 }
+
+template std::vector<WidePoint> GltfFile::rows<3>(const GltfValue& accessor, std::string_view type);
+template std::vector<std::array<double, 4>> GltfFile::rows<4>(const GltfValue& accessor, std::string_view type);
 
 std::vector<std::uint32_t> GltfFile::indices(const GltfValue& accessor) {
   const Stored numbers = stored(accessor, "SCALAR", 1);

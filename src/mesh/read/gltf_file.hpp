@@ -33,8 +33,9 @@ class GltfFile {
   // A whole number that is not negative.
   std::uint64_t whole(const GltfValue& value, std::string_view what) const;
 
-  // Vectors of three numbers, each of 8, 16 or 32 bits.
-  std::vector<WidePoint> vectors(const GltfValue& accessor);
+  // Vectors of three numbers, and quaternions, each number of 8, 16 or 32 bits.
+  std::vector<WidePoint> vectors(const GltfValue& accessor) { return rows<3>(accessor, "VEC3"); }
+  std::vector<std::array<double, 4>> quaternions(const GltfValue& accessor) { return rows<4>(accessor, "VEC4"); }
   std::vector<std::uint32_t> indices(const GltfValue& accessor);
 
  private:
@@ -46,6 +47,8 @@ class GltfFile {
     bool normalized = false;
   };
 
+  template <std::size_t kCount>
+  std::vector<std::array<double, kCount>> rows(const GltfValue& accessor, std::string_view type);
   std::string read_binary();
   std::string read_text();
   std::uint32_t next_u32();

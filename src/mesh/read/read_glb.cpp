@@ -16,13 +16,15 @@
 namespace isoweave::mesh_io {
 namespace {
 
+constexpr const char* kCopies = "EXT_mesh_gpu_instancing";
+
 enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
 
 // Whether an extension leaves the shape as it is, or is read here.
 bool is_known_extension(const std::string& name) {
   for (const char* known : {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
                             "MSFT_lod", "MSFT_packing_", "EXT_meshopt_compression", "KHR_meshopt_compression",
-                            "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_"}) {
+                            "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_animation_", kCopies}) {
     if (name.starts_with(known)) return true;
   }
   return false;
@@ -185,10 +187,9 @@ class SceneReader {
     }
     const GltfValue& node = file_.element("nodes", number);
     const Placement placement = both(placement_of(node), outer);
-    if (node.contains("extensions") && node.at("extensions").contains("EXT_mesh_gpu_instancing")) {
-      input_.fail("expected a mesh without 'EXT_mesh_gpu_instancing', found one with it");
+    if (node.contains("mesh")) {
+      for (const Placement& copy : copies_of(node)) add_mesh(node, both(copy, placement));
     }
-    if (node.contains("mesh")) add_mesh(node, placement);
     for (const GltfValue& child : node.value("children", GltfValue::array())) add_node(child, placement, depth + 1);
   }
 
@@ -203,6 +204,30 @@ class SceneReader {
     }
     if (!right) input_.fail("expected " + std::to_string(kCount) + " numbers as " + name + ", found others");
     return result;
+  }
+
+  // Where a node puts the copies of its mesh, before it is placed itself: one, unless it has a list of places.
+  std::vector<Placement> copies_of(const GltfValue& node) {
+    const GltfValue extensions = node.value("extensions", GltfValue::object());
+    if (!extensions.contains(kCopies)) return {Placement{}};
+    const GltfValue& lists = extensions.at(kCopies).at("attributes");
+    std::vector<WidePoint> scales, shifts;
+    std::vector<std::array<double, 4>> turns;
+    if (lists.contains("SCALE")) scales = file_.vectors(lists.at("SCALE"));
+    if (lists.contains("ROTATION")) turns = file_.quaternions(lists.at("ROTATION"));
+    if (lists.contains("TRANSLATION")) shifts = file_.vectors(lists.at("TRANSLATION"));
+    std::vector<Placement> copies(std::max({scales.size(), turns.size(), shifts.size()}));
+    for (const std::size_t count : {scales.size(), turns.size(), shifts.size()}) {
+      if (copies.empty() || (count > 0 && count != copies.size()))
+        input_.fail("expected places for all copies of a mesh, found fewer");
+    }
+    count_in(copies.size());
+    for (std::size_t n = 0; n < copies.size(); ++n) {
+      for (std::size_t axis = 0; axis < 3 && !scales.empty(); ++axis) copies[n].linear[4 * axis] = scales[n][axis];
+      if (!turns.empty()) copies[n] = both(copies[n], rotation(turns[n]));
+      if (!shifts.empty()) copies[n].shift = shifts[n];
+    }
+    return copies;
   }
 
   // A matrix, column by column, or scale, then rotation, then translation.
