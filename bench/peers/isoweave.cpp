@@ -82,7 +82,11 @@ class Job : public Task {
       : file_(file), goal_(goal), options_(mesh_options(file.iso, quality)) {
     stop_at(stop, goal, options_);
   }
-  void run() override { mesh_volume(*open_source(file_), mesh_, options_, on(goal_.threads)); }
+  void run() override {
+    isoweave::RunControl control = on(goal_.threads);
+    control.reopen = [this] { return open_source(file_); };
+    mesh_volume(*open_source(file_), mesh_, options_, control);
+  }
   std::size_t triangles() const override { return mesh_.triangles().size(); }
   isoweave::TriangleMesh mesh() const override { return mesh_.copy(); }
 
