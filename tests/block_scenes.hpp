@@ -136,6 +136,13 @@ inline BlockScene to_number(BlockScene scene, std::uint64_t triangles, double er
   return scene;
 }
 
+// The scene with a share of all triangles in place of a number.
+inline BlockScene to_share(BlockScene scene, double share) {
+  scene.options.triangles = 0;
+  scene.options.share = share;
+  return scene;
+}
+
 inline std::uint64_t all_triangles(const BlockScene& scene) {
   MeshOptions full = scene.options;
   full.error = Length::units(0);
@@ -197,6 +204,7 @@ inline void expect_same(const BlockRun& found, const BlockRun& expected) {
 inline void expect_same_by_number(const BlockRun& found, const BlockRun& expected) {
   expect_same(found, expected);
   EXPECT_EQ(found.report.error, expected.report.error);
+  EXPECT_EQ(found.report.target, expected.report.target);
 }
 
 }  // namespace isoweave::testing

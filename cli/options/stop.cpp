@@ -88,25 +88,27 @@ Length stop_distance(const StopOptions& stop, const LengthBasis& basis) {
   return parse_positive_length("--max-distance", stop.max_distance, basis);
 }
 
-std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count) {
-  if (!stop.triangles.empty()) return static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
-  if (stop.ratio.empty()) return 0;
-  const double ratio = parse_share("--ratio", stop.ratio);
-  if (!(ratio > 0 && ratio <= 1)) wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
-  return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
+void set_number(const StopOptions& stop, SimplifyOptions& options) {
+  if (!stop.triangles.empty()) {
+    options.triangles = static_cast<std::uint64_t>(parse_count("--triangles", stop.triangles));
+  }
+  if (stop.ratio.empty()) return;
+  options.share = parse_share("--ratio", stop.ratio);
+  if (!(options.share > 0 && options.share <= 1))
+    wrong_value("--ratio", "a number above 0 and not above 1", stop.ratio);
 }
 
-void print_target(const StopOptions& stop, const MeshReport& report, std::uint64_t asked, const Length& allowed,
-                  const std::string& unit) {
-  if (asked == 0) return;
+void print_target(const StopOptions& stop, const MeshReport& report, const Length& allowed, const std::string& unit) {
+  if (report.target == 0) return;
   const auto text = [&](double length) { return fmt::format("{:.4g} {}", length, unit_text(unit)); };
   print_note(
       fmt::format("error reached: {} (of the last collapses; most of the surface moved far less)", text(report.error)));
-  if (report.triangles <= asked) return;
+  if (report.triangles <= report.target) return;
   const bool all_tetrahedra = report.open_edges == 0 && report.triangles <= 4 * report.components;
   const std::string bounds = bounds_given(stop);
   if (!bounds.empty() && !all_tetrahedra) {
-    print_note(fmt::format("stopped by {} at {} of {} triangles", bounds, grouped(report.triangles), grouped(asked)));
+    print_note(
+        fmt::format("stopped by {} at {} of {} triangles", bounds, grouped(report.triangles), grouped(report.target)));
   }
   std::vector<std::string> ways{"--largest, --min-component N or --specks drop where small components keep them"};
   if (std::isfinite(allowed.value)) {
@@ -117,12 +119,15 @@ void print_target(const StopOptions& stop, const MeshReport& report, std::uint64
   print_note(fmt::format("to leave fewer: {}", fmt::join(ways, ", or ")));
 }
 
-std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles) {
+std::string stop_text(const StopOptions& stop, const std::string& usual) {
   const std::string more = (stop.max_distance.empty() ? "" : " distance within " + stop.max_distance) +
                            (drops_specks(stop) ? " specks drop" : "");
   const std::string& otherwise = stop.max_distance.empty() ? usual : stop.max_distance;
   if (!stop.has_number()) return "error " + (stop.error.empty() ? otherwise : stop.error) + more;
-  return (stop.error.empty() ? "" : "error " + stop.error + " ") + fmt::format("triangles {}", triangles) + more;
+  const std::string number = stop.ratio.empty()
+                                 ? fmt::format("triangles {}", parse_count("--triangles", stop.triangles))
+                                 : "ratio " + stop.ratio;
+  return (stop.error.empty() ? "" : "error " + stop.error + " ") + number + more;
 }
 
 }  // namespace isoweave::cli

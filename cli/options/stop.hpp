@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,15 +41,14 @@ bool drops_specks(const StopOptions& stop);
 // The guaranteed distance; 0: none is asked for.
 Length stop_distance(const StopOptions& stop, const LengthBasis& basis);
 
-// The number of triangles; 0: none is asked for. count() gives the triangles of the full surface, for a ratio.
-std::uint64_t stop_triangles(const StopOptions& stop, const std::function<std::uint64_t()>& count);
+// Sets the number of triangles, or the share of those of the full surface, at which a run stops.
+void set_number(const StopOptions& stop, SimplifyOptions& options);
 
 // Prints how a run to a number of triangles ended: the error that it reached and, where more triangles are left than
 // were asked for, the ways to leave fewer. Prints nothing for a run to an error.
-void print_target(const StopOptions& stop, const MeshReport& report, std::uint64_t asked, const Length& allowed,
-                  const std::string& unit);
+void print_target(const StopOptions& stop, const MeshReport& report, const Length& allowed, const std::string& unit);
 
-// "error 0.2vox", "triangles 20000", or both; and "specks drop".
-std::string stop_text(const StopOptions& stop, const std::string& usual, std::uint64_t triangles);
+// "error 0.2vox", "triangles 20000", or both; "ratio 10%"; and "specks drop".
+std::string stop_text(const StopOptions& stop, const std::string& usual);
 
 }  // namespace isoweave::cli

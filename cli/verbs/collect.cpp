@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -75,15 +74,14 @@ void run_collect(const CollectArguments& arguments) {
   MeshReport report = collect(plan, sinks, control);
   sinks.tell_digests(report);
   Json json = run_json(report, volume_json(plan.volume, plan.arguments.input.path));
-  const std::uint64_t triangles = plan.mesh.options.triangles;
-  if (triangles > 0) json["target"] = {{"triangles", triangles}};
+  if (report.target > 0) json["target"] = {{"triangles", report.target}};
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   evidence.write(std::move(json), control, {});
   if (arguments.quiet) return;
   for (const std::string& warning : report.warnings) print_note("warning: " + warning);
   print_levels(report, outputs);
-  print_target(plan.arguments.stop, report, triangles, plan.mesh.options.error, plan.volume.geometry.unit);
+  print_target(plan.arguments.stop, report, plan.mesh.options.error, plan.volume.geometry.unit);
   const double voxels = static_cast<double>(plan.volume.slice_samples()) * static_cast<double>(plan.volume.dims[2]);
   print_summary(report, outputs.back().name(), voxels);
 }

@@ -37,13 +37,6 @@ bool may_take_blocks(const MeshArguments& arguments, const MeshOptions& options,
   return true;
 }
 
-std::uint64_t count_input_in_blocks(const MeshArguments& arguments, std::int64_t size, const MeshOptions& options,
-                                    const RunControl& control) {
-  RunControl in_blocks = control;
-  in_blocks.index = nullptr;
-  return count_triangles_in_blocks([&] { return open_input(arguments.input); }, options, {size}, in_blocks);
-}
-
 MeshReport mesh_input_in_blocks(const MeshArguments& arguments, std::int64_t size, std::span<MeshSink* const> sinks,
                                 const MeshOptions& options, const RunControl& control) {
   RunControl in_blocks = control;

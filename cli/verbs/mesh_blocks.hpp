@@ -21,10 +21,6 @@ std::optional<std::int64_t> asked_blocks(const MeshArguments& arguments);
 bool may_take_blocks(const MeshArguments& arguments, const MeshOptions& options, const RunControl& control,
                      const SliceSource& volume);
 
-// The number of triangles of the input's full surface, counted in blocks.
-std::uint64_t count_input_in_blocks(const MeshArguments& arguments, std::int64_t size, const MeshOptions& options,
-                                    const RunControl& control);
-
 // Meshes the input in blocks. With a cap on memory, what waits from block to block waits in files beside the output.
 MeshReport mesh_input_in_blocks(const MeshArguments& arguments, std::int64_t size, std::span<MeshSink* const> sinks,
                                 const MeshOptions& options, const RunControl& control);

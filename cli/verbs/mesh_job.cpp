@@ -116,7 +116,7 @@ void mesh_labels(const MeshArguments& arguments, const MeshOptions& options, con
     MeshFileOptions file = file_options(arguments, arguments.stop, options, info);
     file.comments = {"isoweave " ISOWEAVE_VERSION,
                      fmt::format("label {} {} {} quality {}{}", label.label.text(), options.closed ? "closed" : "open",
-                                 stop_text(arguments.stop, kUsualError, 0), arguments.quality,
+                                 stop_text(arguments.stop, kUsualError), arguments.quality,
                                  extractor_text(arguments) + smooth_text(options))};
     if (!label.name.empty()) file.comments.push_back("name " + printable(label.name));
     return file;
@@ -144,6 +144,7 @@ class MeshJob {
         options_(mesh_options(arguments)),
         control_(run_control(arguments.run)) {
     if (!arguments.memory.empty()) control_.memory = parse_bytes("--memory", arguments.memory);
+    set_number(arguments.stop, options_);
   }
 
   void run() {
@@ -159,7 +160,7 @@ class MeshJob {
     if (!arguments_.dry_run) try_levels(outputs_);
     if (arguments_.iso == "auto") find_iso();
     if (arguments_.preview.given()) return preview(evidence);
-    find_target();
+    block_size_ = asked_blocks(arguments_);
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
     if (!resume_ && needs_forecast()) slabs_or_blocks([&] { foresee_slabs(); });
     if (arguments_.dry_run) return tell_forecast(evidence);
@@ -219,7 +220,6 @@ class MeshJob {
 
   // Makes a mesh for each iso-value. A share of the triangles would be another number for each, and is refused.
   void mesh_isos(Evidence& evidence) {
-    options_.triangles = stop_triangles(arguments_.stop, [] { return std::uint64_t{0}; });
     mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
     tell_lengths();
   }
@@ -249,38 +249,6 @@ class MeshJob {
         std::make_shared<ComponentChoice>(choose_components(*open_input(arguments_.input), options_, rule_, control_));
   }
 
-  // Finds the number of triangles to stop at. For a share, all triangles are counted first.
-  void find_target() {
-    block_size_ = asked_blocks(arguments_);
-    if (control_.memory > 0 && !arguments_.stop.ratio.empty()) slabs_or_blocks([&] { foresee_share(); });
-    options_.triangles = stop_triangles(arguments_.stop, [&] {
-      choose();
-      return options_.components != nullptr ? options_.components->triangles : count_all();
-    });
-  }
-
-  std::uint64_t count_all() const {
-    if (!block_size_) return count_triangles(*open_input(arguments_.input), options_, control_);
-    return count_input_in_blocks(arguments_, *block_size_, options_, control_);
-  }
-
-  // Refuses a cap that is too small for a share of all triangles, before they are counted.
-  void foresee_share() {
-    const std::uint64_t all = forecast_mesh(*open_input(arguments_.input), options_, control_).triangles_extracted;
-    const MeshFileOptions file = file_options(arguments_, arguments_.stop, options_, info_);
-    const auto check_with = [&](std::uint64_t triangles) {
-      options_.triangles = stop_triangles(arguments_.stop, [&] { return triangles; });
-      checked_forecast(arguments_, options_, file, control_);
-    };
-    try {
-      check_with(all);
-    } catch (const OverMemory&) {
-      check_with(all + all / 2);  // the cap that is named has to do with more triangles, too
-      throw;
-    }
-    options_.triangles = 0;
-  }
-
   // Foresees a run in slabs. Where they do not fit into the cap, it takes blocks instead.
   template <class Foresee>
   void slabs_or_blocks(const Foresee& foresee) {
@@ -297,16 +265,15 @@ class MeshJob {
   // Chooses blocks that are expected to fit into the cap, if there are any. Where not even empty ones do, nothing is
   // read.
   void choose_blocks() {
-    const auto size_for = [this](std::uint64_t triangles) {
-      return block_size_for([this] { return open_input(arguments_.input); }, triangles, control_.memory,
-                            options_.triangles);
+    const auto size_for = [this](std::uint64_t triangles, std::uint64_t wanted) {
+      return block_size_for([this] { return open_input(arguments_.input); }, triangles, control_.memory, wanted);
     };
-    if (!size_for(0)) return;
+    if (!size_for(0, options_.triangles)) return;
     RunControl uncapped = control_;
     uncapped.memory = 0;
     const Forecast forecast = forecast_mesh(*open_input(arguments_.input), options_, uncapped);
-    if (rule_.keeps_all() && arguments_.stop.ratio.empty()) control_.head_start = forecast.head_start;
-    block_size_ = size_for(forecast.triangles_extracted);
+    if (rule_.keeps_all()) control_.head_start = forecast.head_start;
+    block_size_ = size_for(forecast.triangles_extracted, arguments_.stop.has_number() ? forecast.triangles : 0);
     if (quiet() || !block_size_) return;
     print_note(fmt::format("--memory {}: too little for slabs, so blocks of {} are taken (--blocks off: they are not)",
                            arguments_.memory, *block_size_));
@@ -315,7 +282,8 @@ class MeshJob {
   // Whether anything goes by a forecast, which takes up to a third of the time of a small run.
   bool needs_forecast() const {
     const bool is_told = arguments_.dry_run || !arguments_.run.report.empty() || arguments_.page.given();
-    return is_told || control_.memory > 0 || options_.triangles > 0 || !holds_any_surface(arguments_, file_, info_);
+    return is_told || control_.memory > 0 || arguments_.stop.has_number() ||
+           !holds_any_surface(arguments_, file_, info_);
   }
 
   void foresee_slabs() {
@@ -427,7 +395,7 @@ class MeshJob {
     print_caps(report, arguments_);
     print_dropped(report);
     print_levels(report, outputs_);
-    print_target(arguments_.stop, report, options_.triangles, options_.error, info_.geometry.unit);
+    print_target(arguments_.stop, report, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
     print_left_out(report, index_.path);
     print_summary(report, outputs_.back().name(), voxels);

@@ -69,7 +69,7 @@ std::vector<std::string> comments(const MeshArguments& arguments, const StopOpti
   return {"isoweave " ISOWEAVE_VERSION,
           fmt::format(
               "iso {} inside {} {} {} quality {}{}", options.iso, arguments.inside, options.closed ? "closed" : "open",
-              stop_text(stop, kUsualError, options.triangles), arguments.quality,
+              stop_text(stop, kUsualError), arguments.quality,
               extractor_text(arguments) + smooth_text(options) + component_text(component_rule(arguments.components)))};
 }
 

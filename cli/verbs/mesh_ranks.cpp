@@ -65,6 +65,7 @@ class RanksJob {
         options_(mesh_options(arguments)),
         control_(run_control(arguments.run)) {
     if (!arguments.memory.empty()) control_.memory = parse_bytes("--memory", arguments.memory);
+    set_number(arguments.stop, options_);
     check(arguments, options_, control_);
     for (const OutputOptions& output : outputs_) {
       check_different({arguments.input.path, output.path, arguments.run.report});
@@ -114,18 +115,12 @@ class RanksJob {
     if (!ranks_.results.empty()) make_folder(ranks_.results);
     const std::optional<std::int64_t> before = block_size_of_results(ranks_.results);
     ranks_.blocks.size = asked_blocks(arguments_).value_or(before.value_or(block_size_for_ranks(info_, link_.ranks())));
-    options_.triangles = stop_triangles(arguments_.stop, [this] {
-      return count_triangles_in_ranks(opener(), options_, ranks_.blocks, link_, control_);
-    });
-  }
-
-  VolumeOpener opener() const {
-    return [input = arguments_.input] { return open_input(input); };
   }
 
   MeshReport mesh(std::span<MeshSink* const> sinks) const {
+    const auto open = [input = arguments_.input] { return open_input(input); };
     try {
-      return mesh_in_ranks(opener(), sinks, options_, ranks_, link_, control_);
+      return mesh_in_ranks(open, sinks, options_, ranks_, link_, control_);
     } catch (const Interrupted&) {
       if (ranks_.results.empty()) throw;
       throw Interrupted("interrupted: the same command goes on with what is in " + ranks_.results);
@@ -138,7 +133,7 @@ class RanksJob {
     for (const std::string& warning : report.warnings) print_note("warning: " + warning);
     print_notes(sinks_->last());
     print_levels(report, outputs_);
-    print_target(arguments_.stop, report, options_.triangles, options_.error, info_.geometry.unit);
+    print_target(arguments_.stop, report, options_.error, info_.geometry.unit);
     const double voxels = static_cast<double>(info_.slice_samples()) * static_cast<double>(info_.dims[2]);
     print_summary(report, outputs_.back().name(), voxels);
   }

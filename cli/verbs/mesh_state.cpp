@@ -32,7 +32,7 @@ void set_task(MeshArguments& arguments, const MeshArguments& now, const Json& ta
   if (now.run.report.empty()) arguments.run.report = task.at("report");
   if (!now.page.given()) arguments.page = {task.at("html"), task.at("page_triangles")};
   arguments.iso = task.at("iso");
-  arguments.stop = {task.at("error"),  task.at("triangles"), "",
+  arguments.stop = {task.at("error"),  task.at("triangles"), task.at("ratio"),
                     task.at("specks"), task.at("lods"),      task.at("max_distance")};
   arguments.components = {task.at("min_component"), task.at("largest")};
   arguments.quality = task.at("quality");
@@ -73,7 +73,8 @@ Json task_json(const MeshArguments& arguments, const MeshOptions& options) {
           {"page_triangles", arguments.page.triangles},
           {"iso", fmt::format("{}", options.iso)},
           {"error", arguments.stop.error},
-          {"triangles", options.triangles > 0 ? std::to_string(options.triangles) : ""},
+          {"triangles", arguments.stop.triangles},
+          {"ratio", arguments.stop.ratio},
           {"specks", arguments.stop.specks},
           {"min_component", arguments.components.min_component},
           {"largest", arguments.components.largest},

@@ -27,8 +27,7 @@ void add_surface_options(CLI::App& verb, MeshArguments& arguments) {
 void add_simplification_options(CLI::App& verb, MeshArguments& arguments) {
   add_stop_options(verb, arguments.stop);
   verb.get_option("--error")->default_str(kUsualError);
-  verb.get_option("--ratio")->description(
-      "Stop at this part of the full surface's triangles, such as 10%; the volume is read twice");
+  verb.get_option("--ratio")->description("Stop at this part of the full surface's triangles, such as 10%");
   verb.add_option("--quality", arguments.quality, "fast, normal or fine")->capture_default_str();
   verb.add_option(
           "--normals", arguments.normals,

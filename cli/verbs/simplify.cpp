@@ -65,22 +65,20 @@ bool keeps_values(const SimplifyArguments& arguments) {
 }
 
 // The comment of a level's mesh file.
-std::string how_text(const SimplifyArguments& arguments, std::size_t level, std::uint64_t triangles) {
+std::string how_text(const SimplifyArguments& arguments, std::size_t level) {
   if (arguments.preview.given()) return preview_text(arguments.preview);
-  return fmt::format("simplified, {} quality {}", stop_text(stop_levels(arguments.stop)[level], "", triangles),
-                     arguments.quality);
+  return fmt::format("simplified, {} quality {}", stop_text(stop_levels(arguments.stop)[level], ""), arguments.quality);
 }
 
 // The options of a level's mesh file.
-MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleMesh& mesh, std::size_t level,
-                             std::uint64_t triangles) {
+MeshFileOptions file_options(const SimplifyArguments& arguments, const TriangleMesh& mesh, std::size_t level) {
   MeshFileOptions file;
   file.values = !mesh.values.empty() && keeps_values(arguments);
   file.unit = mesh.unit;
   file.space = mesh.space;
   file.offset = mesh.offset;
   file.comments = {"isoweave " ISOWEAVE_VERSION,
-                   how_text(arguments, level, triangles) + component_text(component_rule(arguments.components))};
+                   how_text(arguments, level) + component_text(component_rule(arguments.components))};
   return mesh_file_options(arguments.output, std::move(file));
 }
 
@@ -202,10 +200,9 @@ void run_simplify(SimplifyArguments arguments) {
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value) && arguments.stop.error.empty())
     options.error = Length::units(most_shape_error(mesh));
-  options.triangles = stop_triangles(arguments.stop, [&] { return std::uint64_t{mesh.triangles.size()}; });
+  set_number(arguments.stop, options);
   control.stop = borrow(stop_on_signal());
-  const LevelSinks sinks(outputs,
-                         [&](std::size_t level) { return file_options(arguments, mesh, level, options.triangles); });
+  const LevelSinks sinks(outputs, [&](std::size_t level) { return file_options(arguments, mesh, level); });
   ProgressPrinter printer(mode);
   control.progress = [&](const Progress& progress) { printer.show(progress); };
   MeshReport report = simplify_named(arguments, mesh, sinks, options, control, dropped);
@@ -226,7 +223,7 @@ void run_simplify(SimplifyArguments arguments) {
   print_notes(sinks.last());
   print_dropped(report);
   print_levels(report, outputs);
-  print_target(arguments.stop, report, options.triangles, options.error, basis.unit);
+  print_target(arguments.stop, report, options.error, basis.unit);
   if (report.preview) print_preview(report, basis.unit);
   print_summary(report, outputs.back().name(), 0);
 }

@@ -45,18 +45,17 @@ PlannedMesh planned(MeshArguments arguments, std::int64_t block, const std::stri
   plan.volume = open_input(plan.arguments.input)->info();
   MeshOptions options = mesh_options(plan.arguments);
   set_lengths(plan.arguments, plan.volume, options);
+  set_number(plan.arguments.stop, options);
   BlockOptions blocks;
   blocks.size = block;
   plan.mesh = {folder, [input = plan.arguments.input] { return open_input(input); }, options, blocks};
   return plan;
 }
 
-// Finds the number of triangles to stop at, if there is one, and the error up to which tasks may decide everything.
-void plan_number(PlannedMesh& plan, const RunControl& control) {
-  TaskMesh& mesh = plan.mesh;
-  mesh.options.triangles = stop_triangles(
-      plan.arguments.stop, [&] { return count_triangles_in_blocks(mesh.open, mesh.options, mesh.blocks, control); });
-  if (mesh.options.triangles > 0) mesh.head_start = forecast_mesh(*mesh.open(), mesh.options, control).head_start;
+// The error up to which tasks may decide everything; 0 where no number of triangles is to stop them.
+double head_start_of(const PlannedMesh& plan, const RunControl& control) {
+  if (!plan.arguments.stop.has_number()) return 0;
+  return forecast_mesh(*plan.mesh.open(), plan.mesh.options, control).head_start;
 }
 
 Json read_json(const std::string& path) {
@@ -115,7 +114,7 @@ PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const 
   PlannedMesh plan = planned(arguments, block, folder);
   const TaskList tasks = list_tasks(plan.mesh);
   check_task_folder(folder);
-  plan_number(plan, control);
+  plan.mesh.head_start = head_start_of(plan, control);
   make_task_folder(folder);
   const Json json = {{"version", ISOWEAVE_VERSION},
                      {"blocks", block},
@@ -147,7 +146,6 @@ PlannedMesh read_plan(const std::string& folder) {
     MeshArguments arguments;
     set_task(arguments, arguments, json.at("mesh"));
     PlannedMesh plan = planned(std::move(arguments), json.at("blocks"), folder);
-    plan.mesh.options.triangles = stop_triangles(plan.arguments.stop, [] { return std::uint64_t{0}; });
     plan.mesh.head_start = json.at("head_start");
     require_planned_volume(plan, path, json.at("volume"));
     return plan;

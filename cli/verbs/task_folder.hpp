@@ -15,8 +15,8 @@ struct PlannedMesh {
   VolumeInfo volume;
 };
 
-// Makes the folder and its plan. To a number of triangles, reads some of the volume, and for a share all of it, under
-// the control of a run. Throws CannotWrite where the folder holds anything.
+// Makes the folder and its plan. To a number of triangles, reads some of the volume, under the control of a run. Throws
+// CannotWrite where the folder holds anything.
 PlannedMesh make_plan(const MeshArguments& arguments, std::int64_t block, const std::string& folder,
                       const RunControl& control);
 

@@ -92,10 +92,5 @@ MeshReport mesh_labels_in_blocks(const VolumeOpener& open, std::span<const Label
                                  const MeshOptions& options, const BlockOptions& blocks = {},
                                  const RunControl& control = {});
 
-// The number of triangles of the full surface, counted block by block.
-// @throws what mesh_in_blocks throws
-std::uint64_t count_triangles_in_blocks(const VolumeOpener& open, const SurfaceOptions& options,
-                                        const BlockOptions& blocks = {}, const RunControl& control = {});
-
 }  // namespace isoweave
 #pragma GCC visibility pop

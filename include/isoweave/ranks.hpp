@@ -77,12 +77,6 @@ std::optional<std::int64_t> block_size_of_results(const std::string& folder);
 MeshReport mesh_in_ranks(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
                          const RankOptions& ranks, RankLink& link, const RunControl& control = {});
 
-// The number of triangles of the full surface, counted by all ranks of a link, each of which gets it. All must be given
-// the same volume, options and blocks.
-// @throws as mesh_in_ranks
-std::uint64_t count_triangles_in_ranks(const VolumeOpener& open, const SurfaceOptions& options,
-                                       const BlockOptions& blocks, RankLink& link, const RunControl& control = {});
-
 // Ends the run of all ranks with an error of this one, from outside of mesh_in_ranks: as where a file cannot be opened
 // before. The others may be in mesh_in_ranks, or here with errors of their own.
 // @throws the error that rank 0 names to all ranks; this one where rank 0 is silent for two seconds

@@ -72,6 +72,7 @@ struct MeshReport : SurfaceReport {
   std::uint64_t cells_crossed = 0, triangles_extracted = 0, vertices_extracted = 0;
   std::uint64_t collapses = 0, postponed = 0, rekeyed = 0, rounds = 0;
   std::uint64_t specks = 0;  // components dropped
+  std::uint64_t target = 0;  // the number of triangles that was asked for, also as a share; 0: none
   // Dropped by SurfaceOptions::components. Their triangles are among those extracted. `specks` are not among them.
   std::uint64_t components_dropped = 0, triangles_dropped = 0;
   std::vector<SurfaceReport> levels;  // finer meshes, as MeshOptions::levels

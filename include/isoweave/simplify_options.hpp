@@ -26,6 +26,10 @@ struct SimplifyOptions {
   // reach, and going on would ruin shapes: most_shape_error() is a bound. Between two slabs a quarter more triangles
   // than the number and 50,000 are held, or as many as it takes to be sure of the result.
   std::uint64_t triangles = 0;
+  // In place of a number: this share of the triangles that the surface has before simplification, above 0 and up to 1;
+  // 0: no share. The number is the nearest one, and at least 1. It is known when the surface is complete, so until then
+  // all triangles are held that a head start (RunControl::head_start) does not let go.
+  double share = 0;
   Quality quality = Quality::kNormal;
   // A closed component that has shrunk to a tetrahedron is dropped when half its longest edge is no longer than the
   // error. Without this option every component stays, and topology with it.

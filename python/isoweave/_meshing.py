@@ -119,7 +119,7 @@ def mesh(
             number in the volume's unit; 0: the full surface. None: "0.2vox", unless ``triangles``, ``ratio``, ``max_distance`` or ``lods`` says where to stop.
             "inf" beside ``max_distance``: the fewest triangles within it; beside a number: no bound.
         triangles: stop at this number.
-        ratio: stop at this part of the full surface's triangles, which takes a pass over the volume of its own.
+        ratio: stop at this part of the full surface's triangles.
         max_distance: a guarantee: no point of the mesh is farther than this from the full surface.
         quality: "fine" costs time and gives the lowest error.
         inside: the side of the level that is inside.

@@ -218,8 +218,7 @@ def mesh(
         progress: True: a bar of tqdm, or one line on standard error. A function that gets a :class:`TaskProgress` after every
             task; False from it stops the run.
 
-    To a number of triangles, the client ends the mesh by itself, in 350 bytes for each triangle of 1.5 times the number; with
-    ``ratio`` it counts the triangles of the full surface before.
+    To a number of triangles, the client ends the mesh by itself, in 350 bytes for each triangle of 1.5 times the number.
 
     Returns:
         A :class:`Report`; a list of them with ``lods``, finest first.

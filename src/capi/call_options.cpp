@@ -86,13 +86,10 @@ SimplifyOptions simplify_options(const iw_simplify_options& given, const LengthB
   }
   if (given.max_distance != nullptr) options.max_distance = length("max_distance", given.max_distance, basis);
   options.triangles = given.triangles;
+  options.share = given.ratio;
   options.quality = choice("quality", given.quality, {Quality::kNormal, Quality::kFast, Quality::kFine});
   options.drop_specks = given.drop_specks != 0;
   return options;
-}
-
-std::uint64_t share_of(double ratio, const std::function<std::uint64_t()>& count) {
-  return std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(ratio * static_cast<double>(count()))), 1);
 }
 
 ComponentRule component_rule(const iw_simplify_options& given) {

@@ -18,13 +18,10 @@ struct LengthBasis {
   double diagonal = 0;
 };
 
-// How a run ends, with lengths in the unit of the input. A number of triangles that is a part of all is found by
-// share_of. usual: the error where the caller names nothing to stop at; empty: that is refused.
+// How a run ends, with lengths in the unit of the input. usual: the error where the caller names nothing to stop at;
+// empty: that is refused.
 // @throws std::invalid_argument
 SimplifyOptions simplify_options(const iw_simplify_options& given, const LengthBasis& basis, const std::string& usual);
-
-// The number of triangles to stop at, where a part of `count()` is asked for.
-std::uint64_t share_of(double ratio, const std::function<std::uint64_t()>& count);
 
 ComponentRule component_rule(const iw_simplify_options& given);
 

@@ -37,23 +37,17 @@ struct VolumeRun {
 
   const VolumeInfo& info() const { return opener.info(); }
 
-  // Counts what the number of triangles and the choice of components depend on. These passes over the volume are not
-  // part of the progress, and not saved.
+  // Chooses the components, if some are to be dropped, in a pass over the volume that is not part of the progress, and
+  // not saved.
   void pass_before() {
+    const ComponentRule rule = component_rule(simplify);
+    if (rule.keeps_all()) return;
     RunControl silent = control;
     silent.progress = {};
     silent.memory = 0;
     silent.checkpoint = {};
     silent.resume.reset();
-    const ComponentRule rule = component_rule(simplify);
-    if (!rule.keeps_all()) {
-      options.components = std::make_shared<ComponentChoice>(choose_components(*opener.open(), options, rule, silent));
-    }
-    if (simplify.ratio == 0) return;
-    options.triangles = share_of(simplify.ratio, [&] {
-      if (options.components != nullptr) return options.components->triangles;
-      return count_triangles(*opener.open(), options, silent);
-    });
+    options.components = std::make_shared<ComponentChoice>(choose_components(*opener.open(), options, rule, silent));
   }
 
   // How the mesh of this run is written.
@@ -82,9 +76,9 @@ Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOpt
 }
 
 // Keys that the reports of volumes have beside the common ones: of one iso-value, and of several.
-void describe_level_set(const VolumeRun& run, Json& json) {
+void describe_level_set(const VolumeRun& run, std::uint64_t number, Json& json) {
   json["inside"] = run.options.inside_above ? "above" : "below";
-  if (run.options.triangles > 0) json["target"] = {{"triangles", run.options.triangles}};
+  if (number > 0) json["target"] = {{"triangles", number}};
 }
 
 void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
@@ -96,7 +90,7 @@ void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result*
   Json json = report_of(run, report, file);
   if (!saved.meshes().empty()) json["resumed_at"] = report.resumed_at;
   json["iso"] = run.options.iso;
-  describe_level_set(run, json);
+  describe_level_set(run, report.target, json);
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
@@ -149,7 +143,7 @@ void mesh_isos_into(const VolumeRun& run, iw_output* outputs, std::size_t count,
   for (std::size_t n = 0; n < count; ++n) surfaces.push_back({sinks[n].iso, sinks.pointers()[n]});
   const IsoValuesReport report = mesh_iso_values(*run.opener.open(), surfaces, run.options, run.control);
   Json json = report_of(run, report.total, file);
-  describe_level_set(run, json);
+  describe_level_set(run, run.options.triangles, json);
   json["isos"] = Json::array();
   for (std::size_t n = 0; n < count; ++n) {
     Json entry = {{"iso", surfaces[n].iso}};
@@ -176,7 +170,6 @@ void simplify_into(TriangleMesh mesh, const iw_simplify_options& given, const Ru
   DroppedComponents dropped;
   if (!rule.keeps_all()) dropped = keep_components(mesh, rule);
   if (std::isinf(options.error.value) && given.error == nullptr) options.error = Length::units(most_shape_error(mesh));
-  if (given.ratio != 0) options.triangles = share_of(given.ratio, [&] { return std::uint64_t{mesh.triangles.size()}; });
   MeshReport report = simplify_mesh(mesh, sinks.pointers(), options, control);
   report.components_dropped = dropped.components;
   report.triangles_dropped = dropped.triangles;

@@ -19,7 +19,9 @@ HostBackEnd::HostBackEnd(const SimplifyTask& task, const World& world, std::span
     SweepObserver* const observer = simplifier_.is_last(level) ? control.observer.get() : nullptr;
     outputs_.push_back(std::make_unique<FinalOutput>(world, *sinks[level], executor, control.measure, observer));
   }
-  if (task.triangles > 0) target_.emplace(simplifier_, executor, task.triangles, head_start);
+  if (!task.goal.given()) return;
+  const TriangleGoal known{head_start.number};
+  target_.emplace(simplifier_, executor, known.given() ? known : task.goal, head_start);
 }
 
 void HostBackEnd::simplify(const SurfacePiece& piece, bool complete, SlabRecord& record) {
@@ -103,7 +105,7 @@ void HostBackEnd::finish(MeshReport& report) const {
     }
     if (report.locked_vertices > 0) outputs_[level]->report_locked(mesh);
   }
-  if (target_) report_target(simplifier_.counts(), task_, report);
+  if (target_) report_target(simplifier_.counts(), task_, target_->number(), report);
 }
 
 std::uint64_t HostBackEnd::inherited() const {

@@ -228,18 +228,38 @@ bool has_to_count(const Forecast& forecast, const RunControl& control) {
   return forecast.least_bytes_at_once > 0 && control.memory < forecast.least_bytes_at_once + control.memory_elsewhere;
 }
 
+// The number of triangles that a share of all is, counted in a pass over the volume.
+std::uint64_t count_number(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
+  const TriangleGoal goal = goal_of(options);
+  if (options.components != nullptr) return goal.of(options.components->triangles);
+  RunControl silent;
+  silent.threads = control.threads;
+  silent.stop = control.stop;
+  silent.index = control.index;
+  return goal.of(count_triangles(*open_again(volume, control), options, silent));
+}
+
+// The head start of a run in one sweep. Without a cost that is decided at once, a run to a share would hold the whole
+// surface until it knows the number: then this is counted before.
+HeadStart at_once(HeadStart head_start, const SliceSource& volume, const MeshOptions& options,
+                  const RunControl& control) {
+  if (options.share > 0 && head_start.cost == kUnknownCost) head_start.number = count_number(volume, options, control);
+  return head_start;
+}
+
 // The head start of a run to a number, by an error that is known or by a forecast.
 HeadStart head_start_of(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
   if (control.resume || !can_repeat(volume, options, control)) return {};
   const VolumeInfo& info = volume.info();
   bool counts = control.count_first;
   std::optional<double> error = control.head_start;
-  if (!error && (control.memory > 0 || info.slice_samples() * info.dims[2] >= kLargeVolume)) {
+  const bool is_large = options.share > 0 || info.slice_samples() * info.dims[2] >= kLargeVolume;
+  if (!error && (control.memory > 0 || is_large)) {
     const Forecast forecast = forecast_mesh(*open_again(volume, control), options, control);
     error = forecast.head_start;
     counts = counts || (control.memory > 0 && has_to_count(forecast, control));
   }
-  if (!counts) return {head_start_cost(error.value_or(0), info)};
+  if (!counts) return at_once({head_start_cost(error.value_or(0), info)}, volume, options, control);
   // Counted is up to an error that is expected to leave fewer triangles. If it does not, the next one is larger.
   const double beyond = error.value_or(0) > 0 ? 2 * *error : mean_voxel(info.geometry) / 4;
   return HeadStart::counting(head_start_cost(beyond, info));

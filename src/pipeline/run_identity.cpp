@@ -57,11 +57,12 @@ std::string file_text(const VolumeInfo& volume) {
 
 // A task as text. Its fields are taken apart by name, so a new field of a task does not compile before it is told here.
 std::string simplify_text(const SimplifyTask& task) {
-  [[maybe_unused]] const auto& [side, unit, error, level_errors, triangles, needed, zone, level_costs, normals,
-                                values] = task;
+  [[maybe_unused]] const auto& [side, unit, error, level_errors, goal, needed, zone, level_costs, normals, values] =
+      task;
   [[maybe_unused]] const auto& [numbering, a0, retire, drop_specks, most_distance, cell, largest, normals_count,
                                 quality] = zone;
-  std::string text = ", error" + numbers_text(std::array{error}) + ", triangles " + std::to_string(triangles);
+  std::string text = ", error" + numbers_text(std::array{error}) + ", triangles " + std::to_string(goal.triangles);
+  if (goal.share > 0) text += ", share" + numbers_text(std::array{goal.share});
   for (const double level : level_errors) text += ", level" + numbers_text(std::array{level});
   text += ", quality " + std::to_string(static_cast<int>(quality));
   if (drop_specks) text += ", no specks";

@@ -29,7 +29,7 @@ std::string bounds_text(const SimplifyTask& task, double most_error) {
 std::string why_more_are_left(const MeshReport& report, const SimplifyTask& task, double most_error) {
   std::string held = "no other collapse" + bounds_text(task, most_error) + " keeps the topology and the sides of faces";
   const std::uint64_t least = kLeastTriangles * report.components;
-  if (report.open_edges > 0 || least <= task.triangles) return held;
+  if (report.open_edges > 0 || least <= report.target) return held;
   const std::string kept = "each of " + std::to_string(report.components) + " components keeps " +
                            std::to_string(kLeastTriangles) + " at least, " + std::to_string(least) + " in all";
   return report.triangles > least ? kept + "; " + held : kept;
@@ -59,15 +59,15 @@ void report_errors(const SimplifyTask& task, MeshReport& report) {
   for (std::size_t n = 0; n < task.level_errors.size(); ++n) report.levels[n].error = task.level_errors[n];
 }
 
-void report_target(const DecisionCounts& counts, const SimplifyTask& task, MeshReport& report) {
+void report_target(const DecisionCounts& counts, const SimplifyTask& task, std::uint64_t number, MeshReport& report) {
+  report.target = number;
   const double most_error = report.error;
   const auto dearest = static_cast<CostBits>(counts.dearest);
   // All costs up to the floor are the same.
   const bool none = dearest <= cost_bits(kCostFloor);
   report.error = none ? 0 : task.side * std::sqrt(static_cast<double>(cost_value(dearest)));
-  if (report.triangles <= task.triangles) return;
-  report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " +
-                            std::to_string(task.triangles) +
+  if (report.triangles <= number) return;
+  report.warnings.push_back(std::to_string(report.triangles) + " triangles are left, " + std::to_string(number) +
                             " were asked for: " + why_more_are_left(report, task, most_error));
 }
 

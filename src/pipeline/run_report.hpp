@@ -56,10 +56,10 @@ void report_nothing(const std::string& reason, bool allow_empty, MeshReport& rep
 // Warns of a surface that is the border of the volume and nothing else, as all samples are inside.
 void warn_of_border(const Task& task, MeshReport& report);
 
-// Reports the outcome of a run to a number of triangles: `report.error`, the error that was asked for, becomes the
-// largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all else is in
-// the report.
-void report_target(const DecisionCounts& counts, const SimplifyTask& task, MeshReport& report);
+// Reports the outcome of a run to a number of triangles, and that number: `report.error`, the error that was asked for,
+// becomes the largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all
+// else is in the report.
+void report_target(const DecisionCounts& counts, const SimplifyTask& task, std::uint64_t number, MeshReport& report);
 
 // Adds the counts of a slab.
 void add_extracted(const SlabCounts& slab, MeshReport& report);

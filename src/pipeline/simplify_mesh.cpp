@@ -121,6 +121,13 @@ class MeshRun {
   Loop loop_;
 };
 
+// The options with a number of triangles in place of a share of all.
+SimplifyOptions with_number(SimplifyOptions options, std::uint64_t all) {
+  options.triangles = goal_of(options).of(all);
+  options.share = 0;
+  return options;
+}
+
 // The head start of a run to a number, by an error that is known or by samples of the mesh.
 HeadStart head_start_of(const TriangleMesh& mesh, const SimplifyOptions& options, const SurfaceMeasure& measure,
                         const Executor& executor, const RunControl& control) {
@@ -138,9 +145,10 @@ MeshReport simplify_mesh(const TriangleMesh& mesh, MeshSink& sink, const Simplif
   return simplify_mesh(mesh, sinks, options, control);
 }
 
-MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks, const SimplifyOptions& options,
-                         const RunControl& control) {
+MeshReport simplify_mesh(const TriangleMesh& mesh, std::span<MeshSink* const> sinks,
+                         const SimplifyOptions& options_given, const RunControl& control) {
   const StandardFloats floats;
+  const SimplifyOptions options = with_number(options_given, mesh.triangles.size());
   check_sinks(sinks, options.levels.size());
   MeshOptions asked;
   static_cast<SimplifyOptions&>(asked) = options;

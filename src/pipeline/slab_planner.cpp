@@ -89,7 +89,7 @@ void SlabPlanner::fit_into_cap(SlabPlan& plan, const Held& held, double ring) co
   }
   // A single layer may take more of the cap than slabs are planned for, unless a run to a number of triangles holds
   // many.
-  const bool careful = plan.layers > 1 || task_.simplify.triangles > 0;
+  const bool careful = plan.layers > 1 || task_.simplify.goal.given();
   const double left = room(model, careful ? kUsedPart : kLastPart, plan, held, ring);
   if (left < per_layer() || left <= 0) refuse_layer(model, held, ring);
   plan.most_vertices = std::min(plan.most_vertices, static_cast<std::uint64_t>(left / 2));

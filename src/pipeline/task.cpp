@@ -34,7 +34,7 @@ double most_distance(const Length& length, double side) {
 
 std::vector<double> level_errors(const SimplifyOptions& options, double error, double side) {
   std::vector<double> errors;
-  if (!options.levels.empty() && options.triangles > 0) {
+  if (!options.levels.empty() && goal_of(options).given()) {
     throw std::invalid_argument("levels of detail: expected errors alone, found a number of triangles as well");
   }
   if (options.levels.size() > kMostLevels) {
@@ -82,16 +82,28 @@ void check_values(const VolumeInfo& volume, const AttributeOptions& attributes) 
 
 }  // namespace
 
+TriangleGoal goal_of(const SimplifyOptions& options) {
+  const double share = options.share;
+  if (share != 0 && !(share > 0 && share <= 1)) {
+    throw std::invalid_argument("share: expected a number above 0 and up to 1, found " + rounded_text(share));
+  }
+  if (share > 0 && options.triangles > 0) {
+    throw std::invalid_argument("share: expected a run without a number of triangles, found " +
+                                std::to_string(options.triangles));
+  }
+  return {options.triangles, share};
+}
+
 SimplifyTask resolve_simplification(const SimplifyOptions& options, const SurfaceMeasure& measure) {
   SimplifyTask task;
   task.side = measure.side;
   task.unit = measure.unit;
   task.error = error_of(options, measure.side);
   task.level_errors = level_errors(options, task.error, measure.side);
-  task.triangles = options.triangles;
+  task.goal = goal_of(options);
   task.zone = {measure.numbering,
                measure.a0,
-               retire_cost(task.error, measure.a0, options.triangles),
+               retire_cost(task.error, measure.a0, task.goal.given()),
                options.drop_specks,
                most_distance(options.max_distance, measure.side),
                measure.cell,
@@ -172,11 +184,11 @@ bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule) 
 double error_of(const SimplifyOptions& options, double side) {
   const double error = length_in(options.error, side);
   const double distance = most_distance(options.max_distance, side);
-  return std::isinf(error) && error > 0 && distance > 0 && options.triangles == 0 ? kFarError * distance : error;
+  return std::isinf(error) && error > 0 && distance > 0 && !goal_of(options).given() ? kFarError * distance : error;
 }
 
-CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
-  if (std::isinf(error) && error > 0 && triangles > 0) return kRetiredCost - 1;
+CostBits retire_cost(double error, double a0, bool to_number) {
+  if (std::isinf(error) && error > 0 && to_number) return kRetiredCost - 1;
   if (!(error >= 0) || std::isinf(error)) {
     throw std::invalid_argument("error: expected a length of 0 or more, found " + rounded_text(error));
   }
@@ -187,7 +199,7 @@ CostBits retire_cost(double error, double a0, std::uint64_t triangles) {
 
 bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control) {
   const bool has_values = options.values == nullptr || !options.values->held().empty();
-  return options.triangles > 0 && has_values && (control.reopen || !volume.held().empty());
+  return goal_of(options).given() && has_values && (control.reopen || !volume.held().empty());
 }
 
 CostBits head_start_cost(double error, double a0) {

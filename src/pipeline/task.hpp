@@ -13,6 +13,7 @@
 #include "isoweave/pipeline.hpp"
 #include "isoweave/possible_runs.hpp"
 #include "simplify/simplifier.hpp"
+#include "simplify/triangle_goal.hpp"
 #include "volume/row_source.hpp"
 
 namespace isoweave {
@@ -23,7 +24,7 @@ struct SimplifyTask {
   std::string unit;                  // of lengths; may be empty
   double error = 0;                  // root of the largest cost of a collapse
   std::vector<double> level_errors;  // of finer meshes, ascending, below `error`
-  std::uint64_t triangles = 0;       // to stop at; 0: no such number
+  TriangleGoal goal;                 // to stop at
   bool needed = true;                // whether the surface goes through the simplifier at all
   ZoneOptions zone;
   std::vector<CostBits> level_costs;
@@ -40,8 +41,13 @@ struct SurfaceMeasure {
   std::string unit;
 };
 
+// The number of triangles, or the share of all, at which a run is to stop. Throws std::invalid_argument for a share
+// that is none, and for both.
+TriangleGoal goal_of(const SimplifyOptions& options);
+
 // Throws std::invalid_argument for an error or a distance that is negative or no number, for an infinite error where no
-// number of triangles stops the run, for levels that do not ascend up to the error, and for levels beside a number.
+// number of triangles stops the run, for levels that do not ascend up to the error, for levels beside a number, and
+// what goal_of() throws.
 SimplifyTask resolve_simplification(const SimplifyOptions& options, const SurfaceMeasure& measure);
 
 // The mesh of a volume.
@@ -83,8 +89,9 @@ bool is_inside(const SampleBytes& sample, SampleType type, const IsoRule& rule);
 // The error of a run, in the unit of the surface. `side`: that of a voxel.
 double error_of(const SimplifyOptions& options, double side);
 
-// The cost, in units of a0, above which edges are retired.
-CostBits retire_cost(double error, double a0, std::uint64_t triangles = 0);
+// The cost, in units of a0, above which edges are retired. to_number: whether a number of triangles may stop the run
+// before.
+CostBits retire_cost(double error, double a0, bool to_number = false);
 
 // Whether a run to a number of triangles may sweep the volume twice.
 bool can_repeat(const SliceSource& volume, const MeshOptions& options, const RunControl& control);

@@ -44,11 +44,11 @@ CostHistogram histogram_of(const Zone& zone, const Executor& executor, const Add
 
 }  // namespace
 
-CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, std::uint64_t triangles,
+CountTarget::CountTarget(Simplifier& simplifier, const Executor& executor, const TriangleGoal& goal,
                          std::uint64_t most_held, const HeadStart& head_start)
     : simplifier_(simplifier),
       executor_(executor),
-      target_(triangles),
+      goal_(goal),
       most_held_(most_held),
       asked_(simplifier.zone().options.retire) {
   simplifier_.zone().limit = kUnknownCost;
@@ -66,9 +66,9 @@ void CountTarget::begin_with(const HeadStart& head_start) {
 }
 
 void CountTarget::thin_out() {
-  if (is_counted()) return;  // what is held does not grow with the number
+  if (is_counted() || goal_.share > 0) return;  // what is held does not grow with the number, or that is not known
   for (std::uint64_t held = simplifier_.triangles(); held > most_held_;) {
-    const CostBits limit = limit_that_leaves(target_);
+    const CostBits limit = limit_that_leaves(goal_.triangles);
     if (limit <= simplifier_.zone().limit) return;
     raise_limit(limit);
     const std::uint64_t before = held;
@@ -79,14 +79,17 @@ void CountTarget::thin_out() {
 
 bool CountTarget::leaves_enough() {
   if (is_counted()) return true;
+  if (goal_.share > 0) return false;
   const Zone& zone = simplifier_.zone();
-  if (!enough_) enough_ = zone.limit == zone.options.retire && limit_that_leaves(target_) == zone.options.retire;
+  if (!enough_) {
+    enough_ = zone.limit == zone.options.retire && limit_that_leaves(goal_.triangles) == zone.options.retire;
+  }
   return enough_;
 }
 
 bool CountTarget::has_overshot() {
   if (is_counted()) return head_start_.counts > 0;
-  return simplifier_.triangles() <= target_ && simplifier_.counts().removed > 0 && !leaves_enough();
+  return simplifier_.triangles() <= number() && simplifier_.counts().removed > 0 && !leaves_enough();
 }
 
 // A run that has passed the number, or was to, has counted how many triangles each lower cost leaves: the highest cost
@@ -95,20 +98,22 @@ HeadStart CountTarget::next_head_start() const {
   const CostBits reached = simplifier_.zone().limit;
   const std::uint64_t removed = simplifier_.counts().removed;
   const std::uint64_t all = simplifier_.triangles() + removed;
-  if (simplifier_.triangles() > target_ && reached < asked_) return counting_further(head_start_);
-  if (simplifier_.triangles() > target_) return {reached, reached};
+  const std::uint64_t number = goal_.of(all);
+  if (simplifier_.triangles() > number && reached < asked_) return counting_further(head_start_);
+  if (simplifier_.triangles() > number) return {reached, reached};
   const CostBits below =
-      all <= target_ ? kUnknownCost : simplifier_.removed_by_key().highest_with_below(all - target_ - 1);
+      all <= number ? kUnknownCost : simplifier_.removed_by_key().highest_with_below(all - number - 1);
   return {below, CostHistogram::end_of_next_step(below)};
 }
 
 void CountTarget::finish() {
+  const std::uint64_t number = this->number();
   simplifier_.close_gaps(2);  // what is left leaves soon
-  const std::uint64_t in_order = std::max(kInOrder, target_ / kPartInOrder);
-  while (simplifier_.triangles() > target_) {
+  const std::uint64_t in_order = std::max(kInOrder, number / kPartInOrder);
+  while (simplifier_.triangles() > number) {
     const CostHistogram edges = costs_of_edges();
-    if (decide_at_once(in_order, edges)) continue;
-    decide_last(kShown * in_order, edges);
+    if (decide_at_once(number, in_order, edges)) continue;
+    decide_last(number, kShown * in_order, edges);
     break;
   }
   simplifier_.zone().retire_all();
@@ -116,8 +121,8 @@ void CountTarget::finish() {
 
 // Decides those of the edges, which have such costs, that can be decided at once, while more than so many triangles are
 // beyond the number. Returns whether there were any.
-bool CountTarget::decide_at_once(std::uint64_t in_order, const CostHistogram& edges) {
-  const std::uint64_t beyond = simplifier_.triangles() - target_;
+bool CountTarget::decide_at_once(std::uint64_t number, std::uint64_t in_order, const CostHistogram& edges) {
+  const std::uint64_t beyond = simplifier_.triangles() - number;
   if (beyond <= in_order) return false;
   const std::uint64_t removed_each = simplifier_.zone().options.drop_specks ? 4 : 2;  // at most, by one decision
   const CostBits limit = limit_within(beyond / removed_each, edges);
@@ -129,12 +134,12 @@ bool CountTarget::decide_at_once(std::uint64_t in_order, const CostHistogram& ed
 
 // Decides the last edges, which have such costs, in order. The queue is shown so many of them, which are likely to do,
 // then more.
-void CountTarget::decide_last(std::uint64_t shown, const CostHistogram& edges) {
+void CountTarget::decide_last(std::uint64_t number, std::uint64_t shown, const CostHistogram& edges) {
   Zone& zone = simplifier_.zone();
-  for (; simplifier_.triangles() > target_; shown *= 8) {
+  for (; simplifier_.triangles() > number; shown *= 8) {
     const CostBits limit = limit_within(shown, edges);
     zone.limit = limit > zone.limit ? limit : zone.options.retire;
-    simplifier_.decide_in_order(target_);
+    simplifier_.decide_in_order(number);
     if (zone.limit == zone.options.retire) return;
   }
 }

@@ -41,7 +41,9 @@ TEST_P(BlocksToNumber, AnySizeLimitAndShareGivesTheMeshOfTheSweep) {
       SCOPED_TRACE(::testing::Message() << "blocks of " << blocks.size << ", threads " << control.threads
                                         << ", schedule " << static_cast<int>(control.schedule) << ", head start "
                                         << head_start << ", " << scene.options.triangles << " of " << all);
-      expect_same_by_number(run_blocks(scene, blocks, control), expected);
+      const bool by_share = share <= 1 && random() % 2 == 0;
+      const double part = static_cast<double>(scene.options.triangles) / static_cast<double>(all);
+      expect_same_by_number(run_blocks(by_share ? to_share(scene, part) : scene, blocks, control), expected);
       EXPECT_TRUE(folder.entries().empty());
     }
   }

@@ -63,7 +63,7 @@ struct CountRun {
 CountRun run_once(const SurfaceCase& surface, std::uint64_t triangles, const Way& way) {
   const Executor executor(way.threads);
   Simplifier simplifier({zone_options(surface), way.schedule}, executor, nullptr);
-  CountTarget target(simplifier, executor, triangles, way.most_held, way.head_start);
+  CountTarget target(simplifier, executor, {triangles}, way.most_held, way.head_start);
   const std::int64_t layers = surface.volume.dims[2] + (surface.closed ? 1 : 0);
   std::int64_t done = 0;
   CountRun made;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <random>
 #include <string>
 #include <vector>
@@ -42,8 +41,11 @@ void for_shares(const BlockScene& scene, std::mt19937_64& random, const Check& c
   const auto all = static_cast<double>(all_triangles(scene));
   std::size_t n = random();
   for (const double share : kSanitized ? std::vector{0.02, 0.7} : std::vector{0.02, 0.2, 0.7, 1.5}) {
+    const double head_start = kHeadStarts[n++ % kHeadStarts.size()];
     const BlockScene some = to_number(scene, 1 + static_cast<std::uint64_t>(share * all));
-    check(some, kHeadStarts[n++ % kHeadStarts.size()], run_sweep(some));
+    const bool by_share = share <= 1 && random() % 2 == 0;
+    const BlockRun expected = run_sweep(some);
+    check(by_share ? to_share(some, static_cast<double>(some.options.triangles) / all) : some, head_start, expected);
   }
 }
 
@@ -174,35 +176,6 @@ TEST(RanksThatCount, AForecastOfTheFirstRankSavesPasses) {
   RankOptions ranks;
   ranks.blocks.size = 16;
   expect_same_by_number(run_ranks(scene, 2, ranks, {}), run_sweep(scene));
-}
-
-TEST(RanksThatCount, GiveTheTrianglesOfTheFullSurfaceToAll) {
-  for (const BlockScene& scene : number_scenes()) {
-    BlockOptions blocks;
-    blocks.size = 13;
-    const std::uint64_t expected = all_triangles(scene);
-    std::atomic<int> right = 0;
-    rethrow_first(LocalRanks(3).run([&](RankLink& link) {
-      if (count_triangles_in_ranks(scene.open, scene.options, blocks, link) == expected) ++right;
-    }));
-    EXPECT_EQ(right, 3) << scene.name;
-  }
-}
-
-TEST(RanksThatCount, AnErrorOfOneRankIsThrownByAll) {
-  BlockOptions blocks;
-  blocks.size = 13;
-  const auto errors = LocalRanks(3).run([&](RankLink& link) {
-    const auto open = [&]() -> std::unique_ptr<SliceSource> {
-      if (link.rank() == 1) throw BadInput("scan: cannot be opened");
-      return noise_scene().open();
-    };
-    count_triangles_in_ranks(open, noise_scene().options, blocks, link);
-  });
-  for (const std::exception_ptr& error : errors) {
-    ASSERT_TRUE(error);
-    EXPECT_THROW(std::rethrow_exception(error), BadInput);
-  }
 }
 
 }  // namespace

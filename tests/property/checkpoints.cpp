@@ -167,6 +167,16 @@ TEST(Checkpoints, AHeadStartGoesOn) {
   expect_same_result(counted.finish_in_steps(1), whole);
   EXPECT_GE(counted.interruptions, 20) << "counted twice";
   EXPECT_EQ(check_mesh(read_mesh(counted.mesh_path())).digest, whole.digest);
+  // The same number as a share, which is known in the end only, and one without a head start, which is counted before.
+  options.triangles = 0;
+  options.share = 6000 / static_cast<double>(whole.triangles_extracted);
+  for (const double head_start : {0.0, whole.error / 3, 3 * whole.error}) {
+    InterruptedRun share(surface, options);
+    share.head_start = head_start;
+    expect_same_result(share.finish_in_steps(1), whole);
+    EXPECT_GE(share.interruptions, 5);
+    EXPECT_EQ(check_mesh(read_mesh(share.mesh_path())).digest, whole.digest);
+  }
   InterruptedRun run(surface, options);
   run.head_start = 3 * whole.error;
   run.opens_until = 2;

@@ -85,6 +85,7 @@ class Forecaster {
     control_.slab = control.slab;
     control_.stop = control.stop;
     may_count_ = can_repeat(volume, options, control);
+    wanted_ = goal_of(options).triangles;
     error_ = error_of(options, mean_voxel(info_.geometry));
     // Tiles show how long simplification takes and how many triangles are left, at least where a number is to stop it.
     tile_error_ = std::isinf(error_) ? kUsualError * mean_voxel(info_.geometry) : error_;
@@ -296,7 +297,7 @@ class Forecaster {
     return static_cast<double>(std::max<std::int64_t>(block.info().dims[2] - 1, 1));
   }
 
-  Forecast conclude() const {
+  Forecast conclude() {
     const Profiles profiles = make_profiles();
     const auto layers = static_cast<double>(info_.dims[2]);
     const double open = profiles.open.below(layers);
@@ -304,11 +305,12 @@ class Forecaster {
     const double extracted = open + caps;
     Forecast forecast;
     forecast.triangles_extracted = to_count(extracted);
+    wanted_ = expected_number(options_, forecast.triangles_extracted);
     const double left = std::isinf(error_) ? extracted : open * left_ + caps * (error_ > 0 ? kCapsLeft : 1);
     forecast.triangles = to_count(left);
-    if (options_.triangles > 0) {
+    if (wanted_ > 0) {
       forecast.triangles = left_of_number(forecast);
-      forecast.head_start = curve_->head_start(options_, open, kCapsLeft * caps);
+      forecast.head_start = curve_->head_start(options_, wanted_, open, kCapsLeft * caps);
     }
     forecast.vertices = forecast.triangles / 2;
     const double at_once = least_cap(profiles);
@@ -328,9 +330,7 @@ class Forecaster {
 
   // The triangles that are left: a run stops at the number or at the error, whichever leaves more.
   std::uint64_t left_of_number(const Forecast& forecast) const {
-    const std::uint64_t most =
-        std::isinf(error_) ? options_.triangles : std::max(options_.triangles, forecast.triangles);
-    return std::min(most, forecast.triangles_extracted);
+    return std::min(std::isinf(error_) ? wanted_ : std::max(wanted_, forecast.triangles), forecast.triangles_extracted);
   }
 
   // The forecast of a closed volume that is inside as a whole: its surface is the six sides.
@@ -362,15 +362,15 @@ class Forecaster {
   // Whether the error or the topology leaves more triangles than the number that was asked for.
   bool is_out_of_reach(const Profiles& profiles) const {
     const double all = profiles.open.below(static_cast<double>(info_.dims[2]));
-    return simplified_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(options_.triangles);
+    return simplified_ > 0 && !std::isinf(error_) && left_ * all > static_cast<double>(wanted_);
   }
 
   // The undecided triangles when the slab at a layer is appended. Nothing is final until a number of triangles is met,
   // unless it was counted.
   double held_before(const Profiles& profiles, double at, double depth, Meets meets) const {
-    if (options_.triangles > 0 && meets != Meets::kCounted) {
+    if (wanted_ > 0 && meets != Meets::kCounted) {
       const double all = profiles.open.below(at) + profiles.caps.below(at);
-      const auto most = static_cast<double>(CountTarget::most_held(options_.triangles));
+      const auto most = static_cast<double>(CountTarget::most_held(wanted_));
       if (meets == Meets::kAtOnce) return std::min(all, most);
       return std::min(all, std::max(most, kHeldOfLeft * left_ * all));
     }
@@ -389,7 +389,7 @@ class Forecaster {
   double least_share(const Profiles& profiles, Meets meets) const {
     const double all = profiles.open.below(static_cast<double>(info_.dims[2]));
     if (meets != Meets::kCounted || !(all > 0)) return left_;
-    const double share = std::min(kLeftByCounting * static_cast<double>(options_.triangles) / all, 1.0);
+    const double share = std::min(kLeftByCounting * static_cast<double>(wanted_) / all, 1.0);
     return std::isinf(error_) ? share : std::max(share, left_);
   }
 
@@ -447,7 +447,7 @@ class Forecaster {
   // The cap that a run should do with, without slack.
   double least_cap(const Profiles& profiles, Meets meets = Meets::kAtOnce) const {
     if (meets == Meets::kCounted) return kCountedMargin * peak(profiles, 1, meets).bytes / kUsedPart;
-    if (options_.triangles == 0) return kCapMargin * peak(profiles, 1).bytes / kUsedPart;
+    if (wanted_ == 0) return kCapMargin * peak(profiles, 1).bytes / kUsedPart;
     const double usual = kCountMargin * peak(profiles, 1).bytes / kUsedPart;
     if (!is_out_of_reach(profiles)) return usual;
     return std::max(usual, peak(profiles, 1, Meets::kNever).bytes / kUsedPart);
@@ -464,6 +464,7 @@ class Forecaster {
   RunControl control_;  // of the blocks
   const std::uint64_t resident_ = system::resident_bytes();
   bool may_count_ = false;       // the number of triangles in a sweep of its own
+  std::uint64_t wanted_ = 0;     // triangles to stop at; of a share, those that are expected
   double error_ = 0;             // length
   double tile_error_ = 0;        // of tiles
   std::int64_t slices_ = 0;      // that are looked at

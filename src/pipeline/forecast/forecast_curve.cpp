@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "isoweave/components.hpp"
+#include "pipeline/task.hpp"
 
 namespace isoweave {
 namespace {
@@ -13,6 +14,10 @@ constexpr double kMargin = 0.3;   // triangles that a head start leaves beyond t
 
 }  // namespace
 
+std::uint64_t expected_number(const MeshOptions& options, std::uint64_t extracted) {
+  return goal_of(options).of(options.components ? options.components->triangles : extracted);
+}
+
 void ForecastCurve::add(std::uint64_t all, std::uint64_t left, const CostHistogram& removed) {
   all_ += static_cast<double>(all);
   left_ += static_cast<double>(left);
@@ -21,8 +26,8 @@ void ForecastCurve::add(std::uint64_t all, std::uint64_t left, const CostHistogr
 
 double ForecastCurve::share_left() const { return all_ > 0 ? std::min(1.0, left_ / all_) : 1; }
 
-double ForecastCurve::head_start(const MeshOptions& options, double open, double of_caps) const {
-  auto wanted = static_cast<double>(options.triangles);
+double ForecastCurve::head_start(const MeshOptions& options, std::uint64_t number, double open, double of_caps) const {
+  auto wanted = static_cast<double>(number);
   if (const auto& chosen = options.components; chosen && chosen->triangles > 0) {
     // Tiles have all components.
     wanted *= 1 + static_cast<double>(chosen->triangles_dropped) / static_cast<double>(chosen->triangles);

@@ -8,6 +8,9 @@
 
 namespace isoweave {
 
+// The number of triangles to stop at, where a surface of `extracted` triangles is expected; 0: there is none.
+std::uint64_t expected_number(const MeshOptions& options, std::uint64_t extracted);
+
 class ForecastCurve {
  public:
   // voxel: the mean one. Tiles are simplified up to the error `most`.
@@ -22,7 +25,7 @@ class ForecastCurve {
 
   // The head start of a run to a number of triangles: an error that leaves clearly more of them by this curve, of
   // `open` triangles on the open surface and `of_caps` others that stay. 0: none is known.
-  double head_start(const MeshOptions& options, double open, double of_caps) const;
+  double head_start(const MeshOptions& options, std::uint64_t number, double open, double of_caps) const;
 
   // The same of `wanted` triangles out of `all`.
   double head_start(double wanted, double all) const;

@@ -16,6 +16,7 @@ MeshOptions tile_options(const MeshOptions& options, double error) {
   of_tile.values.reset();
   of_tile.levels.clear();
   of_tile.triangles = 0;
+  of_tile.share = 0;
   of_tile.components.reset();
   of_tile.space = OutputSpace::kIndex;
   of_tile.error = Length::units(error);

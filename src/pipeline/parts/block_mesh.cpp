@@ -40,9 +40,8 @@ void check_memory_of_blocks(const Task& task, const RunControl& control, std::in
 }
 
 TaskIdentity identity_of_tasks(const TaskMesh& mesh, const Task& task) {
-  const bool to_number = task.simplify.triangles > 0;
   return {identity_of(task), mesh.blocks.size, mesh.blocks.first,
-          to_number ? head_start_cost(mesh.head_start, task.volume) : kUnknownCost};
+          task.simplify.goal.given() ? head_start_cost(mesh.head_start, task.volume) : kUnknownCost};
 }
 
 PartShape cut_part_shape(const SimplifyTask& task) {

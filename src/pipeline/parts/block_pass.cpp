@@ -51,27 +51,15 @@ void BlockPass::finish_layers(std::size_t stage, std::int64_t plane, const First
   }
 }
 
-// Calls visit(cells) for the blocks of a layer of the first stage.
-template <class Visit>
-void BlockPass::for_blocks_of_volume(std::int64_t layer, const Visit& visit) const {
+void BlockPass::extract_layer(const VolumeOpener& open, std::int64_t layer, SlabRecord& record) {
   const BlockGrid& grid = store_.grid(0);
   for (std::int64_t y = grid.block_of(1, stages_.all.first[1]); grid.begin(1, y) < stages_.all.end[1]; ++y) {
     for (std::int64_t x = grid.block_of(0, stages_.all.first[0]); grid.begin(0, x) < stages_.all.end[0]; ++x) {
       const CellBox cells = grid.cells({x, y, layer}, stages_.all);
-      if (stages_.may_have_surface(cells)) visit(cells);
+      if (stages_.may_have_surface(cells)) extract_block(open, cells, record);
     }
   }
-}
-
-void BlockPass::count(const VolumeOpener& open) {
-  finish_all([&](std::int64_t layer) {
-    for_blocks_of_volume(layer, [&](const CellBox& cells) { worker_.count(open(), cells); });
-  });
-}
-
-void BlockPass::extract_layer(const VolumeOpener& open, std::int64_t layer, SlabRecord& record) {
-  for_blocks_of_volume(layer, [&](const CellBox& cells) { extract_block(open, cells, record); });
-  record.layer = std::min(store_.grid(0).begin(2, layer + 1), stages_.all.end[2]) - stages_.all.first[2];
+  record.layer = std::min(grid.begin(2, layer + 1), stages_.all.end[2]) - stages_.all.first[2];
 }
 
 void BlockPass::extract_block(const VolumeOpener& open, const CellBox& cells, SlabRecord& record) {

@@ -25,9 +25,6 @@ class BlockPass {
   // Passes over the surface of a volume, which is opened for each block.
   void extract(const VolumeOpener& open, const Tell& tell);
 
-  // Counts the triangles of the surface, which the report gets, and keeps none.
-  void count(const VolumeOpener& open);
-
   // Passes over the parts that wait for the first stage.
   void take_parts();
 
@@ -38,8 +35,6 @@ class BlockPass {
 
   void finish_layers(std::size_t stage, std::int64_t plane, const FirstLayer& first);
   void finish_all(const FirstLayer& first);
-  template <class Visit>
-  void for_blocks_of_volume(std::int64_t layer, const Visit& visit) const;
   void extract_layer(const VolumeOpener& open, std::int64_t layer, SlabRecord& record);
   void extract_block(const VolumeOpener& open, const CellBox& cells, SlabRecord& record);
   void take_layer(std::size_t stage, std::int64_t layer);

@@ -54,17 +54,6 @@ ZonePart BlockWorker::extract(std::unique_ptr<SliceSource> volume, const CellBox
   return rest_of(*simplifier, [&](std::uint64_t a, std::uint64_t b) { return sides.on_border(a, b); });
 }
 
-void BlockWorker::count(std::unique_ptr<SliceSource> volume, const CellBox& cells) {
-  if (is_without_surface(*volume, cells)) return;
-  const BlockSides sides{task_.simplify.zone.numbering, cells, all_};
-  BlockPieces pieces(std::move(volume), task_, sides, control_, executor_);
-  SurfacePiece piece;
-  while (!pieces.complete()) {
-    check_stop(control_);
-    pieces.next({}, piece, report_);
-  }
-}
-
 // Whether a block has no surface as all samples of the volume are the same: none is read then. Their range is counted.
 bool BlockWorker::is_without_surface(const SliceSource& volume, const CellBox& cells) {
   const std::optional<SampleBytes> sample = constant_sample(volume);
@@ -92,11 +81,11 @@ ZonePart BlockWorker::glue(std::vector<ZonePart> parts) {
 
 std::unique_ptr<Simplifier> BlockWorker::make_simplifier() const {
   // Of a run to a number of triangles nothing is final before the end.
-  const bool inspects = control_.measure && task_.simplify.triangles == 0;
+  const bool inspects = control_.measure && !task_.simplify.goal.given();
   const SimplifierOptions options{task_.simplify.zone, control_.schedule, task_.simplify.level_costs, inspects, true};
   auto simplifier = std::make_unique<Simplifier>(options, executor_, control_.stop.get());
   simplifier->zone().limit = limit_;
-  if (task_.simplify.triangles > 0) simplifier->count_removed();
+  if (task_.simplify.goal.given()) simplifier->count_removed();
   return simplifier;
 }
 
@@ -119,7 +108,7 @@ ZonePart BlockWorker::rest_of(Simplifier& simplifier, const IsBorder& is_border)
   for (std::size_t level = 0; level < totals_.defects.size(); ++level) {
     totals_.defects[level] += simplifier.defects(level);
   }
-  if (task_.simplify.triangles > 0) totals_.removed.merge(simplifier.removed_by_key());
+  if (task_.simplify.goal.given()) totals_.removed.merge(simplifier.removed_by_key());
   return simplifier.take_part(is_border);
 }
 

@@ -38,9 +38,6 @@ class BlockWorker {
   // others hold. Notes the largest counts in the record.
   ZonePart extract(std::unique_ptr<SliceSource> volume, const CellBox& cells, std::uint64_t held, SlabRecord& record);
 
-  // Adds the triangles of a block of cells to those that the report says were extracted, and keeps none.
-  void count(std::unique_ptr<SliceSource> volume, const CellBox& cells);
-
   // Works on parts that meet in a block. Returns what is undecided then.
   ZonePart glue(std::vector<ZonePart> parts);
 

@@ -12,7 +12,7 @@
 namespace isoweave {
 
 CostBits head_start_of(const VolumeOpener& open, const MeshOptions& options, const RunControl& control) {
-  if (options.triangles == 0) return kUnknownCost;
+  if (!goal_of(options).given()) return kUnknownCost;
   const std::unique_ptr<SliceSource> volume = open();
   std::optional<double> error = control.head_start;
   if (!error) {
@@ -49,8 +49,9 @@ void BlocksToNumber::keep(KeptTriangles kept) {
 }
 
 std::optional<CostBits> BlocksToNumber::thin() {
-  while (!has_overshot() && kept() > most_together(task_.simplify.triangles)) {
-    const CostBits higher = std::min(least_.highest_with_beyond(task_.simplify.triangles), task_.simplify.zone.retire);
+  number_ = task_.simplify.goal.of(kept() + totals_.decisions.removed);
+  while (!has_overshot() && kept() > most_together(number_)) {
+    const CostBits higher = std::min(least_.highest_with_beyond(number_), task_.simplify.zone.retire);
     if (higher <= limit_) break;
     pass(higher, [](BlockPass& pass) { pass.take_parts(); });
   }
@@ -73,21 +74,19 @@ void BlocksToNumber::pass(CostBits limit, const std::function<void(BlockPass& pa
 }
 
 // Whether a limit may have gone beyond the collapse that meets the number.
-bool BlocksToNumber::has_overshot() const {
-  return kept() <= task_.simplify.triangles && totals_.decisions.removed > 0;
-}
+bool BlocksToNumber::has_overshot() const { return kept() <= number_ && totals_.decisions.removed > 0; }
 
 CostBits BlocksToNumber::safe_limit() const {
   const std::uint64_t all = kept() + totals_.decisions.removed;
-  if (all <= task_.simplify.triangles) return kUnknownCost;
-  return totals_.removed.highest_with_below(all - task_.simplify.triangles - 1);
+  if (all <= number_) return kUnknownCost;
+  return totals_.removed.highest_with_below(all - number_ - 1);
 }
 
 std::unique_ptr<Simplifier> BlocksToNumber::finish() {
   Stopwatch clock;
   auto simplifier = std::make_unique<Simplifier>(
       SimplifierOptions{task_.simplify.zone, control_.schedule, {}, control_.measure}, executor_, control_.stop.get());
-  CountTarget target(*simplifier, executor_, task_.simplify.triangles, HeadStart{limit_});
+  CountTarget target(*simplifier, executor_, TriangleGoal{number_}, HeadStart{limit_});
   simplifier->put_part(glue_parts(kept_->take_all(), task_.simplify.zone.retire, executor_));
   target.finish();
   totals_.decisions += simplifier->counts();

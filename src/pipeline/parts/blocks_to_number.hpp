@@ -43,6 +43,7 @@ class BlocksToNumber {
   std::unique_ptr<Simplifier> finish();
 
   std::uint64_t kept() const { return kept_->triangles(); }  // triangles
+  std::uint64_t number() const { return number_; }  // to stop at, after thin(); a share is none before the first pass
   std::uint64_t kept_bytes() const { return kept_->bytes(); }
   const BlockTotals& totals() const { return totals_; }
 
@@ -58,7 +59,8 @@ class BlocksToNumber {
   const RunControl& control_;
   const Executor& executor_;
   MeshReport& report_;
-  CostBits limit_ = kUnknownCost;    // of the last pass
+  CostBits limit_ = kUnknownCost;  // of the last pass
+  std::uint64_t number_ = 0;
   std::unique_ptr<PartStore> kept_;  // for the first stage of the next pass
   CostHistogram least_;              // costs of the triangles that are kept, each below those of its vertices
   BlockTotals totals_;

@@ -32,7 +32,7 @@ class CollectRun {
     Stopwatch total;
     const std::uint64_t count = stages_.tasks().count();
     for (std::uint64_t task = 0; task < count; ++task) collector_.count(task, facts_of(task, count));
-    task_.simplify.triangles > 0 ? end_at_number(count) : write(count);
+    task_.simplify.goal.given() ? end_at_number(count) : write(count);
     MeshReport report = collector_.finish();
     total.lap(report.seconds_total);
     return report;
@@ -56,7 +56,7 @@ class CollectRun {
     const std::optional<CostBits> lower = collector_.end_at_number();
     if (!lower) return;
     throw HeadStartTooHigh(mesh_.folder + ": expected tasks that leave more than " +
-                               std::to_string(task_.simplify.triangles) + " triangles, found " +
+                               std::to_string(collector_.number()) + " triangles, found " +
                                std::to_string(collector_.kept()),
                            head_start_within(*lower, task_.volume));
   }

@@ -71,7 +71,7 @@ class BlocksRun {
   // The report; or the head start of the run that has to take the place of this one, as its own was too high.
   std::variant<MeshReport, CostBits> run(CostBits head_start) {
     start_report();
-    if (task_.simplify.triangles > 0) {
+    if (task_.simplify.goal.given()) {
       if (const std::optional<CostBits> lower = take_to_number(head_start)) return *lower;
     } else {
       take_once();
@@ -110,6 +110,7 @@ class BlocksRun {
     check_memory_of_blocks(task_, control_, stages_.grids[0].size);
     outputs_.back()->take(simplifier->final_source());
     totals_ = surface.totals();
+    report_.target = surface.number();
     totals_.defects = {simplifier->defects()};
     return std::nullopt;
   }
@@ -144,7 +145,7 @@ class BlocksRun {
     report_.rounds = totals_.rounds;
     report_samples(task_.volume, totals_.range, report_);
     while (report_.blocks.size() > 1 && report_.blocks.back().blocks == 0) report_.blocks.pop_back();
-    if (task_.simplify.triangles > 0) report_target(totals_.decisions, task_.simplify, report_);
+    if (task_.simplify.goal.given()) report_target(totals_.decisions, task_.simplify, report_.target, report_);
     warn_of_border(task_, report_);
     warn_of_nothing(task_, control_.allow_empty, report_);
   }
@@ -174,18 +175,6 @@ MeshReport run_blocks(const VolumeOpener& open, const std::optional<Region>& box
 }
 
 }  // namespace
-
-std::uint64_t count_triangles_in_blocks(const VolumeOpener& open, const SurfaceOptions& options,
-                                        const BlockOptions& blocks, const RunControl& control) {
-  const StandardFloats floats;
-  const Task task = resolve_blocks(RunKind::kBlocks, *open(), full_surface(options), blocks, control, {0, 0, 0});
-  const BlockStages stages(task, blocks);
-  const Executor executor(control.threads);
-  MeshReport report;
-  PartStore store(stages.grids, task.simplify.zone.numbering, cut_part_shape(task.simplify), "");
-  BlockPass(task, kUnknownCost, stages, store, control, executor, report, {}).count(open);
-  return report.triangles_extracted;
-}
 
 MeshReport mesh_in_blocks(const VolumeOpener& open, MeshSink& sink, const MeshOptions& options,
                           const BlockOptions& blocks, const RunControl& control) {

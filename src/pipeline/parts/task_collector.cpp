@@ -53,7 +53,7 @@ TaskCollector::TaskCollector(Task task, CostBits head_start, const BlockStages& 
     outputs_.push_back(std::make_unique<FinalOutput>(world_, *sink, executor_, control.measure));
   }
   start_report();
-  if (task_.simplify.triangles == 0) return;
+  if (!task_.simplify.goal.given()) return;
   number_.emplace(task_, stages_, scratch, control_, executor_, report_);
   number_->begin(limit_of_tasks(task_.simplify, head_start));
 }
@@ -176,7 +176,7 @@ void TaskCollector::finish_report() {
   }
   report_decisions(decisions_, report_);
   report_samples(task_.volume, range_, report_);
-  if (number_) report_target(decisions_, task_.simplify, report_);
+  if (number_) report_target(decisions_, task_.simplify, number_->number(), report_);
   while (report_.blocks.size() > 1 && report_.blocks.back().blocks == 0) report_.blocks.pop_back();
   warn_of_border(task_, report_);
   warn_of_nothing(task_, control_.allow_empty, report_);

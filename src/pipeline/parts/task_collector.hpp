@@ -31,6 +31,7 @@ class TaskCollector {
   // Of a run to a number of triangles, whose tasks decide up to the cost of a head start: takes what a task keeps.
   void keep(KeptTriangles kept) { number_->keep(std::move(kept)); }
   std::uint64_t kept() const { return number_->kept(); }
+  std::uint64_t number() const { return number_->number(); }
 
   // Of such a run, after check_counts(): ends the mesh at the number, and writes it. Returns the head start of the run
   // that has to take the place of this one, as its own was too high: nothing has been written then. Throws BadInput for

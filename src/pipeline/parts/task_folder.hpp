@@ -16,7 +16,7 @@ void write_result(const std::string& folder, const TaskIdentity& identity, std::
 class TaskFolder {
  public:
   TaskFolder(const std::string& folder, const TaskIdentity& identity, const SimplifyTask& task)
-      : folder_(folder), identity_(identity), shape_(cut_part_shape(task)), to_number_(task.triangles > 0) {}
+      : folder_(folder), identity_(identity), shape_(cut_part_shape(task)), to_number_(task.goal.given()) {}
 
   // Reads of a task that is done its counts, and its result without parts for others. Throw BadInput.
   TaskFacts facts(std::uint64_t task) const;

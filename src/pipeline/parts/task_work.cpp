@@ -19,7 +19,7 @@ void TaskResult::read_mesh(StateReader& state, const PartShape& shape, bool to_n
 }
 
 CostBits limit_of_tasks(const SimplifyTask& task, CostBits head_start) {
-  return task.triangles > 0 ? std::min(head_start, task.zone.retire) : task.zone.retire;
+  return task.goal.given() ? std::min(head_start, task.zone.retire) : task.zone.retire;
 }
 
 TaskWork::TaskWork(const Task& task, CostBits limit, const BlockStages& stages, std::uint64_t number,
@@ -32,7 +32,7 @@ TaskWork::TaskWork(const Task& task, CostBits limit, const BlockStages& stages, 
       between_(std::move(between)),
       worker_(task, limit, stages.all, control, executor, report_,
               [this](Simplifier& simplifier, std::size_t level) { take(simplifier, level); }) {
-  if (task.simplify.triangles > 0) result_.kept.emplace();
+  if (task.simplify.goal.given()) result_.kept.emplace();
   result_.pieces.resize(task.simplify.level_costs.size() + 1);
   result_.facts.levels.resize(result_.pieces.size());
 }

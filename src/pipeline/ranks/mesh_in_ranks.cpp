@@ -25,6 +25,11 @@
 namespace isoweave {
 namespace {
 
+// The run has failed, here or elsewhere: rank 0 has said so to all.
+struct RunFailed {
+  RankError error;
+};
+
 class RanksRun {
  public:
   RanksRun(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
@@ -254,13 +259,14 @@ class RanksRun {
       case MessageKind::kAgain:
         again_ = true;
         return message.value(identity_.head_start);
-      case MessageKind::kFailed:
-        throw RunFailed::read(message);
+      case MessageKind::kFailed: {
+        RunFailed failed;
+        failed.error.read(message);
+        throw failed;
+      }
       case MessageKind::kEnd:
         ended_ = true;
         return;
-      case MessageKind::kCount:
-        break;
     }
     message.require(false, "a kind of message that there is");
   }
@@ -291,7 +297,7 @@ class RanksRun {
     message.value(task);
     message.require(is_first() && task < tasks_.count(), "a task of this mesh");
     result.facts.read(message, levels());
-    result.read_mesh(message, cut_part_shape(task_.simplify), task_.simplify.triangles > 0);
+    result.read_mesh(message, cut_part_shape(task_.simplify), task_.simplify.goal.given());
     take_result(task, std::move(result));
   }
 
@@ -316,7 +322,7 @@ class RanksRun {
     while (results_->tasks() < tasks_.count() || ranks_done_ + 1 < link_.ranks()) wait();
     if (results_->waits()) throw BadInput(task_.volume.path + ": final triangles of ranks do not fit together");
     collector_->check_counts();
-    if (task_.simplify.triangles == 0) return true;
+    if (!task_.simplify.goal.given()) return true;
     const std::optional<CostBits> lower = collector_->end_at_number();
     if (lower) begin_again(*lower);
     return !lower;
@@ -368,15 +374,27 @@ class RanksRun {
   bool ended_ = false, again_ = false;
 };
 
+MeshReport run(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
+               const RankOptions& ranks, RankLink& link, const RunControl& control) {
+  std::optional<RankError> error;
+  try {
+    if (link.rank() == 0) check_sinks(sinks, options.levels.size());
+    return RanksRun(open, sinks, options, ranks, link, control).run();
+  } catch (const RunFailed& failed) {
+    error = failed.error;
+    if (link.rank() == 0) tell_all(link, *error);
+  } catch (const std::exception& own) {
+    error = agreed_error(link, RankError::of(own));
+  }
+  error->raise();
+}
+
 }  // namespace
 
 MeshReport mesh_in_ranks(const VolumeOpener& open, std::span<MeshSink* const> sinks, const MeshOptions& options,
                          const RankOptions& ranks, RankLink& link, const RunControl& control) {
   const StandardFloats floats;
-  return run_together(link, [&] {
-    if (link.rank() == 0) check_sinks(sinks, options.levels.size());
-    return RanksRun(open, sinks, options, ranks, link, control).run();
-  });
+  return run(open, sinks, options, ranks, link, control);
 }
 
 void end_ranks(RankLink& link, const std::exception& error) { agreed_error(link, RankError::of(error)).raise(); }

@@ -50,12 +50,6 @@ void RankError::read(MessageReader& reader) {
   reader.list(text);
 }
 
-RunFailed RunFailed::read(MessageReader& reader) {
-  RunFailed failed;
-  failed.error.read(reader);
-  return failed;
-}
-
 void RankError::raise() const {
   switch (type) {
     case Type::kEmpty:

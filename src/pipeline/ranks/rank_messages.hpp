@@ -24,7 +24,6 @@ enum class MessageKind : std::uint32_t {
   kAgain,    // a lower head start, with which all tasks are to be done again, from rank 0
   kFailed,   // an error: of a rank, for rank 0; of the run, from rank 0
   kEnd,      // the mesh is complete, from rank 0
-  kCount,    // triangles of a rank, for rank 0; of all, from rank 0
 };
 
 // A message that is being made.
@@ -64,33 +63,11 @@ struct RankError {
   std::string text;
 };
 
-// The run has failed, here or elsewhere: rank 0 has said so to all.
-struct RunFailed {
-  RankError error;
-
-  static RunFailed read(MessageReader& reader);
-};
-
 // Tells all others an error that ends the run. From rank 0.
 void tell_all(RankLink& link, const RankError& error);
 
 // The error that ends the run, where this rank has failed. Rank 0 tells all others its own; another rank asks rank 0,
 // and keeps its own where rank 0 is silent.
 RankError agreed_error(RankLink& link, const RankError& own);
-
-// Calls work(), which all ranks do together. Where one fails, all throw its error.
-template <class Work>
-auto run_together(RankLink& link, const Work& work) {
-  std::optional<RankError> error;
-  try {
-    return work();
-  } catch (const RunFailed& failed) {
-    error = failed.error;
-    if (link.rank() == 0) tell_all(link, *error);
-  } catch (const std::exception& own) {
-    error = agreed_error(link, RankError::of(own));
-  }
-  error->raise();
-}
 
 }  // namespace isoweave
