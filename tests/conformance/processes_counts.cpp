@@ -157,15 +157,19 @@ class Unread final : public SliceSource {
 // Results that are kept are those of the last head start: a run that goes on takes it from them.
 TEST(RanksThatCount, GoOnWithTheHeadStartOfWhatIsKept) {
   const files::Folder folder;
-  const BlockScene scene = to_number(noise_scene(), 500);
+  const BlockScene scene = to_number(noise_scene(), all_triangles(noise_scene()) / 2);
   RankOptions ranks;
   ranks.blocks.size = 16;
   ranks.results = folder.path();
   RunControl control;
   control.head_start = 3;
   const BlockRun expected = run_sweep(scene);
-  expect_same_by_number(run_ranks(scene, 3, ranks, control), expected);
+  const BlockRun found = run_ranks(scene, 3, ranks, control);
+  expect_same_by_number(found, expected);
   ASSERT_FALSE(folder.entries().empty());
+  std::uint64_t done = 0;
+  for (const RankWork& rank : found.report.ranks) done += rank.tasks;
+  EXPECT_EQ(done, 2 * list_tasks({folder.path(), scene.open, scene.options, ranks.blocks}).count());
   BlockScene unread = scene;
   unread.open = [] { return std::make_unique<Unread>(); };
   expect_same_by_number(run_ranks(unread, 2, ranks, control), expected);

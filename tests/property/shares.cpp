@@ -99,16 +99,20 @@ TEST(Shares, TakeOnePass) {
   EXPECT_EQ(opened, 0);
 }
 
+// With the least share the error stops the run before, with the largest one it never does.
 TEST(Shares, StopAtTheErrorWhereThatComesFirst) {
-  MeshOptions options = options_of(0.01);
-  options.error = Length::voxels(0.3);
-  RunControl control{.head_start = 0.1};
-  control.reopen = [] { return generate_volume(kVolume); };
-  const MeshReport found = run(kVolume, options, control);
-  MeshOptions to_error = options;
-  to_error.share = 0;
-  EXPECT_EQ(digest_text(found.digest), digest_text(run(kVolume, to_error).digest));
-  EXPECT_GT(found.triangles, found.target);
+  const std::uint64_t all = all_triangles(kVolume);
+  for (const double share : {0.01, 0.5, 0.95}) {
+    MeshOptions options = options_of(share);
+    options.error = Length::voxels(0.3);
+    const MeshReport expected = run_to_number(kVolume, options, all);
+    EXPECT_EQ(expected.triangles > expected.target, share == 0.01);
+    for (const double head_start : {0.0, 0.1, 3.0}) {
+      RunControl control{.head_start = head_start};
+      control.reopen = [] { return generate_volume(kVolume); };
+      expect_same_run(run(kVolume, options, control), expected);
+    }
+  }
 }
 
 TEST(Shares, AreOfTheComponentsThatAreChosen) {
