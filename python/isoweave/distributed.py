@@ -121,6 +121,16 @@ def _collect(folder: str, out: str, compress: bool, scratch: str) -> Report:
     return Report(json.loads(report.read_bytes()))
 
 
+def _collect_if_done(folder: str, out: str, compress: bool, scratch: str) -> Report | None:
+    """Collects the tasks; nothing where some are left, also as they have gone too far for a number of triangles."""
+    try:
+        return _collect(folder, out, compress, scratch)
+    except c.BadInput:
+        if _all_done(folder):
+            raise
+    return None
+
+
 @contextmanager
 def _task_folder(folder: PathLike | None, out: str) -> Iterator[str]:
     """The folder of the tasks: the one that is named, or one beside the mesh that vanishes."""
@@ -241,13 +251,8 @@ def mesh(
     path = os.path.abspath(out)
     with tempfile.TemporaryDirectory() as scratch, _task_folder(folder, path) as tasks:
         _plan(options, tasks, scratch)
-        report = None
-        while report is None:
-            try:  # a wrong `out` is refused before any task is done
-                report = _collect(tasks, path, compress, scratch)
-            except c.BadInput:
-                if _all_done(tasks):
-                    raise
-                with closing(teller(progress)) as told:
-                    _work_on_all(client, tasks, threads, told)
+        # A wrong `out` is refused before any task is done.
+        while (report := _collect_if_done(tasks, path, compress, scratch)) is None:
+            with closing(teller(progress)) as told:
+                _work_on_all(client, tasks, threads, told)
     return level_reports(report, len(lods)) if lods else report

@@ -148,19 +148,21 @@ def test_options(client: Any, folder: pathlib.Path, volume: np.ndarray) -> None:
 
 
 def test_a_number_of_triangles(client: Any, folder: pathlib.Path, noise: str) -> None:
-    for stop in ({"triangles": 3000}, {"ratio": 0.1}, {"triangles": 3000, "error": 0.2}):
+    full = isoweave.mesh(noise, 0.5, error=0, out=folder / "full.ply").triangles
+    half: dict[str, Any] = {"triangles": full // 2}
+    for stop in (half, {"ratio": 0.6}, {"triangles": 3000, "error": 0.2}):
         report = cluster_mesh(noise, 0.5, blocks=40, out=folder / "m.ply", **stop)
         alone = isoweave.mesh(noise, 0.5, out=folder / "alone.ply", **stop)
         assert (report.digest, report.triangles) == (alone.digest, alone.triangles), stop
     # A forecast is a guess: here the plan has one that leaves too little.
     tasks = folder / "tasks"
-    cluster_mesh(noise, 0.5, blocks=40, triangles=3000, folder=tasks, out=folder / "m.ply")
+    cluster_mesh(noise, 0.5, blocks=40, folder=tasks, out=folder / "m.ply", **half)
     plan = json.loads((tasks / "plan.json").read_bytes())
     for file in tasks.glob("*.rest"):
         file.unlink()
     (tasks / "plan.json").write_text(json.dumps({**plan, "head_start": 10 * plan["head_start"]}))
-    again = cluster_mesh(noise, 0.5, blocks=40, triangles=3000, folder=tasks, out=folder / "again.ply")
-    assert again.digest == isoweave.mesh(noise, 0.5, triangles=3000).digest
+    again = cluster_mesh(noise, 0.5, blocks=40, folder=tasks, out=folder / "again.ply", **half)
+    assert again.digest == isoweave.mesh(noise, 0.5, **half).digest
     assert json.loads((tasks / "plan.json").read_bytes())["head_start"] < 10 * plan["head_start"]
 
 

@@ -1,5 +1,5 @@
 // Runs to a share of all triangles: the mesh is that of the run to the number which the share turns out to be.
-// Threads: Shares.AreThe*
+// Threads: Shares.TakeOnePass
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ std::uint64_t all_triangles(const GenerateOptions& volume) {
 // How a run can go about it: the volume is read once only, opened again, counted first.
 TEST(Shares, AreTheNumbersThatTheyTurnOutToBe) {
   const std::uint64_t all = all_triangles(kVolume);
-  for (const double share : {1e-9, 0.03, 0.3, 0.9, 1.0}) {
+  for (const double share : kSanitized ? std::vector{0.03, 0.9} : std::vector{1e-9, 0.03, 0.3, 0.9, 1.0}) {
     const MeshReport expected = run_to_number(kVolume, options_of(share), all);
     for (const double head_start : {-1.0, 0.0, 0.1, 3.0}) {
       for (const bool count_first : {false, true}) {
