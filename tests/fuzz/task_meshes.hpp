@@ -11,7 +11,7 @@
 
 namespace isoweave::fuzz {
 
-inline constexpr std::size_t kTaskMeshes = 4;
+inline constexpr std::size_t kTaskMeshes = 5;
 
 inline TaskMesh task_mesh(std::size_t number, const std::string& folder) {
   MeshOptions options;
@@ -20,10 +20,11 @@ inline TaskMesh task_mesh(std::size_t number, const std::string& folder) {
   if (number == 1) options.closed = false;
   if (number == 2) options.levels = {Length::voxels(0.1)};
   if (number == 3) options.normals = Normals::kQuadric;
+  if (number == 4) options.triangles = 200;
   BlockOptions blocks;
   blocks.size = 8;
   const auto open = [] { return generate_volume({"noise", {9, 5, 9}, SampleType::kUint8, {1, 1, 1}, 5}); };
-  return {folder, open, options, blocks};
+  return {folder, open, options, blocks, number == 4 ? 0.1 : 0};
 }
 
 inline RunControl alone() {

@@ -145,6 +145,14 @@ void TaskCollector::check_counts() const {
 }
 
 std::optional<CostBits> TaskCollector::end_at_number() {
+  try {
+    return decide_to_number();
+  } catch (const UnfitParts& unfit) {
+    throw BadInput(name_ + ": the results of the tasks do not fit together: " + unfit.what());
+  }
+}
+
+std::optional<CostBits> TaskCollector::decide_to_number() {
   BlockTotals tasks;
   tasks.decisions = decisions_;
   tasks.rounds = report_.rounds;

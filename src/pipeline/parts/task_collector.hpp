@@ -35,7 +35,7 @@ class TaskCollector {
 
   // Of such a run, after check_counts(): ends the mesh at the number, and writes it. Returns the head start of the run
   // that has to take the place of this one, as its own was too high: nothing has been written then. Throws BadInput for
-  // counts that give no lower one.
+  // counts that give no lower one, and for parts that are not of one surface.
   std::optional<CostBits> end_at_number();
 
   // Whether all vertices that final triangles of a task name have been written.
@@ -56,6 +56,7 @@ class TaskCollector {
  private:
   static constexpr std::uint64_t kNotWritten = ~std::uint64_t{0};
 
+  std::optional<CostBits> decide_to_number();
   void start_report();
   void finish_report();
   void name_known(std::size_t level, FinalPiece& piece) const;
