@@ -210,7 +210,7 @@ class MeshJob {
     info_ = volume_->info();
     if (one_surface()) index_ = open_index(arguments_.index, arguments_.input, info_, quiet());
     control_.index = index_.index;
-    if (!is_read_once(arguments_.input.path)) control_.reopen = [this] { return open_input(arguments_.input); };
+    control_.reopen = [this] { return open_input(arguments_.input); };
     options_.values = open_values(arguments_);
     set_automatic_normals(arguments_, options_);
     set_lengths(arguments_, info_, options_);

@@ -61,6 +61,8 @@ TEST(CliPipes, StandardInputGivesTheMeshOfTheFile) {
   const std::vector<std::vector<std::string>> tasks{
       {"--iso", "auto"},
       {"--iso", "0.1", "--largest", "--ratio", "0.5"},
+      {"--iso", "0.1", "--ratio", "10%"},
+      {"--iso", "0.1", "--triangles", "1k"},
       {"--iso", "0.1", "--roi", "4:,2:18,5:"},
       {"--iso", "0.1", "--memory", "500M", "--lods", "0.1vox,0.5vox"},
       {"--iso", "0.1", "--color-by", "-"},
