@@ -137,12 +137,17 @@ TEST(CliMemory, TheCapThatIsNamedDoesAndIsKept) {
 TEST(CliMemory, ANumberOfTrianglesDoesWithLittle) {
   if (testing::kSanitized) GTEST_SKIP() << "sanitizers hold memory of their own";
   const files::Folder folder;
-  const std::vector<std::string> arguments{
-      "mesh",    "generate:smooth:180x180x240:uint8", "-o", "out.ply", "--iso", "127.5", "--ratio", "50%", "--report",
-      "out.json"};
+  const std::vector<std::string> mesh{
+      "mesh", "generate:smooth:180x180x320:uint8", "-o", "out.ply", "--iso", "127.5", "--report", "out.json"};
+  const Result share = run(folder.path(), joined(mesh, {"--ratio", "50%"}));
+  ASSERT_EQ(share.code, 0) << share.err;
+  const std::string digest = report(folder).at("digest");
+  const auto number = report(folder).at("target").at("triangles").get<std::uint64_t>();
+  const std::vector<std::string> arguments = joined(mesh, {"--triangles", std::to_string(number)});
   const Result at_once = run(folder.path(), arguments);
   ASSERT_EQ(at_once.code, 0) << at_once.err;
-  const std::string digest = report(folder).at("digest");
+  EXPECT_EQ(report(folder).at("digest"), digest);
+  EXPECT_LT(share.peak_bytes, 11 * at_once.peak_bytes / 10) << "a share holds hardly more than the number that it is";
   const std::uint64_t cap = named_cap(run(folder.path(), joined(arguments, {"--memory", "1M", "--blocks", "off"})));
   EXPECT_LT(3'000'000 * cap, 2 * at_once.peak_bytes);
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{}, {"--checkpoint", "states"}}) {
