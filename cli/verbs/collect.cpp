@@ -44,13 +44,13 @@ RunOptions run_options(const CollectArguments& arguments) {
   return run;
 }
 
-// Collects the tasks. Where they have gone too far for a number of triangles, the plan goes less far from now on.
+// Collects the tasks. Where they have gone too far for a number of triangles, the plan gets a lower error.
 MeshReport collect(const PlannedMesh& plan, const LevelSinks& sinks, const RunControl& control) {
   try {
     return collect_tasks(plan.mesh, sinks.pointers(), control);
   } catch (const HeadStartTooHigh& found) {
     lower_head_start(plan.mesh.folder, found.lower());
-    throw BadInput(fmt::format("{}: the plan goes less far now: isoweave work {}, then collect again", found.what(),
+    throw BadInput(fmt::format("{}: the plan has a lower error now: isoweave work {}, then collect again", found.what(),
                                plan.mesh.folder));
   }
 }

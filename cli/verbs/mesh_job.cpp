@@ -162,7 +162,7 @@ class MeshJob {
     if (arguments_.preview.given()) return preview(evidence);
     block_size_ = asked_blocks(arguments_);
     file_ = file_options(arguments_, arguments_.stop, options_, info_);
-    if (!resume_ && needs_forecast()) slabs_or_blocks([&] { foresee_slabs(); });
+    if (!resume_ && needs_forecast()) slabs_or_blocks();
     if (arguments_.dry_run) return tell_forecast(evidence);
     choose();
     prepare_states();
@@ -250,11 +250,10 @@ class MeshJob {
   }
 
   // Foresees a run in slabs. Where they do not fit into the cap, it takes blocks instead.
-  template <class Foresee>
-  void slabs_or_blocks(const Foresee& foresee) {
+  void slabs_or_blocks() {
     if (block_size_) return;
     try {
-      foresee();
+      foresee_slabs();
     } catch (const OverMemory&) {
       if (arguments_.dry_run || !may_take_blocks(arguments_, options_, control_, *volume_)) throw;
       choose_blocks();

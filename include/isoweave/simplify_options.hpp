@@ -28,7 +28,8 @@ struct SimplifyOptions {
   std::uint64_t triangles = 0;
   // In place of a number: this share of the triangles that the surface has before simplification, above 0 and up to 1;
   // 0: no share. The number is the nearest one, and at least 1. It is known when the surface is complete, so until then
-  // all triangles are held that a head start (RunControl::head_start) does not let go.
+  // all triangles are held that a head start (RunControl::head_start) does not let go. Without a head start they are
+  // counted in a pass before, where the volume can be opened again (RunControl::reopen).
   double share = 0;
   Quality quality = Quality::kNormal;
   // A closed component that has shrunk to a tetrahedron is dropped when half its longest edge is no longer than the

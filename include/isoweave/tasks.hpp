@@ -76,10 +76,9 @@ bool is_done(const TaskMesh& mesh, std::uint64_t task);
 // Puts the results of all tasks together into sinks, one for each level and one more, and finishes the sinks.
 // @throws BadInput where a task is not done, where a file is damaged or of another mesh, and where the counts of all
 //   tasks do not add up; HeadStartTooHigh; and what mesh_volume throws
-// @cost Memory: the final triangles of a block, and 4 bytes for each vertex of the mesh with RunControl::measure. With
-// a
-//   number of triangles, what is left by the tasks becomes one surface, which ends at the number here: 350 bytes for
-//   each triangle of 1.5 times the number.
+// @cost Memory: the final triangles of a block, and 4 bytes for each vertex of the mesh with RunControl::measure. To a
+//   number of triangles, what the tasks leave becomes one surface, which ends at the number here: 350 bytes for each
+//   triangle of 1.5 times the number.
 MeshReport collect_tasks(const TaskMesh& mesh, std::span<MeshSink* const> sinks, const RunControl& control = {});
 
 }  // namespace isoweave

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "capi/handles.hpp"
@@ -25,7 +24,7 @@ SimplifyOptions simplify_options(const iw_simplify_options& given, const LengthB
 
 ComponentRule component_rule(const iw_simplify_options& given);
 
-// Everything but the number of triangles and the choice of components, which take a pass over the volume.
+// Everything but the choice of components, which takes a pass over the volume.
 MeshOptions mesh_options(const iw_mesh_options& given, const iw_simplify_options& simplify, const VolumeInfo& info);
 
 RunControl run_control(const iw_run& given);

@@ -66,7 +66,8 @@ void CountTarget::begin_with(const HeadStart& head_start) {
 }
 
 void CountTarget::thin_out() {
-  if (is_counted() || goal_.share > 0) return;  // what is held does not grow with the number, or that is not known
+  if (is_counted()) return;     // what is held does not grow with the number
+  if (goal_.share > 0) return;  // the number is not known yet
   for (std::uint64_t held = simplifier_.triangles(); held > most_held_;) {
     const CostBits limit = limit_that_leaves(goal_.triangles);
     if (limit <= simplifier_.zone().limit) return;

@@ -208,7 +208,7 @@ TEST(CliTasks, ThatWentTooFarAreDoneAgain) {
   ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);
   const Result refused = run(folder.path(), {"collect", "tasks", "-o", "far.ply"});
   expect_failed(refused, 3, "tasks: expected tasks that leave more than 100000 triangles, found ");
-  expect_failed(refused, 3, ": the plan goes less far now: isoweave work tasks, then collect again");
+  expect_failed(refused, 3, ": the plan has a lower error now: isoweave work tasks, then collect again");
   EXPECT_FALSE(std::filesystem::exists(folder / "far.ply"));
   expect_failed(run(folder.path(), {"collect", "tasks", "-o", "far.ply"}), 3, "found task 0 undone");
   ASSERT_EQ(run(folder.path(), {"work", "tasks", "--quiet"}).code, 0);

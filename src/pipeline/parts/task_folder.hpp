@@ -18,7 +18,7 @@ class TaskFolder {
   TaskFolder(const std::string& folder, const TaskIdentity& identity, const SimplifyTask& task)
       : folder_(folder), identity_(identity), shape_(cut_part_shape(task)), to_number_(task.goal.given()) {}
 
-  // Reads of a task that is done its counts, and its result without parts for others. Throw BadInput.
+  // The counts of a task that is done, and its result without the parts for others. Throw BadInput.
   TaskFacts facts(std::uint64_t task) const;
   TaskResult mesh(std::uint64_t task) const;
 
