@@ -36,8 +36,8 @@ double ForecastCurve::head_start(const MeshOptions& options, std::uint64_t numbe
 }
 
 double ForecastCurve::head_start(double wanted, double all) const {
-  if (!(all > 0) || !(all_ > 0)) return 0;
-  const double share = std::clamp(wanted / all, 0.0, 1.0);
+  if (!(all_ > 0) || wanted >= all) return 0;
+  const double share = std::max(wanted / all, 0.0);
   // The more is removed, the more a tile may mislead.
   return std::min(error_that_leaves(share * (1 + kMargin * (1 - share))), kMostError * voxel_);
 }

@@ -27,7 +27,7 @@ class ForecastCurve {
   // `open` triangles on the open surface and `of_caps` others that stay. 0: none is known.
   double head_start(const MeshOptions& options, std::uint64_t number, double open, double of_caps) const;
 
-  // The same of `wanted` triangles out of `all`.
+  // The same of `wanted` triangles out of `all`. 0 as well where all of them are wanted.
   double head_start(double wanted, double all) const;
 
  private:
