@@ -74,7 +74,6 @@ void run_collect(const CollectArguments& arguments) {
   MeshReport report = collect(plan, sinks, control);
   sinks.tell_digests(report);
   Json json = run_json(report, volume_json(plan.volume, plan.arguments.input.path));
-  if (report.target > 0) json["target"] = {{"triangles", report.target}};
   json["output"] = outputs.back().name();
   if (!report.levels.empty()) json["levels"] = levels_json(report, outputs);
   evidence.write(std::move(json), control, {});

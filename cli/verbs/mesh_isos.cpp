@@ -110,7 +110,6 @@ Json report_json(const MeshArguments& arguments, const VolumeInfo& info, const I
   Json json = run_json(report.total, std::move(input));
   const MeshOptions& options = meshes.front().options;
   report_surface_options(json, arguments, options);
-  if (options.triangles > 0) json["target"] = {{"triangles", options.triangles}};
   json["quality"] = arguments.quality;
   json["normals"] = arguments.normals;
   json["space"] = space_of_mesh(info.geometry, options.space);
@@ -147,7 +146,6 @@ void check_isos(const MeshArguments& arguments) {
         fmt::format("--iso with several values: expected a run without {}, which takes one surface", option));
   };
   refuse(!arguments.output.to_stdout.empty(), "--to-stdout");
-  refuse(!arguments.stop.ratio.empty(), "--ratio");
   for (const double iso : isos) {
     const std::string path = iso_output(arguments.output, iso).path;
     check_different({arguments.input.path, path, arguments.run.report, arguments.page.path});

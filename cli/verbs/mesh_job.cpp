@@ -218,7 +218,7 @@ class MeshJob {
     control_.stop = borrow(stop_on_signal());
   }
 
-  // Makes a mesh for each iso-value. A share of the triangles would be another number for each, and is refused.
+  // Makes a mesh for each iso-value.
   void mesh_isos(Evidence& evidence) {
     mesh_iso_files(arguments_, options_, *volume_, control_, evidence);
     tell_lengths();

@@ -34,7 +34,6 @@ Json mesh_report_json(const MeshReport& report, const VolumeInfo& info, const Me
   }
   json["iso"] = options.iso;
   report_surface_options(json, arguments, options);
-  if (report.target > 0) json["target"] = {{"triangles", report.target}};
   json["quality"] = arguments.quality;
   json["normals"] = normals_name(options.normals);
   if (!arguments.color_by.empty()) json["color_by"] = shown_url(arguments.color_by);

@@ -60,18 +60,20 @@ struct LabelsReport {
 // of label_volume(label) at iso 0.5 with the same options. Every slice of the volume is read once, whatever the number
 // of labels, and no label costs more than its box. A label that does not occur gives an empty mesh and a warning in its
 // report. Surfaces of neighbouring labels are simplified independently: they do not share vertices, and may cross or
-// leave gaps, within the error. iso and inside_above of the options are not used.
+// leave gaps, within the error. iso and inside_above of the options are not used; a number or a share of triangles is
+// one for each label.
 //
 // Labels are meshed side by side, those with large boxes one after the other by all threads, so sinks of different
 // labels are called at the same time. No sink is finished before the sweep over all labels is done.
 // @throws BadInput for a volume that label_volume refuses, and what mesh_volume throws
 // @throws std::invalid_argument for a box that is not within the volume, for one sink given twice, and for options of
-//   runs with one surface: a number of triangles, levels, components to be dropped, values of another volume, a device,
-//   an observer, a memory cap, checkpoints
+//   runs with one surface: levels, components to be dropped, values of another volume, a device, an observer, a memory
+//   cap, checkpoints
 // @cost Memory: two slabs of the volume's slices and 2 slices more, and with `smooth` 2 for each pass besides. For each
 //   label whose box the sweep is in: a slab and 2 slices more (4 with normals) of its box, one byte per sample, and its
 //   undecided zone; with `smooth` 4 bytes instead of one, and 24 more per pass for one slice's rows near the surface.
 //   Without RunControl::slab, slabs are as thick as keeps the slices of all boxes within 64 MB, one layer at least.
+//   To a number of triangles a label takes 140 bytes for each triangle that is left, until its box ends.
 // @determinism As mesh_volume.
 LabelsReport mesh_labels(SliceSource& volume, std::span<const LabelSink> labels, const MeshOptions& options,
                          const RunControl& control = {});
@@ -92,8 +94,8 @@ struct IsoValuesReport {
 
 // Meshes the surfaces of several iso-values in one sweep, each into a sink of its own: bit for bit the mesh that
 // mesh_volume makes with that `iso` and the same options. Every slice of the volume is read once, whatever the number
-// of values. `iso` of the options is not used; a number of triangles is one for each mesh. Surfaces are simplified
-// independently: neighbouring ones may cross, within the error.
+// of values. `iso` of the options is not used; a number or a share of triangles is one for each mesh. Surfaces are
+// simplified independently: neighbouring ones may cross, within the error.
 //
 // All threads work on one surface after the other, slab by slab. No sink is finished before the sweep is done.
 // @throws what mesh_volume throws
@@ -101,7 +103,8 @@ struct IsoValuesReport {
 //   with one surface: levels, components to be dropped, values of another volume, a device, an observer, a memory cap,
 //   checkpoints
 // @cost Memory: the slices of a slab once, and for each value its part of the slab and its undecided zone; with
-//   `smooth` a smoothed field for each value besides. Slabs are as thick as in the run of the fullest surface.
+//   `smooth` a smoothed field for each value besides. Slabs are as thick as in the run of the fullest surface. To a
+//   number of triangles a surface takes 140 bytes for each triangle that is left, until the sweep ends.
 // @determinism As mesh_volume.
 IsoValuesReport mesh_iso_values(SliceSource& volume, std::span<const IsoSink> surfaces, const MeshOptions& options,
                                 const RunControl& control = {});

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _library as c
 from ._mesh import Mesh
-from ._options import Extractor, Length, Quality, mesh_struct, simplify_struct
+from ._options import Extractor, Length, Quality, mesh_struct, simplify_struct, usual_error
 from ._outputs import OutputLike, Outputs, label_path
 from ._report import Report
 from ._run import ProgressLike, Runner
@@ -41,10 +41,12 @@ def labels(
     volume: VolumeLike,
     labels: Which = "all",
     *,
-    error: Length | None = "0.2vox",
+    error: Length | None = None,
+    triangles: int | None = None,
+    ratio: float | None = None,
+    max_distance: Length | None = None,
     smooth: int = 4,
     extractor: Extractor = "cubes",
-    max_distance: Length | None = None,
     quality: Quality = "normal",
     closed: bool = True,
     specks: Literal["keep", "drop"] = "keep",
@@ -69,6 +71,8 @@ def labels(
     Args:
         volume: whole numbers; see :func:`open_volume`.
         labels: "all" (but 0, the background), or numbers. One that does not occur gives an empty mesh.
+        triangles: stop at this number for each label.
+        ratio: stop at this part of each label's triangles.
         smooth: passes that take the staircase off; 0: none.
         out: None: the meshes are returned. A path: ``seg.ply`` becomes ``seg_label1.ply``, ... A function: it gets each
             label and its mesh.
@@ -98,7 +102,8 @@ def labels(
     if not wanted:
         raise c.BadInput("labels: expected a label other than 0, found none")
     simplify_options = simplify_struct(
-        error=error, lods=(), max_distance=max_distance, triangles=None, ratio=None, quality=quality, specks=specks
+        error=usual_error(error, [triangles, ratio, max_distance]), lods=(), max_distance=max_distance,
+        triangles=triangles, ratio=ratio, quality=quality, specks=specks,
     )
     options = mesh_struct(
         simplify_options, iso=0.5, closed=closed, smooth=smooth, extractor=extractor, normals=normals, space=space

@@ -154,7 +154,7 @@ def mesh(
 
     Returns:
         A :class:`Mesh`, or with ``lods`` or several levels a list of them; with ``out`` a :class:`Report`, or a list of
-        them. Several levels do not go with lods, ratio, largest, min_component, values, memory, checkpoint and a device.
+        them. Several levels do not go with lods, largest, min_component, values, memory, checkpoint and a device.
 
     Raises:
         BadInput: for a volume that cannot be read.

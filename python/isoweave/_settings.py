@@ -14,6 +14,8 @@ from ._volume import Roi, Triple, VolumeLike
 
 class RunSettings(TypedDict, total=False):
     error: Length | None
+    triangles: int | None
+    ratio: float | None
     max_distance: Length | None
     quality: Quality
     specks: Literal["keep", "drop"]
@@ -22,8 +24,6 @@ class RunSettings(TypedDict, total=False):
 
 
 class StopSettings(RunSettings, total=False):
-    triangles: int | None
-    ratio: float | None
     largest: bool
     min_component: int
     compress: bool

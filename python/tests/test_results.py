@@ -126,6 +126,8 @@ def test_several_levels(volume: np.ndarray, cli_report: Reporter, folder: pathli
     one, two = isoweave.mesh(volume, (60, 170), out=[None, folder / "two.ply"])
     assert isoweave.check(one).digest == isoweave.mesh(volume, 60).digest and two.iso == 170
     assert [each.digest for each in isoweave.mesh(volume, [100])] == [isoweave.mesh(volume, 100).digest]
+    half = isoweave.mesh(volume, levels, ratio=0.5)
+    assert [each.digest for each in half] == [isoweave.mesh(volume, level, ratio=0.5).digest for level in levels]
 
 
 @pytest.mark.parametrize(
@@ -134,7 +136,6 @@ def test_several_levels(volume: np.ndarray, cli_report: Reporter, folder: pathli
         ([], {}, "value"),
         ([60, 60], {}, "60"),
         ([60, 100], {"lods": [0.1, 0.5]}, "lods"),
-        ([60, 100], {"ratio": 0.5}, "ratio"),
         ([60, 100], {"largest": True}, "largest"),
         ([60, 100], {"memory": "2G"}, "memory"),
         ([60, 100], {"values": np.zeros((30, 34, 38))}, "values"),
@@ -212,6 +213,13 @@ def test_labels(folder: pathlib.Path, cli_report: Reporter) -> None:
     by_cli = cli_report(cells, "--labels", "7", "--smooth", "--extractor", "tetrahedra")
     assert tetrahedra.digest == by_cli["labels"][0]["digest"] != meshes[7].digest
     assert tetrahedra.report.extractor == by_cli["extractor"] == "tetrahedra"
+    for options, stop in (
+        ({"ratio": 0.2}, ["--ratio", "20%"]),
+        ({"triangles": 200}, ["--triangles", "200"]),
+        ({"max_distance": "0.3vox"}, ["--max-distance", "0.3vox"]),
+    ):
+        stopped = cli_report(cells, "--labels", "all", "--smooth", *stop)["labels"]
+        assert [each.digest for each in isoweave.labels(cells, **options).values()] == [e["digest"] for e in stopped]
     files = isoweave.labels(cells, [300], out=folder / "seg.ply")
     assert isoweave.check(folder / "seg_label300.ply").digest == files[300].digest == meshes[300].digest
     assert isoweave.labels(cells, out=lambda label, mesh: len(mesh.faces)) == {k: len(m.faces) for k, m in meshes.items()}

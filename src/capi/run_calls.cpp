@@ -75,11 +75,7 @@ Json report_of(const VolumeRun& run, const MeshReport& report, const MeshFileOpt
   return json;
 }
 
-// Keys that the reports of volumes have beside the common ones: of one iso-value, and of several.
-void describe_level_set(const VolumeRun& run, std::uint64_t number, Json& json) {
-  json["inside"] = run.options.inside_above ? "above" : "below";
-  if (number > 0) json["target"] = {{"triangles", number}};
-}
+const char* inside_of(const VolumeRun& run) { return run.options.inside_above ? "above" : "below"; }
 
 void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
   const MeshFileOptions file = run.file();
@@ -90,7 +86,7 @@ void mesh_into(VolumeRun& run, iw_output* outputs, std::size_t count, iw_result*
   Json json = report_of(run, report, file);
   if (!saved.meshes().empty()) json["resumed_at"] = report.resumed_at;
   json["iso"] = run.options.iso;
-  describe_level_set(run, report.target, json);
+  json["inside"] = inside_of(run);
   json["notes"] = sinks.notes();
   set_report(result, text_of(json));
   sinks.deliver();
@@ -115,18 +111,17 @@ std::vector<LabelSink> label_sinks(const VolumeRun& run, const CallOutputs& outp
 
 void mesh_labels_into(const VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
   if (count == 0) throw std::invalid_argument("outputs: expected one for each label, found none");
-  if (run.simplify.ratio != 0 || !component_rule(run.simplify).keeps_all())
-    throw std::invalid_argument("ratio, largest and min_component do not go with labels");
+  if (!component_rule(run.simplify).keeps_all())
+    throw std::invalid_argument("largest and min_component do not go with labels");
   const MeshFileOptions file = run.file();
   CallOutputs sinks(outputs, count, file);
   const LabelsReport report = mesh_labels(*run.opener.open(), label_sinks(run, sinks), run.options, run.control);
   Json json = report_of(run, report.total, file);
   json["labels"] = Json::array();
   for (std::size_t n = 0; n < report.labels.size(); ++n) {
-    Json entry = Json::parse(surface_json(report.labels[n]));
-    entry["label"] = Json::parse(sinks[n].label);
-    entry["triangles_extracted"] = report.labels[n].triangles_extracted;
-    entry["warnings"] = report.labels[n].warnings;
+    Json entry = {{"label", Json::parse(sinks[n].label)}};
+    entry.update(Json::parse(counts_json(report.labels[n])));
+    entry.update(Json::parse(surface_json(report.labels[n])));
     json["labels"].push_back(std::move(entry));
   }
   json["notes"] = sinks.notes();
@@ -135,15 +130,15 @@ void mesh_labels_into(const VolumeRun& run, iw_output* outputs, std::size_t coun
 }
 
 void mesh_isos_into(const VolumeRun& run, iw_output* outputs, std::size_t count, iw_result* result) {
-  if (run.simplify.ratio != 0 || !component_rule(run.simplify).keeps_all())
-    throw std::invalid_argument("ratio, largest and min_component do not go with several iso-values");
+  if (!component_rule(run.simplify).keeps_all())
+    throw std::invalid_argument("largest and min_component do not go with several iso-values");
   const MeshFileOptions file = run.file();
   CallOutputs sinks(outputs, count, file);
   std::vector<IsoSink> surfaces;
   for (std::size_t n = 0; n < count; ++n) surfaces.push_back({sinks[n].iso, sinks.pointers()[n]});
   const IsoValuesReport report = mesh_iso_values(*run.opener.open(), surfaces, run.options, run.control);
   Json json = report_of(run, report.total, file);
-  describe_level_set(run, run.options.triangles, json);
+  json["inside"] = inside_of(run);
   json["isos"] = Json::array();
   for (std::size_t n = 0; n < count; ++n) {
     Json entry = {{"iso", surfaces[n].iso}};

@@ -39,7 +39,7 @@ struct Feature {
 constexpr std::array<Feature, 14> kFeatures{{
     {RunFeature::kDevice, "a CUDA device", kLabels | kIsoValues | kComponents | kSimplify | kBlocks | kPreview,
      [](const MeshOptions&, const RunControl& control) { return control.device == Device::kCuda; }},
-    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kLabels | kPreview,
+    {RunFeature::kTriangles, "a number of triangles to stop at", kDevice | kPreview,
      [](const MeshOptions& options, const RunControl&) { return options.triangles > 0 || options.share != 0; }},
     {RunFeature::kLevels, "levels", kDevice | kLabels | kIsoValues | kPreview,
      [](const MeshOptions& options, const RunControl&) { return !options.levels.empty(); }},

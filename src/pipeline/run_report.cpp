@@ -59,6 +59,11 @@ void report_errors(const SimplifyTask& task, MeshReport& report) {
   for (std::size_t n = 0; n < task.level_errors.size(); ++n) report.levels[n].error = task.level_errors[n];
 }
 
+void report_no_triangles(const SimplifyTask& task, MeshReport& mesh) {
+  mesh.error = task.goal.given() ? 0 : task.error;
+  mesh.target = task.goal.of(0);
+}
+
 void report_target(const DecisionCounts& counts, const SimplifyTask& task, std::uint64_t number, MeshReport& report) {
   report.target = number;
   const double most_error = report.error;

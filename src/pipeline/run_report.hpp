@@ -56,6 +56,9 @@ void report_nothing(const std::string& reason, bool allow_empty, MeshReport& rep
 // Warns of a surface that is the border of the volume and nothing else, as all samples are inside.
 void warn_of_border(const Task& task, MeshReport& report);
 
+// Begins the report of one mesh of several: what holds for it while it has no triangles.
+void report_no_triangles(const SimplifyTask& task, MeshReport& mesh);
+
 // Reports the outcome of a run to a number of triangles, and that number: `report.error`, the error that was asked for,
 // becomes the largest error of a collapse. Where more triangles are left, a warning says why. Must be called when all
 // else is in the report.

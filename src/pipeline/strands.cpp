@@ -1,5 +1,7 @@
 #include "pipeline/strands.hpp"
 
+#include <algorithm>
+
 #include "pipeline/loop.hpp"
 #include "pipeline/run_report.hpp"
 
@@ -13,6 +15,7 @@ void add_to(MeshReport& total, const MeshReport& mesh) {
   total.nonmanifold_vertices += mesh.nonmanifold_vertices;
   total.components += mesh.components;
   total.euler += mesh.euler;
+  total.error = std::max(total.error, mesh.error);
   total.digest += mesh.digest;
   total.cells_crossed += mesh.cells_crossed;
   total.triangles_extracted += mesh.triangles_extracted;
@@ -58,8 +61,7 @@ void StrandsSweep::start_report() {
   total_.threads = executor_.threads();
   total_.slab = control_.slab;
   total_.schedule = control_.schedule == Schedule::kAutomatic ? Schedule::kLocal : control_.schedule;
-  total_.error = task_.simplify.error;
-  for (StrandState& state : strands_) state.report.error = total_.error;
+  for (StrandState& state : strands_) report_no_triangles(task_.simplify, state.report);
   warn_of_space(task_, total_);
   warn_of_rounding(task_, total_);
 }

@@ -96,6 +96,11 @@ Json angles_of(const TriangleAngles& angles) {
           {"smallest_histogram", {{"low", 0}, {"high", 60}, {"triangles", angles.smallest_in_bins}}}};
 }
 
+// The number of triangles that a run was to leave, where it was given one.
+void add_target(const MeshReport& report, Json& json) {
+  if (report.target > 0) json["target"] = {{"triangles", report.target}};
+}
+
 Json distance_of(double mean, double rms, double max, double unit) {
   return {{"mean", mean / unit}, {"rms", rms / unit}, {"max", max / unit}};
 }
@@ -152,6 +157,7 @@ std::string run_json(const MeshReport& report) {
                {"sweep", sweep_of(report.sweep)},
                {"warnings", report.warnings}};
   json.update(surface_of(report));
+  add_target(report, json);
   if (report.cap_cells) json["cap_cells"] = *report.cap_cells;
   if (!report.blocks.empty()) json["blocks"] = blocks_of(report.blocks);
   if (!report.ranks.empty()) json["ranks"] = ranks_of(report.ranks);
@@ -160,14 +166,16 @@ std::string run_json(const MeshReport& report) {
 }
 
 std::string counts_json(const MeshReport& report) {
-  return text_of({{"cells_crossed", report.cells_crossed},
-                  {"triangles_extracted", report.triangles_extracted},
-                  {"vertices_extracted", report.vertices_extracted},
-                  {"collapses", report.collapses},
-                  {"postponed", report.postponed},
-                  {"rekeyed", report.rekeyed},
-                  {"specks", report.specks},
-                  {"warnings", report.warnings}});
+  Json json = {{"cells_crossed", report.cells_crossed},
+               {"triangles_extracted", report.triangles_extracted},
+               {"vertices_extracted", report.vertices_extracted},
+               {"collapses", report.collapses},
+               {"postponed", report.postponed},
+               {"rekeyed", report.rekeyed},
+               {"specks", report.specks},
+               {"warnings", report.warnings}};
+  add_target(report, json);
+  return text_of(json);
 }
 
 std::string forecast_json(const Forecast& forecast, std::optional<std::uint64_t> output_bytes) {

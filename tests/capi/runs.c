@@ -45,11 +45,11 @@ void test_isos(const float* samples) {
   outputs[0].iso = 0;  // as the third
   EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 3, &result), IW_BAD_ARGUMENT));
   EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs, 0, &result), IW_BAD_ARGUMENT));
-  iw_simplify_options share = {.struct_size = sizeof share};
-  share.ratio = 0.5;
-  options.simplify = &share;
+  iw_simplify_options largest = {.struct_size = sizeof largest};
+  largest.largest = 1;
+  options.simplify = &largest;
   EXPECT(is(iw_mesh_isos(volume, &options, NULL, outputs + 1, 2, &result), IW_BAD_ARGUMENT));
-  EXPECT(strstr(result.message, "ratio") != NULL && outputs[2].mesh == NULL);
+  EXPECT(strstr(result.message, "largest") != NULL && outputs[2].mesh == NULL);
   iw_free_volume(volume);
 }
 

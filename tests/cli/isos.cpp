@@ -36,7 +36,8 @@ TEST(CliIsos, AreFilesLikeThoseOfTheirOwnRuns) {
   const files::Folder folder;
   for (const std::vector<std::string>& how : {std::vector<std::string>{},
                                               {"--open", "--normals", "gradient", "--extractor", "dual"},
-                                              {"--triangles", "500"}}) {
+                                              {"--triangles", "500"},
+                                              {"--ratio", "10%"}}) {
     const json report = report_of(folder, joined({"mesh", kVolume, "-o", "a.ply", "--iso", "150,99.5"}, how));
     ASSERT_EQ(report.at("isos").size(), 2U);
     std::uint64_t triangles = 0;
@@ -49,6 +50,7 @@ TEST(CliIsos, AreFilesLikeThoseOfTheirOwnRuns) {
                               "collapses", "warnings"}) {
         EXPECT_EQ(entry.at(key), own.at(key)) << value << ' ' << key;
       }
+      EXPECT_EQ(entry.value("target", json()), own.value("target", json()));
       EXPECT_EQ(report.at("input"), own.at("input"));
       triangles += entry.at("triangles").get<std::uint64_t>();
     }
@@ -112,9 +114,9 @@ TEST(CliIsos, WrongUseIsRefused) {
   for (const std::string isos : {"1,", ",1", "1,,2", "1,auto", "1,x", "1,2,1", "1,1.0", "1,inf"}) {
     refused({"mesh", kVolume, "-o", "a.ply", "--iso=" + isos}, 2, "--iso");
   }
-  const std::vector<std::vector<std::string>> together{
-      {"--lods", "0.1,0.2"},   {"--ratio", "0.5"}, {"--memory", "1G"},      {"--checkpoint", "run"},
-      {"--color-by", "v.raw"}, {"--largest"},      {"--min-component", "9"}};
+  const std::vector<std::vector<std::string>> together{{"--lods", "0.1,0.2"},   {"--memory", "1G"},
+                                                       {"--checkpoint", "run"}, {"--color-by", "v.raw"},
+                                                       {"--largest"},           {"--min-component", "9"}};
   for (const std::vector<std::string>& more : together) {
     refused(joined({"mesh", kVolume, "-o", "a.ply", "--iso", "1,2"}, more), 2,
             "--iso with several values: expected a run without " + more[0] + ", which takes one surface");

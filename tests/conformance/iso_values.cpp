@@ -76,6 +76,7 @@ void expect_same(const IsoRun& found, const IsoRun& expected) {
     EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
     EXPECT_EQ(a.cells_crossed, b.cells_crossed);
     EXPECT_EQ(a.collapses, b.collapses);
+    EXPECT_EQ(a.target, b.target);
     EXPECT_EQ(a.warnings, b.warnings);
     EXPECT_EQ(check_mesh(found.meshes[n]).digest, b.digest);
     EXPECT_EQ(riders_digest(found.meshes[n]), riders_digest(expected.meshes[n]));
@@ -149,7 +150,7 @@ TEST(IsoSweepOptions, FullSlabsAreTakenInPieces) {
   expect_same(run_together(options, {}, kWide), expected);
 }
 
-TEST(IsoSweepOptions, ADistanceANumberOfTrianglesAndNormalsByQuadricsAreThoseOfTheirOwnRuns) {
+TEST(IsoSweepOptions, ADistanceNumbersOfTrianglesAndNormalsByQuadricsAreThoseOfTheirOwnRuns) {
   MeshOptions options;
   options.error = Length::voxels(0.5);
   options.max_distance = Length::voxels(0.3);
@@ -162,6 +163,13 @@ TEST(IsoSweepOptions, ADistanceANumberOfTrianglesAndNormalsByQuadricsAreThoseOfT
   options.error = Length::voxels(3);
   options.triangles = 1500;
   expect_same(run_together(options, {.slab = 2}), run_each(options));
+  options = {};
+  options.error = Length::units(std::numeric_limits<double>::infinity());
+  options.share = 0.3;
+  const IsoRun share = run_each(options);
+  ASSERT_NEAR(static_cast<double>(share.reports[0].triangles),
+              0.3 * static_cast<double>(share.reports[0].triangles_extracted), 2);  // a collapse takes two
+  expect_same(run_together(options, {.slab = 2}), share);
 }
 
 // The values are those of scaled samples, and the range is the volume's.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "label_maps.hpp"
 #include "surfaces.hpp"
@@ -80,6 +81,7 @@ void expect_same(const LabelRun& found, const LabelRun& expected) {
     EXPECT_EQ(a.vertices_extracted, b.vertices_extracted);
     EXPECT_EQ(a.cells_crossed, b.cells_crossed);
     EXPECT_EQ(a.collapses, b.collapses);
+    EXPECT_EQ(a.target, b.target);
     EXPECT_EQ(a.warnings.empty(), kLabels[n] != 44);
     EXPECT_EQ(check_mesh(found.meshes[n]).digest, b.digest);
     EXPECT_EQ(sorted_vertices(found.meshes[n]), sorted_vertices(expected.meshes[n]));
@@ -211,6 +213,23 @@ TEST(LabelSweepOptions, WithADistanceTheyAreTheSameToo) {
   expect_same(run_labels(options, {.slab = 4}, true), expected);
 }
 
+TEST(LabelSweepOptions, ANumberAndAShareOfTrianglesAreThoseOfEachLabel) {
+  MeshOptions options;
+  options.error = Length::voxels(3);
+  options.triangles = 2000;
+  const LabelRun number = run_each(options);
+  ASSERT_EQ(number.reports[0].triangles, 2000U);
+  for (const bool boxes : {true, false}) expect_same(run_labels(options, {.slab = 2}, boxes), number);
+  options = {};
+  options.error = Length::units(std::numeric_limits<double>::infinity());
+  options.share = 0.25;
+  options.smooth = 2;
+  const LabelRun share = run_each(options);
+  const auto quarter = static_cast<double>(share.reports[0].triangles_extracted) / 4;
+  ASSERT_NEAR(static_cast<double>(share.reports[0].triangles), quarter, 2);  // a collapse takes two
+  for (const bool boxes : {true, false}) expect_same(run_labels(options, {.threads = 2, .slab = 3}, boxes), share);
+}
+
 TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
   MemorySink sink;
   const LabelSink labels[] = {{1, &sink, {}}};
@@ -219,9 +238,6 @@ TEST(LabelSweepOptions, WhatTakesOneSurfaceIsRefused) {
     EXPECT_FALSE(sink.finished);
   };
   MeshOptions options;
-  options.triangles = 100;
-  refused(options, {});
-  options = {};
   options.levels = {{0.1, true}};
   refused(options, {});
   options = {};

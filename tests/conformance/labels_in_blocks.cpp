@@ -58,6 +58,7 @@ void expect_same(const Made& found, const Made& expected) {
     SCOPED_TRACE(n);
     EXPECT_TRUE(found.sinks[n].finished);
     expect_same_surface(found.report.labels[n], expected.report.labels[n]);
+    EXPECT_EQ(found.report.labels[n].target, expected.report.labels[n].target);
     EXPECT_EQ(found.report.labels[n].warnings, expected.report.labels[n].warnings);
     EXPECT_EQ(check_mesh(found.sinks[n].mesh).digest, expected.report.labels[n].digest);
   }
@@ -75,7 +76,7 @@ struct Way {
 void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 
 std::vector<Way> ways() {
-  std::vector<Way> all(5);
+  std::vector<Way> all(7);
   for (Way& way : all) way.options.error = Length::voxels(0.3);
   all[0].name = "Closed";
   all[1].name = "Open";
@@ -87,6 +88,11 @@ std::vector<Way> ways() {
   all[3].options.extractor = ExtractorKind::kTrilinear;
   all[4].name = "Full";
   all[4].options.error = Length::units(0);
+  all[5].name = "Number";
+  all[5].options.triangles = 40;
+  all[6].name = "Share";
+  all[6].options.share = 0.6;
+  all[6].options.error = Length::voxels(2);
   return all;
 }
 
@@ -220,9 +226,9 @@ TEST(LabelsInBlocksRefuse, WhatTheyDoNotHave) {
     run(labels, [&](auto sinks) { return mesh_labels_in_blocks(kOpen, sinks, options, {size}, control); });
   };
   EXPECT_THROW(with({}, {}, 7), std::invalid_argument);
-  MeshOptions number;
-  number.triangles = 100;
-  EXPECT_THROW(with(number, {}, 16), std::invalid_argument);
+  MeshOptions levels;
+  levels.levels = {Length::voxels(0.1)};
+  EXPECT_THROW(with(levels, {}, 16), std::invalid_argument);
   MeshOptions dual;
   dual.extractor = ExtractorKind::kDual;
   EXPECT_THROW(with(dual, {}, 16), std::invalid_argument) << "label 1 is larger than a box";

@@ -99,17 +99,16 @@ TEST(BadArguments, OneSinkForTwoMeshes) {
 
 TEST(BadArguments, ARefusalNamesTheFeatureAndWhoRefusesIt) {
   MeshOptions options = usual_options();
-  options.triangles = 9;
+  options.levels = {Length::voxels(0.1)};
   RunControl control;
   EXPECT_NO_THROW(require_possible(RunKind::kMesh, options, control));
   try {
     require_possible(RunKind::kLabels, options, control);
     FAIL() << "expected a refusal";
   } catch (const ImpossibleRun& refused) {
-    EXPECT_EQ(refused.feature(), RunFeature::kTriangles);
+    EXPECT_EQ(refused.feature(), RunFeature::kLevels);
     EXPECT_FALSE(refused.is_by_device());
-    EXPECT_STREQ(refused.what(),
-                 "labels: expected a run without a number of triangles to stop at, which takes one surface");
+    EXPECT_STREQ(refused.what(), "labels: expected a run without levels, which takes one surface");
     EXPECT_EQ(refused.with_names("A", "B"), "A: expected a run without B, which takes one surface");
   }
   control.device = Device::kCuda;
@@ -117,7 +116,7 @@ TEST(BadArguments, ARefusalNamesTheFeatureAndWhoRefusesIt) {
     require_possible(RunKind::kMesh, options, control);
     FAIL() << "expected a refusal";
   } catch (const ImpossibleRun& refused) {
-    EXPECT_EQ(refused.feature(), RunFeature::kTriangles);
+    EXPECT_EQ(refused.feature(), RunFeature::kLevels);
     EXPECT_TRUE(refused.is_by_device());
   }
 }

@@ -167,7 +167,8 @@ MeshReport run_blocks(const VolumeOpener& open, const std::optional<Region>& box
                       const MeshOptions& options, const BlockOptions& blocks, const RunControl& control) {
   const StandardFloats floats;
   check_sinks(sinks, options.levels.size());
-  std::variant<MeshReport, CostBits> made = CostBits{head_start_of(open, options, control)};
+  const VolumeOpener surface = [&] { return box ? crop_volume(open(), *box) : open(); };
+  std::variant<MeshReport, CostBits> made = CostBits{head_start_of(surface, options, control)};
   while (const CostBits* const head_start = std::get_if<CostBits>(&made)) {
     made = BlocksRun(open, sinks, options, blocks, control, box).run(*head_start);
   }

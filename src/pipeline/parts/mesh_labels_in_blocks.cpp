@@ -44,7 +44,7 @@ class LabelsInBlocks {
     Stopwatch total;
     start_report();
     for (std::size_t n = 0; n < labels_.size(); ++n) {
-      if (is_empty(boxes_[n])) end(n, MeshReport{});
+      if (is_empty(boxes_[n])) end_empty(n);
     }
     const GroupedLabels grouped = group_labels(boxes_, blocks_.size);
     if (!grouped.large.empty()) require_possible(RunKind::kBlocks, options_, control_);
@@ -94,9 +94,14 @@ class LabelsInBlocks {
     end(n, std::move(made));
   }
 
+  void end_empty(std::size_t n) {
+    MeshReport report;
+    report_no_triangles(task_.simplify, report);
+    end(n, std::move(report));
+  }
+
   void end(std::size_t n, MeshReport report) {
     add_to(report_, report);
-    report.error = task_.simplify.error;
     warn_of_empty_label(task_.volume, labels_[n].label, report);
     output_.end(n, std::move(report));
   }
@@ -111,7 +116,6 @@ class LabelsInBlocks {
   void start_report() {
     report_.threads = Executor(control_.threads).threads();
     report_.slab = control_.slab;
-    report_.error = task_.simplify.error;
     const SampleRange none;
     report_.min = none.min;
     report_.max = none.max;
