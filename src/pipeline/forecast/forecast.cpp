@@ -39,13 +39,13 @@ constexpr std::int64_t kThin = 2;  // slices
 constexpr std::int64_t kThick = 15;
 constexpr std::int64_t kThickBlocks = 3;
 constexpr std::int64_t kMostBlocks = 24;
-constexpr double kSampledPart = 0.04;  // of the volume's bytes, and of its triangles that are simplified
+constexpr double kSampledPart = 0.04;  // of the volume's bytes
 constexpr double kLeastBytes = 32e6;
 constexpr double kMostBytes = 256e6;
-constexpr std::size_t kTiles = 4;      // of a block that are simplified
-constexpr double kMostSampled = 0.08;  // of the triangles, where tiles are larger than small ones
-constexpr double kSmallTile = 1000;    // triangles
-constexpr double kLeastTile = 4000;    // where the surface is large enough
+constexpr std::size_t kTiles = 4;    // of a block that are simplified
+constexpr double kTiledPart = 0.02;  // of the triangles, in tiles; twice that, where tiles are larger than small ones
+constexpr double kSmallTile = 1000;  // triangles
+constexpr double kLeastTile = 3000;  // where the surface is large enough
 constexpr double kMostTile = 25000;
 constexpr double kTileBytes = 16e6;
 constexpr std::uint64_t kStreamBytes = std::uint64_t{512} << 20;
@@ -226,8 +226,8 @@ class Forecaster {
     const double bytes = static_cast<double>(slices) * static_cast<double>(info_.slice_bytes()) / rows_in_bands();
     const double expected = per_layer * static_cast<double>(info_.dims[2]);
     const double least =
-        std::clamp(kMostSampled * expected, kThickBlocks * kTiles * kSmallTile, kThickBlocks * kTiles * kLeastTile);
-    const double wanted = std::max(kSampledPart * expected, least) / kThickBlocks;
+        std::clamp(2 * kTiledPart * expected, kThickBlocks * kTiles * kSmallTile, kThickBlocks * kTiles * kLeastTile);
+    const double wanted = std::max(kTiledPart * expected, least) / kThickBlocks;
     const double in_block = per_layer / layers_in_bands() * static_cast<double>(std::max<std::int64_t>(slices - 1, 1));
     return map_.parts(kTiles, std::min(wanted / kTiles, kMostTile) / std::max(in_block, 1.0), kTileBytes / bytes);
   }
