@@ -375,12 +375,12 @@ void Zone::compact(const Executor& executor) {
   });
   const Compaction new_vertex(executor, vertices.size(), [&](std::size_t v) { return used[v] != 0; });
   const auto move_half_edge = [&](Index& h) {
-    if (!exists(h)) return;
+    if (!exists(h) || new_triangle.stays(h >> 2)) return;
     const Index t = new_triangle[h >> 2];
     h = t == kNone ? kNone : half_edge(t, h & 3);
   };
   const auto move_vertex = [&](Index& v) {
-    if (v != kNone) v = new_vertex[v];
+    if (v != kNone && !new_vertex.stays(v)) v = new_vertex[v];
   };
   new_triangle.apply(triangle_array_, [&](Triangle& triangle) {
     for (HalfEdge& side : triangle.sides) {
