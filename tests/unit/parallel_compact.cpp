@@ -2,6 +2,7 @@
 // Threads: Compaction.*
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -30,7 +31,16 @@ void expect_closed(std::size_t size, const Keep& keep, int threads) {
   std::size_t place = 0;
   for (std::size_t n = 0; n < size; ++n) {
     ASSERT_EQ(compaction[n], keep(n) ? place++ : Compaction::kDropped) << "element " << n << " of " << size;
+    if (compaction.stays(n)) {
+      ASSERT_EQ(compaction[n], n) << "element of " << size;
+    }
   }
+  Array<std::uint64_t> moved;
+  moved.resize(size);
+  std::copy(array.begin(), array.end(), moved.begin());
+  compaction.apply(moved);
+  for (std::uint64_t& value : moved) ++value;
+  ASSERT_EQ(std::vector<std::uint64_t>(moved.begin(), moved.end()), expected) << size << ", threads " << threads;
   compaction.apply(array, [](std::uint64_t& value) { ++value; });
   ASSERT_EQ(std::vector<std::uint64_t>(array.begin(), array.end()), expected) << size << ", threads " << threads;
 }
@@ -60,6 +70,19 @@ TEST(Compaction, GapsAtOneEnd) {
   constexpr std::size_t kSize = 100000;
   expect_closed(kSize, [](std::size_t n) { return n >= 30000; });
   expect_closed(kSize, [](std::size_t n) { return n < 30000; });
+}
+
+TEST(Compaction, MostOfWhatLiesBeforeTheFirstGapIsKnownToStay) {
+  constexpr std::size_t kSize = 100000;
+  for (const std::size_t gap : {std::size_t{30000}, std::size_t{8192}, std::size_t{8191}, kSize - 1, kSize}) {
+    const Executor executor(2);
+    const Compaction compaction(executor, kSize, [&](std::size_t n) { return n != gap; });
+    std::size_t stay = 0;
+    while (stay < kSize && compaction.stays(stay)) ++stay;
+    EXPECT_LE(stay, gap);
+    EXPECT_GT(stay + 4096, gap);
+    expect_closed(kSize, [&](std::size_t n) { return n < gap || n % 3 == 0; });
+  }
 }
 
 }  // namespace
