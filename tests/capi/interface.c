@@ -453,6 +453,9 @@ static void test_faults(const float* samples) {
   memory.mesh = NULL;
   options.struct_size = sizeof options + 8;
   EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  options.struct_size = offsetof(iw_mesh_options, simplify) + sizeof options.simplify / 2;  // half a pointer
+  EXPECT(is(iw_mesh_volume(volume, &options, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
+  EXPECT(strstr(result.message, "struct_size") != NULL);
   memory.struct_size = 8;
   EXPECT(is(iw_mesh_volume(volume, NULL, NULL, &memory, 1, &result), IW_BAD_ARGUMENT));
 
