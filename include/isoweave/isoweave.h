@@ -312,15 +312,15 @@ typedef struct iw_output {
 iw_status iw_mesh_volume(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                          size_t count, iw_result* result);
 
-// Meshes labels of a label map in one sweep, each to its output. options: iso and inside_below do not count; a number or
-// a ratio of triangles is one for each label. Sinks of different labels are called at the same time. In the report,
+// Meshes labels of a label map in one sweep, each to its output. options: iso and inside_below do not count; a number
+// or a ratio of triangles is one for each label. Sinks of different labels are called at the same time. In the report,
 // `labels` has an entry for each output.
 iw_status iw_mesh_labels(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                          size_t count, iw_result* result);
 
 // Meshes the surfaces of several iso-values in one sweep, each to its output: bit for bit the meshes of runs of their
-// own, with `iso` from the output. options: iso does not count; a number or a ratio of triangles is one for each mesh. In
-// the report, `isos` has an entry for each output.
+// own, with `iso` from the output. options: iso does not count; a number or a ratio of triangles is one for each mesh.
+// In the report, `isos` has an entry for each output.
 iw_status iw_mesh_isos(const iw_volume* volume, const iw_mesh_options* options, const iw_run* run, iw_output* outputs,
                        size_t count, iw_result* result);
 

@@ -28,7 +28,7 @@ iw_status fail(iw_result* result, iw_status status, const char* message) noexcep
 }  // namespace
 
 void require_size(std::size_t found, std::size_t largest) {
-  // The size of a struct that begins with a size_t is a multiple of that. Any other would end within a pointer.
+  // The size of a struct that begins with a size_t is a multiple of that. Any other may end within a pointer.
   constexpr std::size_t kStep = sizeof(std::size_t);
   if (found >= kStep && found <= largest && found % kStep == 0) return;
   throw std::invalid_argument("struct_size: expected a multiple of " + std::to_string(kStep) + " bytes, at most " +

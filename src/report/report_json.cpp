@@ -96,6 +96,16 @@ Json angles_of(const TriangleAngles& angles) {
           {"smallest_histogram", {{"low", 0}, {"high", 60}, {"triangles", angles.smallest_in_bins}}}};
 }
 
+Json counts_of(const MeshReport& report) {
+  return {{"cells_crossed", report.cells_crossed},
+          {"triangles_extracted", report.triangles_extracted},
+          {"vertices_extracted", report.vertices_extracted},
+          {"collapses", report.collapses},
+          {"postponed", report.postponed},
+          {"rekeyed", report.rekeyed},
+          {"specks", report.specks}};
+}
+
 // The number of triangles that a run was to leave, where it was given one.
 void add_target(const MeshReport& report, Json& json) {
   if (report.target > 0) json["target"] = {{"triangles", report.target}};
@@ -140,22 +150,16 @@ std::string run_json(const MeshReport& report) {
                {"threads", report.threads},
                {"slab", report.slab},
                {"schedule", schedule_name(report.schedule)},
-               {"input", Json::object()},
-               {"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"components_dropped", report.components_dropped},
+               {"input", Json::object()}};
+  json.update(counts_of(report));
+  json.update({{"components_dropped", report.components_dropped},
                {"triangles_dropped", report.triangles_dropped},
                {"rounds", report.rounds},
                {"locked_vertices", report.locked_vertices},
                {"seconds", seconds_of(report)},
                {"memory", {{"peak_bytes", report.peak_bytes}, {"predicted_bytes", nullptr}}},
                {"sweep", sweep_of(report.sweep)},
-               {"warnings", report.warnings}};
+               {"warnings", report.warnings}});
   json.update(surface_of(report));
   add_target(report, json);
   if (report.cap_cells) json["cap_cells"] = *report.cap_cells;
@@ -166,14 +170,8 @@ std::string run_json(const MeshReport& report) {
 }
 
 std::string counts_json(const MeshReport& report) {
-  Json json = {{"cells_crossed", report.cells_crossed},
-               {"triangles_extracted", report.triangles_extracted},
-               {"vertices_extracted", report.vertices_extracted},
-               {"collapses", report.collapses},
-               {"postponed", report.postponed},
-               {"rekeyed", report.rekeyed},
-               {"specks", report.specks},
-               {"warnings", report.warnings}};
+  Json json = counts_of(report);
+  json["warnings"] = report.warnings;
   add_target(report, json);
   return text_of(json);
 }
